@@ -1,0 +1,1 @@
+"""permway: how a train, its track and the viaduct below vibrate."""

@@ -1,0 +1,40 @@
+"""What goes wrong, said once and clearly.
+
+Every error a user can cause carries what is wrong, where, the value met and the remedy.
+"""
+
+from __future__ import annotations
+
+
+class PermwayError(Exception):
+    """Base of all errors that permway raises on purpose."""
+
+
+class InputError(PermwayError, ValueError):
+    """An input that cannot be used.
+
+    Parameters
+    ----------
+    what
+        What is wrong, as a short clause.
+    where
+        The place: a path in a file ("bodies.rail.E"), a column and line, an argument's name.
+    value
+        The value met, if there is one to show.
+    remedy
+        What would be right.
+    """
+
+    def __init__(self, what: str, *, where: str, value: object = None, remedy: str = "") -> None:
+        self.what, self.where, self.value, self.remedy = what, where, value, remedy
+        got = "" if value is None else f" (got {_short(value)})"
+        super().__init__(f"{where}: {what}{got}" + (f"; {remedy}" if remedy else ""))
+
+
+class SolveError(PermwayError, ArithmeticError):
+    """A model that cannot be solved at a frequency: singular, not finite or badly conditioned."""
+
+
+def _short(value: object, limit: int = 80) -> str:
+    text = repr(value)
+    return text if len(text) <= limit else text[: limit - 3] + "..."
