@@ -1,0 +1,118 @@
+//! Tables of plain arrays to the core's line and points.
+
+use num_complex::Complex;
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use permway_core::line::{Beam, Body, End, Joint, Line, Point};
+use pyo3::{exceptions::PyValueError, prelude::*};
+
+/// Columns of a table of beams, one row each.
+#[derive(FromPyObject)]
+pub struct Beams<'py> {
+    #[pyo3(item("bending"))]
+    bending: PyReadonlyArray1<'py, Complex<f64>>,
+    #[pyo3(item("shear"))]
+    shear: PyReadonlyArray1<'py, Complex<f64>>,
+    #[pyo3(item("mass"))]
+    mass: PyReadonlyArray1<'py, f64>,
+    #[pyo3(item("rotary"))]
+    rotary: PyReadonlyArray1<'py, f64>,
+    #[pyo3(item("interval"))]
+    interval: PyReadonlyArray2<'py, f64>,
+    #[pyo3(item("pinned"))]
+    pinned: PyReadonlyArray2<'py, bool>,
+    #[pyo3(item("modes"))]
+    modes: PyReadonlyArray1<'py, i64>,
+}
+
+/// Columns of a table of joints.
+#[derive(FromPyObject)]
+pub struct Joints<'py> {
+    #[pyo3(item("x"))]
+    x: PyReadonlyArray1<'py, f64>,
+    #[pyo3(item("upper"))]
+    upper: PyReadonlyArray1<'py, i64>,
+    #[pyo3(item("lower"))]
+    lower: PyReadonlyArray1<'py, i64>,
+    #[pyo3(item("law"))]
+    law: PyReadonlyArray1<'py, i64>,
+    #[pyo3(item("scale"))]
+    scale: PyReadonlyArray1<'py, f64>,
+}
+
+/// Columns of a table of places on bodies.
+#[derive(FromPyObject)]
+pub struct Points<'py> {
+    #[pyo3(item("body"))]
+    body: PyReadonlyArray1<'py, i64>,
+    #[pyo3(item("x"))]
+    x: PyReadonlyArray1<'py, f64>,
+}
+
+/// Checks that the columns of a table have one length.
+fn same_length(table: &str, lengths: &[usize]) -> PyResult<usize> {
+    let n = lengths.first().copied().unwrap_or(0);
+    if lengths.iter().all(|l| *l == n) {
+        return Ok(n);
+    }
+    Err(PyValueError::new_err(format!("{table}: the columns have different lengths {lengths:?}")))
+}
+
+fn index(value: i64, what: &str) -> PyResult<usize> {
+    usize::try_from(value).map_err(|_| PyValueError::new_err(format!("{what} {value} must not be negative")))
+}
+
+/// Bodies are the beams, then the masses.
+pub fn line(
+    names: Vec<String>,
+    beams: &Beams<'_>,
+    masses: &PyReadonlyArray1<'_, f64>,
+    joints: &Joints<'_>,
+) -> PyResult<Line> {
+    let (bending, shear) = (beams.bending.as_array(), beams.shear.as_array());
+    let (mass, rotary) = (beams.mass.as_array(), beams.rotary.as_array());
+    let (interval, pinned, modes) = (beams.interval.as_array(), beams.pinned.as_array(), beams.modes.as_array());
+    let lengths =
+        [bending.len(), shear.len(), mass.len(), rotary.len(), interval.nrows(), pinned.nrows(), modes.len()];
+    let n = same_length("beams", &lengths)?;
+    if n > 0 && (interval.ncols() != 2 || pinned.ncols() != 2) {
+        return Err(PyValueError::new_err("beams: interval and pinned have two columns"));
+    }
+    let end = |p: bool| if p { End::Pinned } else { End::Free };
+    let mut bodies = Vec::with_capacity(n);
+    for i in 0..n {
+        bodies.push(Body::Beam(Beam {
+            bending: bending[i],
+            // A shear stiffness of zero stands for an Euler-Bernoulli beam.
+            shear: (shear[i] != Complex::ZERO).then_some(shear[i]),
+            mass: mass[i],
+            rotary: rotary[i],
+            interval: [interval[[i, 0]], interval[[i, 1]]],
+            ends: [end(pinned[[i, 0]]), end(pinned[[i, 1]])],
+            modes: usize::try_from(modes[i]).ok().filter(|m| *m > 0),
+        }));
+    }
+    bodies.extend(masses.as_array().iter().map(|m| Body::Mass(*m)));
+    let (x, upper, lower) = (joints.x.as_array(), joints.upper.as_array(), joints.lower.as_array());
+    let (law, scale) = (joints.law.as_array(), joints.scale.as_array());
+    let n = same_length("joints", &[x.len(), upper.len(), lower.len(), law.len(), scale.len()])?;
+    let joints = (0..n)
+        .map(|i| {
+            Ok(Joint {
+                x: x[i],
+                a: index(upper[i], "joints: upper body")?,
+                // A negative lower body stands for the ground.
+                b: usize::try_from(lower[i]).ok(),
+                law: index(law[i], "joints: law")?,
+                scale: scale[i],
+            })
+        })
+        .collect::<PyResult<_>>()?;
+    Ok(Line { bodies, joints, names })
+}
+
+/// Places of forces or sensors.
+pub fn points(table: &str, points: &Points<'_>) -> PyResult<Vec<Point>> {
+    let (body, x) = (points.body.as_array(), points.x.as_array());
+    let n = same_length(table, &[body.len(), x.len()])?;
+    (0..n).map(|i| Ok(Point { body: index(body[i], table)?, x: x[i] })).collect()
+}

@@ -1,0 +1,19 @@
+//! The Python border: arrays in, arrays out, errors. No physics.
+
+mod convert;
+mod solve;
+
+use pyo3::prelude::pymodule;
+
+/// Compiled core of permway: the harmonic response of a line.
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use crate::solve::solve_line;
+
+    #[pymodule_init]
+    fn init(m: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
+        use pyo3::types::PyModuleMethods;
+        m.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

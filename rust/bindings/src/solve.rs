@@ -1,0 +1,140 @@
+//! One sweep: the interpreter released, Ctrl-C and progress answered while it runs.
+
+use crate::convert::{self, Beams, Joints, Points};
+use num_complex::Complex;
+use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use permway_core::{
+    error::CoreError,
+    sweep::{Answer, Control, Formulation, Request, sweep},
+};
+use pyo3::{
+    exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyValueError},
+    prelude::*,
+};
+use std::{
+    sync::atomic::Ordering,
+    time::{Duration, Instant},
+};
+
+/// Receptance, joint extension (or None), and failures as (index, kind, message).
+type Solved<'py> = (
+    Bound<'py, PyArray3<Complex<f64>>>,
+    Option<Bound<'py, PyArray3<Complex<f64>>>>,
+    Vec<(usize, &'static str, String)>,
+);
+
+/// How often a running sweep looks for Ctrl-C, and reports progress.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Harmonic response of a line to unit forces.
+///
+/// Bodies are the beams, then the masses; a lower body of -1 is the ground, a shear stiffness of 0
+/// an Euler-Bernoulli beam, 0 modes the closed form. `laws` has shape (frequency, law), N/m.
+/// Returns receptance in m/N, shape (frequency, sensor, force); joint extension, shape (frequency,
+/// joint, force), or None; and the frequencies that failed as (index, kind, message), NaN in the
+/// arrays. Raises ValueError for tables that do not fit together.
+#[pyfunction]
+#[pyo3(signature = (*, formulation, frequencies, names, beams, masses, joints, laws, forces, sensors, extensions, threads, progress))]
+#[allow(clippy::too_many_arguments)]
+pub fn solve_line<'py>(
+    py: Python<'py>,
+    formulation: &str,
+    frequencies: PyReadonlyArray1<'py, f64>,
+    names: Vec<String>,
+    beams: Beams<'py>,
+    masses: PyReadonlyArray1<'py, f64>,
+    joints: Joints<'py>,
+    laws: PyReadonlyArray2<'py, Complex<f64>>,
+    forces: Points<'py>,
+    sensors: Points<'py>,
+    extensions: bool,
+    threads: usize,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<Solved<'py>> {
+    let formulation = match formulation {
+        "chain" => Formulation::Chain,
+        "receptance" => Formulation::Receptance,
+        other => {
+            return Err(PyValueError::new_err(format!("formulation {other:?}: use \"chain\" or \"receptance\"")));
+        }
+    };
+    let line = convert::line(names, &beams, &masses, &joints)?;
+    let (forces, sensors) = (convert::points("forces", &forces)?, convert::points("sensors", &sensors)?);
+    let frequencies = frequencies.as_array().to_vec();
+    let n_laws = laws.as_array().ncols();
+    let laws: Vec<_> = laws.as_array().iter().copied().collect();
+    let request = Request {
+        line: &line,
+        frequencies: &frequencies,
+        laws: &laws,
+        n_laws,
+        forces: &forces,
+        sensors: &sensors,
+        formulation,
+        joints: extensions,
+        threads: threads.max(1),
+    };
+    let progress = progress.map(Bound::unbind);
+    let answer = py.detach(|| watched(&request, progress.as_ref()))?;
+    let shape = |rows: usize| [frequencies.len(), rows, forces.len()];
+    let failures = answer.failures.iter().map(|(i, e)| (*i, kind(e), e.to_string())).collect();
+    let array = |v: Vec<Complex<f64>>, rows| PyArray1::from_vec(py, v).reshape(shape(rows));
+    let joints = if extensions { Some(array(answer.joints, line.joints.len())?) } else { None };
+    Ok((array(answer.sensors, sensors.len())?, joints, failures))
+}
+
+/// Runs the sweep beside a watch that answers signals and reports progress.
+fn watched(request: &Request<'_>, progress: Option<&Py<PyAny>>) -> PyResult<Answer> {
+    let control = Control::default();
+    std::thread::scope(|scope| {
+        let watcher = std::thread::current();
+        let worker = {
+            let control = &control;
+            scope.spawn(move || {
+                let answer = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| sweep(request, control)));
+                control.ended.store(true, Ordering::Release);
+                watcher.unpark();
+                answer
+            })
+        };
+        let mut stop = None;
+        let mut due = Instant::now() + TICK;
+        while !control.ended.load(Ordering::Acquire) {
+            std::thread::park_timeout(due.saturating_duration_since(Instant::now()));
+            if stop.is_none() && Instant::now() >= due {
+                due = Instant::now() + TICK;
+                let done = control.done.load(Ordering::Relaxed);
+                let heard = Python::attach(|py| {
+                    py.check_signals()?;
+                    progress.map_or(Ok(()), |p| p.call1(py, (done, request.frequencies.len())).map(|_| ()))
+                });
+                if let Err(e) = heard {
+                    control.cancel.store(true, Ordering::Relaxed);
+                    stop = Some(e);
+                }
+            }
+        }
+        let result = worker.join();
+        if let Some(e) = stop {
+            return Err(e);
+        }
+        match result {
+            Ok(Ok(Ok(answer))) => Ok(answer),
+            Ok(Ok(Err(CoreError::Cancelled))) => Err(PyKeyboardInterrupt::new_err("cancelled")),
+            Ok(Ok(Err(e))) => Err(PyValueError::new_err(e.to_string())),
+            Ok(Err(_)) | Err(_) => {
+                Err(PyRuntimeError::new_err("the core failed unexpectedly; please report the model"))
+            }
+        }
+    })
+}
+
+/// The error's kind as a word that Python compares.
+fn kind(e: &CoreError) -> &'static str {
+    match e {
+        CoreError::Singular { .. } => "singular",
+        CoreError::NonFinite { .. } => "not finite",
+        CoreError::IllConditioned { .. } => "badly conditioned",
+        CoreError::Invalid(_) | CoreError::Cancelled => "invalid",
+    }
+}

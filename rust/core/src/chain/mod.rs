@@ -1,0 +1,20 @@
+//! The chain formulation: an exact impedance marched along the line.
+//!
+//! The front holds every body that reaches the present place: its state is the symmetric matrix Z
+//! that gives the forces needed at the front to move it, everything to the left included. A joint
+//! adds to Z; a length of beam transforms the two rows of that beam; a body that ends is
+//! condensed. This is block elimination of the block tridiagonal system of exact (spectral)
+//! elements, done beam by beam so that only two-by-two matrices are inverted, and in mixed form
+//! (flexibility in series, stiffness in parallel) so that short elements lose no digits. The cost
+//! is linear in the number of joints; nothing is truncated.
+//!
+//! [`tape`] compiles a line to a list of operations that all frequencies share, [`factor`] runs
+//! it forward once per frequency, [`solve`] runs loads forward and displacements backward.
+
+mod factor;
+mod solve;
+mod tape;
+
+pub use factor::Factor;
+pub use solve::{Response, respond};
+pub use tape::Tape;
