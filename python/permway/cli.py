@@ -1,0 +1,172 @@
+"""The command line: a few lines over the Python API for each command."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any, NoReturn
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+from permway.errors import PermwayError
+
+app = typer.Typer(
+    name="permway",
+    help="Predicts how a train, its track and the viaduct below vibrate, frequency by frequency.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+_stderr = Console(stderr=True, highlight=False)
+
+Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, for machines.")]
+Threads = Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; by default all processors.")]
+
+
+@contextmanager
+def _progress(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
+    """A bar on the terminal; nothing when piped."""
+    with Progress(
+        TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn(),
+        console=_stderr, transient=True, disable=quiet or not _stderr.is_terminal,
+    ) as bar:
+        task = bar.add_task(title, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+def _say(result: dict[str, Any], as_json: bool) -> None:
+    if as_json:
+        typer.echo(json.dumps(result, allow_nan=False))
+    else:
+        for key, value in result.items():
+            typer.echo(f"{key:<12} {value}")
+
+
+@app.command()
+def solve(
+    model: Annotated[Path, typer.Argument(help="Model file (TOML).")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Dataset to write (NetCDF); by default beside the model.")
+    ] = None,
+    plot: Annotated[Path | None, typer.Option(help="Folder for pictures (PNG).")] = None,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """Receptances, wheel-rail forces and power spectra of a model."""
+    from permway.model.file import read_model
+    from permway.response.solve import solve as run
+    from permway.response.solve import write_dataset
+
+    described = read_model(model)
+    with _progress("solving", as_json) as progress:
+        data = run(described, threads=threads, progress=progress)
+    path = write_dataset(data, output or model.with_suffix(".nc"))
+    result: dict[str, Any] = {
+        "dataset": str(path),
+        "frequencies": int(data.sizes["frequency"]),
+        "variables": sorted(str(name) for name in data.data_vars),
+    }
+    if plot is not None:
+        from permway.report.response import draw_dataset
+
+        result["pictures"] = [str(p) for p in draw_dataset(data, plot)]
+    _say(result, as_json)
+
+
+@app.command("fit-pad")
+def fit_pad(
+    dma: Annotated[Path, typer.Argument(help="DMA table (CSV or TSV, units in the header).")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Law to write (TOML).")] = Path("law.toml"),
+    law: Annotated[str, typer.Option(help="Form of the law; 'compare' tries several.")] = "compare",
+    shift: Annotated[str, typer.Option(help="Shift over temperature: wlf, arrhenius, free, none.")] = "wlf",
+    reference: Annotated[float, typer.Option(help="Reference temperature, degrees Celsius.")] = 20.0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the genetic algorithm.")] = 0,
+    plot: Annotated[Path | None, typer.Option(help="Folder for pictures (PNG).")] = None,
+    as_json: Json = False,
+) -> None:
+    """Identify a pad's law and its shift over temperature from DMA tests."""
+    from permway.laws.fitting import fit_table
+
+    with _progress("identifying", as_json) as progress:
+        result = fit_table(
+            dma, output=output, law=law, shift=shift, reference_temperature_C=reference, seed=seed,
+            pictures=plot, progress=progress,
+        )
+    _say(result, as_json)
+
+
+@app.command()
+def reproduce(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for report.html and tables.json.")] = Path(
+        "permway-paper"
+    ),
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """Every figure and table of the paper, printed beside computed."""
+    from permway.report.paper import write_report
+
+    with _progress("reproducing", as_json) as progress:
+        result = write_report(output, threads=threads, progress=progress)
+    _say(result, as_json)
+
+
+@app.command()
+def doctor(as_json: Json = False) -> None:
+    """What machine and versions permway runs with."""
+    import os
+    import platform
+
+    import numpy
+    import scipy
+    import xarray
+
+    from permway import __version__
+
+    _say(
+        {
+            "permway": __version__,
+            "python": platform.python_version(),
+            "machine": f"{platform.system()} {platform.machine()}",
+            "processors": os.cpu_count(),
+            "numpy": numpy.__version__,
+            "scipy": scipy.__version__,
+            "xarray": xarray.__version__,
+        },
+        as_json,
+    )
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from permway import __version__
+
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")] = False,
+) -> None:
+    pass
+
+
+def main() -> NoReturn:
+    """Run the command line: 0 done, 2 bad input, 1 a model that cannot be solved, 130 interrupted."""
+    try:
+        app(standalone_mode=True)
+    except PermwayError as error:
+        from permway.errors import InputError
+
+        _stderr.print(f"permway: {error}", markup=False, soft_wrap=True)
+        sys.exit(2 if isinstance(error, InputError) else 1)
+    except KeyboardInterrupt:
+        _stderr.print("permway: interrupted", markup=False)
+        sys.exit(130)
+    sys.exit(0)

@@ -1,0 +1,77 @@
+"""A law given as a table over frequency."""
+
+# Units belong in names here: frequency_Hz, temperature_C.
+# ruff: noqa: N815
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from permway.errors import InputError
+from permway.laws.base import Complexes, FloatTuple, Law, Reals
+
+# A frequency that differs from the table's end by rounding only is still inside.
+_EDGE = 1e-9
+
+
+class Tabulated(Law):
+    """Measured storage and loss factor, linear between the points over the logarithm of frequency.
+
+    Parameters
+    ----------
+    frequency_Hz : tuple of float, shape (n,)
+        Strictly increasing, above zero, at least two.
+    storage : tuple of float, shape (n,)
+        N/m or Pa; kept as the attribute `storage_values`.
+    loss_factor : tuple of float, shape (n,)
+        Dimensionless; kept as the attribute `loss_factor_values`.
+
+    Raises
+    ------
+    InputError
+        On evaluation outside the table: it refuses to extrapolate.
+    """
+
+    type: Literal["tabulated"] = "tabulated"
+    frequency_Hz: FloatTuple
+    # The aliases are what users write; the bare names belong to the methods every law has.
+    storage_values: FloatTuple = Field(alias="storage")
+    loss_factor_values: FloatTuple = Field(alias="loss_factor")
+
+    @model_validator(mode="after")
+    def _columns_fit(self) -> Tabulated:
+        rows = len(self.frequency_Hz)
+        if rows < 2:
+            raise ValueError(f"a table needs at least two frequencies, not {rows}")
+        for name, column in (("storage", self.storage_values), ("loss_factor", self.loss_factor_values)):
+            if len(column) != rows:
+                raise ValueError(f"{name} has {len(column)} rows, frequency_Hz has {rows}; they must match")
+        previous = 0.0
+        for index, frequency in enumerate(self.frequency_Hz):
+            if frequency <= previous:
+                raise ValueError(
+                    f"frequency_Hz[{index}] = {frequency:g} must rise strictly, from above {previous:g}"
+                )
+            previous = frequency
+        return self
+
+    def _at(self, omega: Reals, temperature_C: Reals | None) -> Complexes:
+        frequency = omega / (2.0 * np.pi)
+        low, high = self.frequency_Hz[0], self.frequency_Hz[-1]
+        outside = (frequency < low * (1.0 - _EDGE)) | (frequency > high * (1.0 + _EDGE))
+        if outside.any():
+            raise InputError(
+                f"outside the table, which runs from {low:g} to {high:g} Hz; it does not extrapolate",
+                where="frequency_Hz",
+                value=float(np.atleast_1d(frequency)[np.atleast_1d(outside)][0]),
+                remedy="narrow the band, measure wider, or identify a closed-form law from the table",
+            )
+        place, nodes = np.log(frequency), np.log(self.frequency_Hz)
+        storage = np.interp(place, nodes, self.storage_values)
+        return np.asarray(storage * (1.0 + 1j * np.interp(place, nodes, self.loss_factor_values)))
+
+    def _reach(self, temperature_C: float | None) -> tuple[float, float]:
+        return self.frequency_Hz[0], self.frequency_Hz[-1]

@@ -1,0 +1,133 @@
+"""What moves along a line: beams and masses."""
+
+# ruff: noqa: N815
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
+
+from permway.laws.base import FrozenModel
+
+End = Literal["free", "pinned"]
+Interval = tuple[float, float]
+
+
+class Beam(FrozenModel):
+    """A uniform beam, or a row of equal ones (the girders of several spans).
+
+    Parameters
+    ----------
+    theory : "euler" or "timoshenko"
+        Timoshenko needs the shear modulus and the shear coefficient.
+    youngs_modulus_Pa, second_moment_m4, density_kg_per_m3, area_m2 : float
+        Of the whole section.
+    shear_modulus_Pa, shear_coefficient : float, optional
+        Shear stiffness is coefficient x modulus x area.
+    loss_factor : float
+        Of both moduli, hysteretic: E (1 + i eta).
+    intervals_m : sequence of (from, to), optional
+        Where the beams lie; left out, the beam has no end on either side.
+    ends : "free" or "pinned", or one for each end
+        A pinned end does not move and may turn.
+    modes : int, optional
+        Number of bending modes that the receptance formulation sums, instead of the closed form.
+    share : float
+        Factor on stiffness and mass: 0.5 for the half model of one rail, 2 for two rails as one.
+    """
+
+    type: Literal["beam"] = "beam"
+    theory: Literal["euler", "timoshenko"] = "euler"
+    youngs_modulus_Pa: PositiveFloat
+    second_moment_m4: PositiveFloat
+    density_kg_per_m3: PositiveFloat
+    area_m2: PositiveFloat
+    shear_modulus_Pa: PositiveFloat | None = None
+    shear_coefficient: PositiveFloat | None = None
+    loss_factor: NonNegativeFloat = 0.0
+    intervals_m: tuple[Interval, ...] | None = Field(default=None, min_length=1)
+    ends: End | tuple[End, End] = "free"
+    modes: int | None = Field(default=None, ge=1, le=10_000)
+    share: PositiveFloat = 1.0
+
+    @model_validator(mode="after")
+    def _check(self) -> Beam:
+        shear = (self.shear_modulus_Pa, self.shear_coefficient)
+        if self.theory == "timoshenko" and None in shear:
+            raise ValueError("a timoshenko beam needs shear_modulus_Pa and shear_coefficient")
+        if self.theory == "euler" and shear != (None, None):
+            raise ValueError("an euler beam has no shear_modulus_Pa or shear_coefficient: use timoshenko")
+        _check_units(self)
+        if self.intervals_m is None:
+            if self.modes is not None:
+                raise ValueError("modes need a beam with ends: give intervals_m")
+            return self
+        if self.theory == "timoshenko" and self.modes is not None:
+            raise ValueError("modes are for euler beams; the closed form of timoshenko needs none")
+        reach = -math.inf
+        for start, stop in self.intervals_m:
+            if not start < stop:
+                raise ValueError(f"the interval ({start:g}, {stop:g}) m does not run from left to right")
+            if start < reach:
+                raise ValueError(f"the interval ({start:g}, {stop:g}) m overlaps the one before it")
+            reach = stop
+        return self
+
+    @property
+    def mass_kg_per_m(self) -> float:
+        """Mass per length of the model's share, kg/m."""
+        return self.share * self.density_kg_per_m3 * self.area_m2
+
+    @property
+    def bending_Nm2(self) -> complex:
+        """Complex bending stiffness of the model's share, N m2."""
+        return self.share * self.youngs_modulus_Pa * self.second_moment_m4 * complex(1.0, self.loss_factor)
+
+    @property
+    def shear_N(self) -> complex:
+        """Complex shear stiffness of the model's share, N; 0 for an Euler-Bernoulli beam."""
+        if self.shear_modulus_Pa is None or self.shear_coefficient is None:
+            return 0j
+        modulus = self.shear_modulus_Pa * complex(1.0, self.loss_factor)
+        return self.share * self.shear_coefficient * modulus * self.area_m2
+
+    @property
+    def rotary_kg_m(self) -> float:
+        """Rotary inertia per length of the model's share, kg m; 0 for an Euler-Bernoulli beam."""
+        return self.share * self.density_kg_per_m3 * self.second_moment_m4 if self.theory == "timoshenko" else 0.0
+
+    @property
+    def pinned(self) -> tuple[bool, bool]:
+        """Whether the left and the right end are pinned."""
+        left, right = (self.ends, self.ends) if isinstance(self.ends, str) else self.ends
+        return left == "pinned", right == "pinned"
+
+
+class Mass(FrozenModel):
+    """A point mass (sleeper, baseplate, pier cap), placed by the joints that hold it."""
+
+    type: Literal["mass"] = "mass"
+    mass_kg: PositiveFloat
+
+
+AnyBody = Annotated[Beam | Mass, Field(discriminator="type")]
+
+
+def _check_units(beam: Beam) -> None:
+    """Refuse values that only a slip of units explains."""
+    if beam.youngs_modulus_Pa < 1e6:
+        raise ValueError(f"youngs_modulus_Pa = {beam.youngs_modulus_Pa:g} is softer than rubber: give it in Pa, not GPa")
+    if beam.shear_modulus_Pa is not None and beam.shear_modulus_Pa < 1e5:
+        raise ValueError(f"shear_modulus_Pa = {beam.shear_modulus_Pa:g} is softer than rubber: give it in Pa, not GPa")
+    if beam.density_kg_per_m3 < 20.0:
+        raise ValueError(f"density_kg_per_m3 = {beam.density_kg_per_m3:g} is below any solid: give it in kg/m3, not t/m3")
+    if beam.loss_factor > 5.0:
+        raise ValueError(f"loss_factor = {beam.loss_factor:g} is above any material's: give it as a ratio, not in percent")
+    # A solid square has I = A^2 / 12; no section of a beam comes near a thousand times that.
+    if beam.second_moment_m4 > 100.0 * beam.area_m2**2:
+        raise ValueError(
+            f"second_moment_m4 = {beam.second_moment_m4:g} does not fit area_m2 = {beam.area_m2:g}: "
+            "give both in metres, not cm4 or mm4"
+        )

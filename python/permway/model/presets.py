@@ -1,0 +1,150 @@
+"""Lines of the literature by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field, PositiveFloat
+
+from permway.errors import InputError
+from permway.laws import AnyLaw, Hysteretic
+from permway.laws.base import FrozenModel
+from permway.model.bodies import Beam, Interval
+from permway.model.joints import Ends, Joints
+from permway.model.line import Line
+
+SPAN_M = 32.0
+SPACING_M = 0.625
+
+
+def wj7b(temperature_C: Literal[20, -20, -30] = 20) -> Hysteretic:
+    """Pad of the WJ-7B fastener as a constant stiffness and loss factor, one value for each of the paper's temperatures.
+
+    The paper prints neither. These values were identified from its tables 5 and 7 (see `permway reproduce`).
+
+    Parameters
+    ----------
+    temperature_C : 20, -20 or -30
+    """
+    identified = {20: (62.7e6, 0.122), -20: (108e6, 0.411), -30: (190e6, 0.647)}
+    if temperature_C not in identified:
+        raise InputError(
+            "the paper has no such temperature", where="wj7b.temperature_C", value=temperature_C,
+            remedy="use 20, -20 or -30, or a law that depends on temperature",
+        )
+    stiffness, loss_factor = identified[temperature_C]
+    return Hysteretic(stiffness=stiffness, loss_factor=loss_factor)
+
+
+class SlabTrackViaduct(FrozenModel):
+    """Options of the paper's line: rail, slab, base plate and box girder, Tables 2 and 3.
+
+    32 m is 51.2 fastener spacings of 0.625 m, and the numbers of mortar and sliding springs are not printed.
+    Chosen here: stations every 0.625 m, as many as fit, centred on each span (51 on one span); mortar and sliding
+    springs at the fasteners, their printed stiffness being the total of a span.
+
+    Parameters
+    ----------
+    model : "half" or "full"
+        One rail with half of everything else, or both rails as one beam with everything whole.
+    girder : "elastic_bearings" or "pinned"
+        A free-free girder on its bearings, or the paper's: simply supported modes, which vanish at the
+        bearings, so that the bearing springs carry nothing.
+    spans : int
+        Number of equal spans in a row; slab and base plate go on over all of them.
+    fasteners : int
+        Fasteners on a span.
+    layer_springs : int, optional
+        Springs of the mortar and of the sliding layer on a span; by default at the fasteners.
+    modes : int, optional
+        Modes of slab, base plate and girder for the receptance formulation.
+    pad : law
+        Complex stiffness of one fastener, N/m.
+    """
+
+    model: Literal["half", "full"] = "half"
+    girder: Literal["elastic_bearings", "pinned"] = "elastic_bearings"
+    spans: int = Field(default=1, ge=1, le=1000)
+    fasteners: int = Field(default=51, ge=1, le=1000)
+    fastener_spacing_m: PositiveFloat = SPACING_M
+    layer_springs: int | None = Field(default=None, ge=2, le=1000)
+    modes: int | None = Field(default=None, ge=1, le=10_000)
+    pad: AnyLaw = Field(default_factory=wj7b)
+
+    def line(self) -> Line:
+        """The line, spans running from x = 0.
+
+        Raises
+        ------
+        InputError
+            If the fasteners do not fit on a span.
+        """
+        reach = (self.fasteners - 1) * self.fastener_spacing_m
+        if reach > SPAN_M:
+            raise InputError(
+                f"{self.fasteners} fasteners at {self.fastener_spacing_m:g} m do not fit on {SPAN_M:g} m",
+                where="line.options.fasteners", value=self.fasteners, remedy="take fewer, or closer ones",
+            )
+        share, rails = (0.5, 1.0) if self.model == "half" else (1.0, 2.0)
+        starts = SPAN_M * np.arange(self.spans)
+        local = 0.5 * (SPAN_M - reach) + self.fastener_spacing_m * np.arange(self.fasteners)
+        stations = tuple(float(x) for start in starts for x in start + local)
+        layers = stations
+        if self.layer_springs is not None:
+            cell = SPAN_M / self.layer_springs
+            layers = tuple(float(x) for s in starts for x in s + cell * (np.arange(self.layer_springs) + 0.5))
+        # Equal springs, each with its part of the span's total.
+        each = share / (self.layer_springs or self.fasteners)
+        whole = (0.0, SPAN_M * self.spans)
+        return Line(
+            bodies={
+                "rail": _rail(rails),
+                "slab": _deck(3.6e10, 1.7e-3, 2500.0, 0.51, share, (whole,), self.modes),
+                "base": _deck(3.0e10, 7.3125e-3, 2500.0, 0.975, share, (whole,), self.modes),
+                "girder": _deck(
+                    3.6e10, 11.056, 2650.0, 9.089, share,
+                    tuple((float(s), float(s) + SPAN_M) for s in starts), self.modes,
+                    pinned=self.girder == "pinned",
+                ),
+            },
+            joints=(
+                Joints(between=("rail", "slab"), law="pad", at=stations, scale=rails),
+                Joints(between=("slab", "base"), law="mortar", at=layers, scale=each),
+                Joints(between=("base", "girder"), law="sliding", at=layers, scale=each),
+                Joints(between=("girder", "ground"), law="bearing", at=Ends(of="girder"), scale=share),
+            ),
+            laws={
+                "pad": self.pad,
+                "mortar": Hysteretic(stiffness=3.79e11, loss_factor=0.2),
+                "sliding": Hysteretic(stiffness=2.1e11, loss_factor=0.2),
+                "bearing": Hysteretic(stiffness=6e9, loss_factor=0.25),
+            },
+        )
+
+
+def _rail(rails: float) -> Beam:
+    return Beam(
+        theory="timoshenko", youngs_modulus_Pa=2.1e11, second_moment_m4=3.217e-5, density_kg_per_m3=7850.0,
+        area_m2=7.745e-3, shear_modulus_Pa=7.7e10, shear_coefficient=0.4, loss_factor=0.01, share=rails,
+    )
+
+
+def _deck(
+    modulus: float, inertia: float, density: float, area: float, share: float,
+    intervals: tuple[Interval, ...], modes: int | None, *, pinned: bool = False,
+) -> Beam:
+    return Beam(
+        youngs_modulus_Pa=modulus, second_moment_m4=inertia, density_kg_per_m3=density, area_m2=area,
+        loss_factor=0.1, intervals_m=intervals, ends="pinned" if pinned else "free", modes=modes, share=share,
+    )
+
+
+def slab_track_viaduct_32m(**options: Any) -> Line:
+    """The paper's line; options as in :class:`SlabTrackViaduct`."""
+    return SlabTrackViaduct(**options).line()
+
+
+LINES: dict[str, Callable[..., Line]] = {"slab_track_viaduct_32m": slab_track_viaduct_32m}
+"""Lines by the name that a model file uses."""

@@ -1,0 +1,325 @@
+"""A vehicle in its vertical plane: ten degrees of freedom a car, any number of cars."""
+
+# ruff: noqa: N802, N815
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import ArrayLike
+from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
+
+from permway.errors import InputError
+from permway.laws.base import Complexes, FrozenModel, Reals, check_frequency
+
+STANDARD_GRAVITY = 9.80665
+
+_CAR_DEGREES = (
+    "body.bounce",
+    "body.pitch",
+    "bogie1.bounce",
+    "bogie1.pitch",
+    "bogie2.bounce",
+    "bogie2.pitch",
+    "wheelset1",
+    "wheelset2",
+    "wheelset3",
+    "wheelset4",
+)
+_N = len(_CAR_DEGREES)
+_WHEELS = slice(6, 10)
+_FREE = 1e-12
+"""Squares under this share of the largest are the free vehicle's zeros in rounding, not slow modes."""
+
+
+class Vehicle(FrozenModel):
+    """A train of equal cars, each a body on two bogies on four wheelsets (paper, equation (2)).
+
+    Displacement is positive down; a pitch is positive when the leading end goes down. Cars are not coupled
+    to each other. The leading car is car 1; bogie 1 and wheelset 1 lead.
+
+    Parameters
+    ----------
+    car_body_mass_kg, bogie_mass_kg, wheelset_mass_kg : float
+        Of the whole body, one bogie frame, one wheelset, kg.
+    car_body_inertia_kg_m2, bogie_inertia_kg_m2 : float
+        Pitch inertia of the body and of one bogie frame, kg m^2.
+    primary_stiffness_N_per_m, primary_damping_Ns_per_m : float
+        Of both sides together, per wheelset: twice the spring of one axle box.
+    secondary_stiffness_N_per_m, secondary_damping_Ns_per_m : float
+        Of both sides together, per bogie: twice the spring of one side.
+    bogie_distance_m, wheelbase_m, car_length_m : float
+        Between bogie centres; between a bogie's axles; from a car's first wheel to the next car's.
+    cars : int
+        Number of cars.
+    share : float
+        Share of everything that the model carries: 1 for the whole vehicle on two rails, 0.5 for the half
+        model on one rail.
+
+    Raises
+    ------
+    InputError
+        For a value out of its range, and for axles that would overlap.
+    """
+
+    car_body_mass_kg: PositiveFloat
+    bogie_mass_kg: PositiveFloat
+    wheelset_mass_kg: PositiveFloat
+    car_body_inertia_kg_m2: PositiveFloat
+    bogie_inertia_kg_m2: PositiveFloat
+    primary_stiffness_N_per_m: PositiveFloat
+    primary_damping_Ns_per_m: NonNegativeFloat
+    secondary_stiffness_N_per_m: PositiveFloat
+    secondary_damping_Ns_per_m: NonNegativeFloat
+    bogie_distance_m: PositiveFloat = 17.5
+    wheelbase_m: PositiveFloat = 2.5
+    car_length_m: PositiveFloat = 25.0
+    cars: int = Field(default=1, ge=1, le=100)
+    share: float = Field(default=1.0, gt=0.0, le=1.0)
+
+    @model_validator(mode="after")
+    def _check_axles(self) -> Vehicle:
+        if self.wheelbase_m >= self.bogie_distance_m:
+            raise ValueError(
+                f"wheelbase_m = {self.wheelbase_m:g} is not below bogie_distance_m = "
+                f"{self.bogie_distance_m:g}: the bogies would overlap"
+            )
+        if self.cars > 1 and self.car_length_m <= self.bogie_distance_m + self.wheelbase_m:
+            raise ValueError(
+                f"car_length_m = {self.car_length_m:g} does not exceed the {self.bogie_distance_m:g} + "
+                f"{self.wheelbase_m:g} m between a car's outer axles: the cars would overlap"
+            )
+        return self
+
+    @property
+    def degrees(self) -> list[str]:
+        """Labels of the 10 n degrees of freedom, as "car1.body.bounce" or "car2.wheelset3"."""
+        return [f"car{car + 1}.{degree}" for car in range(self.cars) for degree in _CAR_DEGREES]
+
+    @property
+    def wheel_indices(self) -> list[int]:
+        """Places of the 4 n wheelsets among the degrees of freedom, leading wheel first."""
+        return [_N * car + wheel for car in range(self.cars) for wheel in range(_N)[_WHEELS]]
+
+    @property
+    def static_wheel_load_N(self) -> float:
+        """Weight on one of the eight wheels of a car, N, whatever the share."""
+        mass = self.car_body_mass_kg + 2.0 * self.bogie_mass_kg + 4.0 * self.wheelset_mass_kg
+        return mass * STANDARD_GRAVITY / 8.0
+
+    def lags_m(self) -> Reals:
+        """Distance (m) of each wheel behind the first, shape (4 n,), ascending (paper, equation (18))."""
+        car = np.array(
+            [0.0, self.wheelbase_m, self.bogie_distance_m, self.bogie_distance_m + self.wheelbase_m]
+        )
+        return np.concatenate([car + index * self.car_length_m for index in range(self.cars)])
+
+    def wheel_positions_m(self) -> Reals:
+        """Positions x (m) of the wheels about the middle of the train, shape (4 n,), wheel 1 foremost.
+
+        The train runs towards +x; first and last wheel lie as far from x = 0.
+        """
+        lags = self.lags_m()
+        return np.asarray(0.5 * lags[-1] - lags)
+
+    def matrices(self) -> tuple[Reals, Reals, Reals]:
+        """Mass, damping and stiffness matrices, each (10 n, 10 n) (paper, equation (2)).
+
+        Rows in kg, N s/m, N/m for a displacement and times m (m^2) for a pitch.
+        """
+        mass, damping, stiffness = (
+            np.asarray(np.kron(np.eye(self.cars), matrix), dtype=np.float64)
+            for matrix in self._car_matrices()
+        )
+        return mass, damping, stiffness
+
+    def dynamic_stiffness(self, frequency_Hz: ArrayLike) -> Complexes:
+        """Dynamic stiffness K + i omega C - omega^2 M of the free vehicle.
+
+        Parameters
+        ----------
+        frequency_Hz : array_like, shape (F,)
+            Finite and above zero.
+
+        Returns
+        -------
+        ndarray of complex128, shape (F, 10 n, 10 n)
+
+        Raises
+        ------
+        InputError
+            For a frequency that is not finite and positive.
+        """
+        return _blocks(self._car_stiffness(frequency_Hz), self.cars)
+
+    def wheel_receptance(self, frequency_Hz: ArrayLike) -> Complexes:
+        """Displacement of the wheels per force on the wheels, both positive down, the rail taken away.
+
+        Equation (3) of the paper, its matrix for all wheels; wheels of different cars do not feel each
+        other.
+
+        Parameters
+        ----------
+        frequency_Hz : array_like, shape (F,)
+            Finite and above zero.
+
+        Returns
+        -------
+        ndarray of complex128, shape (F, 4 n, 4 n)
+            m/N.
+
+        Raises
+        ------
+        InputError
+            For a frequency that is not finite and positive.
+        """
+        return _blocks(self._car_response(frequency_Hz)[:, _WHEELS, :], self.cars)
+
+    def response_to_wheel_force(self, frequency_Hz: ArrayLike, force_N: ArrayLike) -> Complexes:
+        """Displacement of every degree of freedom under forces on the wheels.
+
+        Parameters
+        ----------
+        frequency_Hz : array_like, shape (F,)
+            Finite and above zero.
+        force_N : array_like, shape (F, 4 n)
+            Complex amplitudes on the wheels, positive down. A wheel-rail force in compression pushes the
+            wheel up: hand over its negative.
+
+        Returns
+        -------
+        ndarray of complex128, shape (F, 10 n)
+            m and rad per unit of `force_N`, labelled by :attr:`degrees`.
+
+        Raises
+        ------
+        InputError
+            For a frequency that is not finite and positive, a force of another shape or not finite.
+        """
+        response = self._car_response(frequency_Hz)
+        force = np.asarray(force_N, dtype=np.complex128)
+        expected = (response.shape[0], 4 * self.cars)
+        if force.shape != expected:
+            raise InputError(
+                f"shape {force.shape} does not fit {expected[0]} frequencies and {expected[1]} wheels",
+                where="force_N",
+                remedy=f"give an array of shape {expected}",
+            )
+        if not np.isfinite(force).all():
+            raise InputError("contains values that are not finite", where="force_N")
+        by_car = force.reshape(expected[0], self.cars, 4)
+        displacement = np.einsum("fij,fcj->fci", response, by_car).reshape(expected[0], -1)
+        return np.asarray(displacement, dtype=np.complex128)
+
+    def natural_frequencies_Hz(self, on_contact: float | None = None) -> Reals:
+        """Undamped natural frequencies, ascending.
+
+        Parameters
+        ----------
+        on_contact : float, optional
+            None: the free vehicle, with four modes a car at exactly 0 Hz (bounce and pitch of the whole, and
+            each bogie turning with its wheelsets). A number: the stiffness (N/m) of a spring between each
+            wheelset of the model and the ground. Infinity: wheelsets held fast.
+
+        Returns
+        -------
+        ndarray of float64, shape (10 n,), or (6 n,) with wheelsets held fast
+            Hz.
+
+        Raises
+        ------
+        InputError
+            For a contact stiffness that is not above zero.
+        """
+        mass, _, stiffness = self._car_on(on_contact)
+        squares = scipy.linalg.eigh(stiffness, mass, eigvals_only=True)
+        if on_contact is None:
+            squares = np.where(squares < _FREE * squares[-1], 0.0, squares)
+        return np.sort(np.tile(np.sqrt(squares) / (2.0 * np.pi), self.cars))
+
+    def damped_poles(self, on_contact: float | None = None) -> Complexes:
+        """Poles s of s^2 M + s C + K, rad/s, by ascending modulus.
+
+        Parameters
+        ----------
+        on_contact : float, optional
+            As in :meth:`natural_frequencies_Hz`. Without it the free modes are double poles at zero, which
+            come out to about the root of the rounding error.
+
+        Returns
+        -------
+        ndarray of complex128, shape (20 n,), or (12 n,) with wheelsets held fast
+            In conjugate pairs, or real where a mode is over-damped.
+
+        Raises
+        ------
+        InputError
+            For a contact stiffness that is not above zero.
+        """
+        mass, damping, stiffness = self._car_on(on_contact)
+        n = mass.shape[0]
+        weight = np.diag(mass)[:, None]
+        companion = np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness / weight, -damping / weight]])
+        poles = np.tile(np.linalg.eigvals(companion).astype(np.complex128), self.cars)
+        return poles[np.lexsort((poles.imag, np.abs(poles)))]
+
+    def _car_matrices(self) -> tuple[Reals, Reals, Reals]:
+        bogie = [self.bogie_mass_kg, self.bogie_inertia_kg_m2]
+        masses = [self.car_body_mass_kg, self.car_body_inertia_kg_m2, *bogie, *bogie]
+        mass = np.diag([*masses, *[self.wheelset_mass_kg] * 4])
+        secondary, primary = self._stretches()
+        secondary, primary = secondary.T @ secondary, primary.T @ primary
+        damping = self.secondary_damping_Ns_per_m * secondary + self.primary_damping_Ns_per_m * primary
+        stiffness = self.secondary_stiffness_N_per_m * secondary + self.primary_stiffness_N_per_m * primary
+        return self.share * mass, self.share * damping, self.share * stiffness
+
+    def _stretches(self) -> tuple[Reals, Reals]:
+        """Rows that give each suspension's compression from the degrees of freedom: (2, 10), (4, 10)."""
+        secondary, primary = np.zeros((2, _N)), np.zeros((4, _N))
+        ahead = (1.0, -1.0)
+        for bogie in range(2):
+            bounce, pitch = 2 + 2 * bogie, 3 + 2 * bogie
+            secondary[bogie, [0, 1, bounce]] = 1.0, 0.5 * ahead[bogie] * self.bogie_distance_m, -1.0
+            for axle in range(2):
+                wheel = 2 * bogie + axle
+                primary[wheel, [bounce, pitch, 6 + wheel]] = 1.0, 0.5 * ahead[axle] * self.wheelbase_m, -1.0
+        return secondary, primary
+
+    def _car_on(self, on_contact: float | None) -> tuple[Reals, Reals, Reals]:
+        mass, damping, stiffness = self._car_matrices()
+        if on_contact is None:
+            return mass, damping, stiffness
+        if not on_contact > 0.0:
+            raise InputError(
+                "a contact stiffness must be above 0 N/m",
+                where="on_contact",
+                value=on_contact,
+                remedy="None for the free vehicle, infinity for wheelsets held fast",
+            )
+        if math.isinf(on_contact):
+            held = _WHEELS.start
+            return mass[:held, :held], damping[:held, :held], stiffness[:held, :held]
+        wheels = np.arange(_N)[_WHEELS]
+        stiffness[wheels, wheels] += on_contact
+        return mass, damping, stiffness
+
+    def _car_stiffness(self, frequency_Hz: ArrayLike) -> Complexes:
+        omega = 2.0 * np.pi * np.atleast_1d(check_frequency(frequency_Hz))
+        if omega.ndim != 1:
+            raise InputError("must have one dimension", where="frequency_Hz", value=omega.shape)
+        omega = omega[:, None, None]
+        mass, damping, stiffness = self._car_matrices()
+        return np.asarray(stiffness + 1j * omega * damping - omega**2 * mass)
+
+    def _car_response(self, frequency_Hz: ArrayLike) -> Complexes:
+        """Displacements of one car per force on its wheels, (F, 10, 4)."""
+        stiffness = self._car_stiffness(frequency_Hz)
+        forces = np.broadcast_to(np.eye(_N)[:, _WHEELS], (stiffness.shape[0], _N, 4))
+        return np.asarray(np.linalg.solve(stiffness, forces), dtype=np.complex128)
+
+
+def _blocks(block: Complexes, count: int) -> Complexes:
+    """Block-diagonal matrices of `count` equal blocks, frequency by frequency."""
+    return np.asarray(np.kron(np.eye(count)[None], block), dtype=np.complex128)

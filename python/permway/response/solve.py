@@ -1,0 +1,84 @@
+"""A model's whole answer as one dataset, and the file that holds it."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+import xarray as xr
+
+from permway.errors import InputError
+from permway.model.file import Model
+from permway.response.receptance import Progress, receptance
+from permway.response.train import train_response
+
+
+def solve(model: Model, *, threads: int | None = None, progress: Progress | None = None) -> xr.Dataset:
+    """Receptances, and a train's spectra if there is one.
+
+    Parameters
+    ----------
+    model : Model
+    threads : int, optional
+        By default all processors.
+    progress : callable, optional
+        Called with (done, total).
+
+    Returns
+    -------
+    xarray.Dataset
+        See :func:`permway.response.receptance.receptance` and :func:`permway.response.train.train_response`.
+
+    Raises
+    ------
+    InputError, SolveError
+        As those two.
+    """
+    frequency = model.frequencies.array()
+    parts = []
+    if model.train is not None and model.irregularity is not None:
+        parts.append(
+            train_response(
+                model.line, model.train, model.irregularity, frequency, sensors=model.sensors,
+                temperature_C=model.temperature_C, conversion=model.conversion,
+                formulation=model.formulation, threads=threads, progress=progress,
+            )
+        )
+    if model.forces:
+        parts.append(
+            receptance(
+                model.line, frequency, forces=model.forces, sensors=model.sensors,
+                temperature_C=model.temperature_C, formulation=model.formulation, threads=threads,
+                progress=progress,
+            )
+        )
+    data = xr.merge(parts, combine_attrs="drop_conflicts", join="exact")
+    data.attrs = {**parts[-1].attrs, **parts[0].attrs, "title": model.title, "model": model.model_dump_json()}
+    return data
+
+
+def write_dataset(data: xr.Dataset, path: str | Path) -> Path:
+    """Write a dataset as NetCDF, whole or not at all.
+
+    Complex variables are stored as HDF5 compound numbers, which xarray with h5netcdf reads back.
+
+    Raises
+    ------
+    InputError
+        If the place cannot be written.
+    """
+    path = Path(path)
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+        os.close(handle)
+        try:
+            data.to_netcdf(temporary, engine="h5netcdf", invalid_netcdf=True)
+            os.replace(temporary, path)
+        finally:
+            Path(temporary).unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError(
+            "cannot be written", where=str(path), value=error.strerror or str(error), remedy="name a folder that exists"
+        ) from error
+    return path

@@ -1,0 +1,166 @@
+"""A train on a line: wheel-rail forces and power spectra of everything that moves."""
+
+# ruff: noqa: N815
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from pydantic import Field, PositiveFloat
+
+from permway import _core
+from permway.laws.base import FrozenModel
+from permway.model.contact import ContactStiffness, GivenContact
+from permway.model.irregularity import AnyIrregularity, Conversion
+from permway.model.line import Line
+from permway.model.vehicle import Vehicle
+from permway.response.pseudo import power_spectrum, pseudo_excitation, wheel_rail_forces
+from permway.response.receptance import (
+    CONVENTION,
+    Formulation,
+    Place,
+    Progress,
+    check_sweep,
+    frequency_coordinate,
+    receptance,
+)
+
+
+class Train(FrozenModel):
+    """A vehicle standing over a line, the irregularity drawn through under its wheels.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+    contact : contact stiffness
+        Linearised Hertz contact of one wheel.
+    centre_m : float
+        Where the middle of the train is.
+    speed_m_per_s : float
+    body : str
+        The body that the wheels run on.
+    """
+
+    vehicle: Vehicle
+    contact: ContactStiffness = Field(default_factory=lambda: GivenContact(stiffness_N_per_m=1.3e9))
+    centre_m: float
+    speed_m_per_s: PositiveFloat
+    body: str = "rail"
+
+    def wheels(self) -> list[Place]:
+        """The contact points, leading wheel first."""
+        positions = self.centre_m + self.vehicle.wheel_positions_m()
+        return [Place(body=self.body, x_m=float(x), name=f"wheel{i + 1}") for i, x in enumerate(positions)]
+
+
+def train_response(
+    line: Line,
+    train: Train,
+    irregularity: AnyIrregularity,
+    frequency_Hz: ArrayLike,
+    *,
+    sensors: Sequence[Place] = (),
+    temperature_C: float | None = None,
+    conversion: Conversion = "per_hertz",
+    formulation: Formulation = "chain",
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Random response of train and line to a moving irregularity (paper, equations (16) to (20)).
+
+    Parameters
+    ----------
+    line, train, irregularity
+        The model.
+    frequency_Hz : array_like, shape (F,)
+        Ascending, positive.
+    sensors : sequence of Place
+        Further places on the line whose power spectra are wanted; the contact points always are.
+    temperature_C : float, optional
+        Needed if a law of the line depends on it.
+    conversion : "per_hertz" or "wavenumber_density_called_per_hertz"
+        True density per hertz, or the paper's: the density over wavenumber taken for one.
+    formulation, threads, progress
+        As in :func:`permway.response.receptance.receptance`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Receptances at the contacts in m/N (`wheel_receptance`, `track_receptance`, `total_receptance`, each
+        frequency x wheel x wheel_force; `contact_receptance` a scalar), `force` (complex, N/sqrt(Hz), frequency x
+        wheel) and one-sided densities: `irregularity_psd`, `force_psd`, and displacement, velocity and
+        acceleration of the vehicle (frequency x degree) and of the line (frequency x place).
+
+    Raises
+    ------
+    InputError
+        For inputs that do not fit.
+    SolveError
+        If line, or wheels on the line, cannot be solved at a frequency.
+    """
+    frequency = check_sweep(frequency_Hz)
+    wheels = train.wheels()
+    places = [*wheels, *sensors]
+    line_response = receptance(
+        line, frequency, forces=wheels, sensors=places, temperature_C=temperature_C,
+        formulation=formulation, threads=threads, progress=progress,
+    )
+    to_places = line_response["receptance"].values
+    track = to_places[:, : len(wheels), :]
+    vehicle = train.vehicle
+    wheel = vehicle.wheel_receptance(frequency)
+    contact = train.contact.receptance(vehicle.share)
+    density = irregularity.density(frequency, train.speed_m_per_s, conversion)
+    excitation = pseudo_excitation(frequency, density, vehicle.lags_m(), train.speed_m_per_s)
+    force = wheel_rail_forces(wheel, track, contact, excitation, frequency_Hz=frequency)
+    # Compression pushes the rail down and the wheel up.
+    on_vehicle = vehicle.response_to_wheel_force(frequency, -force)
+    on_line = np.einsum("fsw,fw->fs", to_places, force)
+    total = wheel + track + contact * np.eye(len(wheels))
+
+    labels = [p.label for p in places]
+    data = xr.Dataset(
+        coords={
+            "frequency": frequency_coordinate(frequency),
+            "wheel": [p.label for p in wheels],
+            "wheel_force": [p.label for p in wheels],
+            "degree": vehicle.degrees,
+            "place": labels,
+            "place_x": ("place", [p.x_m for p in places], {"units": "m"}),
+            "place_body": ("place", [p.body for p in places]),
+        },
+        attrs={
+            **line_response.attrs,
+            "convention": f"{CONVENTION}; contact force positive in compression; densities one-sided",
+            "conversion": conversion,
+            "speed_m_per_s": train.speed_m_per_s,
+            "permway_version": _core.__version__,
+        },
+    )
+    square = ("frequency", "wheel", "wheel_force")
+    for name, values in (("wheel", wheel), ("track", track), ("total", total)):
+        data[f"{name}_receptance"] = (square, values, {"long_name": f"{name} receptance", "units": "m/N"})
+    data["contact_receptance"] = ((), contact, {"long_name": "contact receptance", "units": "m/N"})
+    data["irregularity_psd"] = ("frequency", density, {"long_name": "irregularity", "units": "m2/Hz"})
+    data["force"] = (
+        ("frequency", "wheel"), force, {"long_name": "wheel-rail pseudo-force", "units": "N/sqrt(Hz)"}
+    )
+    data["force_psd"] = (
+        ("frequency", "wheel"), power_spectrum(force), {"long_name": "wheel-rail force", "units": "N2/Hz"}
+    )
+    quantities = (("displacement", "m2/Hz"), ("velocity", "(m/s)2/Hz"), ("acceleration", "(m/s2)2/Hz"))
+    for name, response, dimension in (("vehicle", on_vehicle, "degree"), ("line", on_line, "place")):
+        for derivatives, (quantity, units) in enumerate(quantities):
+            data[f"{name}_{quantity}_psd"] = (
+                ("frequency", dimension),
+                power_spectrum(response, frequency, derivatives=derivatives),
+                {"long_name": f"{name} {quantity}", "units": units},
+            )
+    # A pitch is an angle; its densities have rad for m.
+    pitch = "pitch degrees in rad, rad/s, rad/s2 instead of m, m/s, m/s2"
+    for _, (quantity, _units) in enumerate(quantities):
+        data[f"vehicle_{quantity}_psd"].attrs["comment"] = pitch
+    return data
