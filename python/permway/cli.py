@@ -32,8 +32,13 @@ Threads = Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; by 
 def _progress(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
     """A bar on the terminal; nothing when piped."""
     with Progress(
-        TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn(),
-        console=_stderr, transient=True, disable=quiet or not _stderr.is_terminal,
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeRemainingColumn(),
+        console=_stderr,
+        transient=True,
+        disable=quiet or not _stderr.is_terminal,
     ) as bar:
         task = bar.add_task(title, total=None)
         yield lambda done, total: bar.update(task, completed=done, total=total)
@@ -51,7 +56,8 @@ def _say(result: dict[str, Any], as_json: bool) -> None:
 def solve(
     model: Annotated[Path, typer.Argument(help="Model file (TOML).")],
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Dataset to write (NetCDF); by default beside the model.")
+        Path | None,
+        typer.Option("--output", "-o", help="Dataset to write (NetCDF); by default beside the model."),
     ] = None,
     plot: Annotated[Path | None, typer.Option(help="Folder for pictures (PNG).")] = None,
     threads: Threads = None,
@@ -94,8 +100,14 @@ def fit_pad(
 
     with _progress("identifying", as_json) as progress:
         result = fit_table(
-            dma, output=output, law=law, shift=shift, reference_temperature_C=reference, seed=seed,
-            pictures=plot, progress=progress,
+            dma,
+            output=output,
+            law=law,
+            shift=shift,
+            reference_temperature_C=reference,
+            seed=seed,
+            pictures=plot,
+            progress=progress,
         )
     _say(result, as_json)
 
@@ -152,7 +164,9 @@ def _version(wanted: bool) -> None:
 
 @app.callback()
 def _root(
-    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")] = False,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
 ) -> None:
     pass
 

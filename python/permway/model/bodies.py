@@ -1,7 +1,5 @@
 """What moves along a line: beams and masses."""
 
-# ruff: noqa: N815
-
 from __future__ import annotations
 
 import math
@@ -118,13 +116,21 @@ AnyBody = Annotated[Beam | Mass, Field(discriminator="type")]
 def _check_units(beam: Beam) -> None:
     """Refuse values that only a slip of units explains."""
     if beam.youngs_modulus_Pa < 1e6:
-        raise ValueError(f"youngs_modulus_Pa = {beam.youngs_modulus_Pa:g} is softer than rubber: give it in Pa, not GPa")
+        raise ValueError(
+            f"youngs_modulus_Pa = {beam.youngs_modulus_Pa:g} is softer than rubber: give it in Pa, not GPa"
+        )
     if beam.shear_modulus_Pa is not None and beam.shear_modulus_Pa < 1e5:
-        raise ValueError(f"shear_modulus_Pa = {beam.shear_modulus_Pa:g} is softer than rubber: give it in Pa, not GPa")
+        raise ValueError(
+            f"shear_modulus_Pa = {beam.shear_modulus_Pa:g} is softer than rubber: give it in Pa, not GPa"
+        )
     if beam.density_kg_per_m3 < 20.0:
-        raise ValueError(f"density_kg_per_m3 = {beam.density_kg_per_m3:g} is below any solid: give it in kg/m3, not t/m3")
+        raise ValueError(
+            f"density_kg_per_m3 = {beam.density_kg_per_m3:g} is below any solid: give it in kg/m3, not t/m3"
+        )
     if beam.loss_factor > 5.0:
-        raise ValueError(f"loss_factor = {beam.loss_factor:g} is above any material's: give it as a ratio, not in percent")
+        raise ValueError(
+            f"loss_factor = {beam.loss_factor:g} is above any material's: give it as a ratio, not in percent"
+        )
     # A solid square has I = A^2 / 12; no section of a beam comes near a thousand times that.
     if beam.second_moment_m4 > 100.0 * beam.area_m2**2:
         raise ValueError(

@@ -1,7 +1,5 @@
 """The contact of wheel and rail as a spring, linearised about the static load."""
 
-# ruff: noqa: N815
-
 from __future__ import annotations
 
 from abc import ABC, abstractmethod

@@ -1,7 +1,5 @@
 """The model file: TOML in, a validated model out."""
 
-# ruff: noqa: N815
-
 from __future__ import annotations
 
 import inspect
@@ -68,11 +66,11 @@ class Frequencies(FrozenModel):
         """The frequencies in Hz."""
         if self.values_Hz is not None:
             return check_sweep(self.values_Hz)
-        assert self.from_Hz is not None  # noqa: S101
-        assert self.to_Hz is not None  # noqa: S101
+        assert self.from_Hz is not None
+        assert self.to_Hz is not None
         if self.points is not None:
             return np.geomspace(self.from_Hz, self.to_Hz, self.points)
-        assert self.step_Hz is not None  # noqa: S101
+        assert self.step_Hz is not None
         count = int(np.floor((self.to_Hz - self.from_Hz) / self.step_Hz * (1.0 + 1e-12))) + 1
         return self.from_Hz + self.step_Hz * np.arange(count, dtype=np.float64)
 
@@ -187,18 +185,20 @@ def _line(table: dict[str, Any]) -> Line | dict[str, Any]:
     laws = _table(table.pop("laws", {}), "line.laws")
     if table:
         raise InputError(
-            "does not go with a preset", where=f"line.{next(iter(table))}", remedy="a preset takes options and laws"
+            "does not go with a preset",
+            where=f"line.{next(iter(table))}",
+            remedy="a preset takes options and laws",
         )
     line: Line = _preset(LINES, name, options, "line")
     for law in laws:
         if law not in line.laws:
             raise InputError(
-                f"the preset {name!r} has no such law", where=f"line.laws.{law}", remedy=f"use one of {list(line.laws)}"
+                f"the preset {name!r} has no such law",
+                where=f"line.laws.{law}",
+                remedy=f"use one of {list(line.laws)}",
             )
     try:
-        return Line.model_validate(
-            {"bodies": line.bodies, "joints": line.joints, "laws": {**line.laws, **laws}}
-        )
+        return Line.model_validate({"bodies": line.bodies, "joints": line.joints, "laws": {**line.laws, **laws}})
     except ValidationError as error:
         raise input_error(error, place="line") from error
 
@@ -206,7 +206,9 @@ def _line(table: dict[str, Any]) -> Line | dict[str, Any]:
 def _train(table: dict[str, Any]) -> dict[str, Any]:
     if "speed_km_per_h" in table:
         if "speed_m_per_s" in table:
-            raise InputError("the speed is given twice", where="train", remedy="give speed_m_per_s or speed_km_per_h")
+            raise InputError(
+                "the speed is given twice", where="train", remedy="give speed_m_per_s or speed_km_per_h"
+            )
         speed = table.pop("speed_km_per_h")
         if not isinstance(speed, int | float) or isinstance(speed, bool):
             raise InputError("must be a number", where="train.speed_km_per_h", value=speed)
@@ -226,7 +228,9 @@ def _constant(value: Vehicle) -> Callable[[], Vehicle]:
 
 def _preset(presets: Mapping[str, Callable[..., Any]], name: object, options: dict[str, Any], where: str) -> Any:
     if not isinstance(name, str) or name not in presets:
-        raise InputError("no such preset", where=f"{where}.preset", value=name, remedy=f"use one of {sorted(presets)}")
+        raise InputError(
+            "no such preset", where=f"{where}.preset", value=name, remedy=f"use one of {sorted(presets)}"
+        )
     try:
         inspect.signature(presets[name]).bind(**options)
         return presets[name](**options)

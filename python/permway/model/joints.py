@@ -1,7 +1,5 @@
 """What ties bodies: layers of equal joints."""
 
-# ruff: noqa: N815
-
 from __future__ import annotations
 
 from typing import Literal

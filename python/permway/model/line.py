@@ -70,9 +70,13 @@ class Line(FrozenModel):
                 raise ValueError(f"{name!r} cannot name a body: use letters, digits, _ and -, and not 'ground'")
         for index, layer in enumerate(self.joints):
             if layer.law not in self.laws:
-                raise ValueError(f"joints.{index}.law: there is no law {layer.law!r}; there are {sorted(self.laws)}")
+                raise ValueError(
+                    f"joints.{index}.law: there is no law {layer.law!r}; there are {sorted(self.laws)}"
+                )
             if isinstance(layer.at, Ends) and layer.at.of not in self.bodies:
-                raise ValueError(f"joints.{index}.at.of: there is no body {layer.at.of!r}; there are {sorted(self.bodies)}")
+                raise ValueError(
+                    f"joints.{index}.at.of: there is no body {layer.at.of!r}; there are {sorted(self.bodies)}"
+                )
         return self
 
     def segments(self) -> list[Segment]:
@@ -100,17 +104,24 @@ class Line(FrozenModel):
         named = [i for i, s in enumerate(segments) if body in (s.name, s.body)]
         if not named:
             raise InputError(
-                "there is no such body", where=where, value=body, remedy=f"use one of {[s.name for s in segments]}"
+                "there is no such body",
+                where=where,
+                value=body,
+                remedy=f"use one of {[s.name for s in segments]}",
             )
         if not np.isfinite(x_m):
             raise InputError("the place must be finite", where=where, value=x_m, remedy="give x in m")
         found = [i for i in named if segments[i].start - _TOUCH_M <= x_m <= segments[i].stop + _TOUCH_M]
         if not found:
             spans = ", ".join(f"{segments[i].start:g} to {segments[i].stop:g} m" for i in named)
-            raise InputError(f"off the {body}, which runs {spans}", where=where, value=x_m, remedy="move it onto the body")
+            raise InputError(
+                f"off the {body}, which runs {spans}", where=where, value=x_m, remedy="move it onto the body"
+            )
         if len(found) > 1:
             names = [segments[i].name for i in found]
-            raise InputError(f"two beams meet there: {names}", where=where, value=x_m, remedy="name the one that is meant")
+            raise InputError(
+                f"two beams meet there: {names}", where=where, value=x_m, remedy="name the one that is meant"
+            )
         return found[0]
 
     def joint_table(self) -> JointTable:
@@ -157,14 +168,14 @@ class Line(FrozenModel):
             if segment.body != ends.of:
                 continue
             if not np.isfinite(segment.start + segment.stop):
-                raise InputError(f"{ends.of} has no ends", where=f"joints.{index}.at.of", remedy="give it intervals_m")
+                raise InputError(
+                    f"{ends.of} has no ends", where=f"joints.{index}.at.of", remedy="give it intervals_m"
+                )
             for x in (segment.start + ends.inset_m, segment.stop - ends.inset_m):
                 where = f"joints.{index}.at"
                 # Each end belongs to its own beam, even where two beams of a row meet.
                 upper, lower = (
-                    -1
-                    if body == GROUND
-                    else number if body == ends.of else self.locate(body, x, where=where)
+                    -1 if body == GROUND else number if body == ends.of else self.locate(body, x, where=where)
                     for body in layer.between
                 )
                 rows.append((index, x, upper, lower, law, layer.scale))

@@ -31,7 +31,9 @@ def wj7b(temperature_C: Literal[20, -20, -30] = 20) -> Hysteretic:
     identified = {20: (62.7e6, 0.122), -20: (108e6, 0.411), -30: (190e6, 0.647)}
     if temperature_C not in identified:
         raise InputError(
-            "the paper has no such temperature", where="wj7b.temperature_C", value=temperature_C,
+            "the paper has no such temperature",
+            where="wj7b.temperature_C",
+            value=temperature_C,
             remedy="use 20, -20 or -30, or a law that depends on temperature",
         )
     stiffness, loss_factor = identified[temperature_C]
@@ -85,7 +87,9 @@ class SlabTrackViaduct(FrozenModel):
         if reach > SPAN_M:
             raise InputError(
                 f"{self.fasteners} fasteners at {self.fastener_spacing_m:g} m do not fit on {SPAN_M:g} m",
-                where="line.options.fasteners", value=self.fasteners, remedy="take fewer, or closer ones",
+                where="line.options.fasteners",
+                value=self.fasteners,
+                remedy="take fewer, or closer ones",
             )
         share, rails = (0.5, 1.0) if self.model == "half" else (1.0, 2.0)
         starts = SPAN_M * np.arange(self.spans)
@@ -104,8 +108,13 @@ class SlabTrackViaduct(FrozenModel):
                 "slab": _deck(3.6e10, 1.7e-3, 2500.0, 0.51, share, (whole,), self.modes),
                 "base": _deck(3.0e10, 7.3125e-3, 2500.0, 0.975, share, (whole,), self.modes),
                 "girder": _deck(
-                    3.6e10, 11.056, 2650.0, 9.089, share,
-                    tuple((float(s), float(s) + SPAN_M) for s in starts), self.modes,
+                    3.6e10,
+                    11.056,
+                    2650.0,
+                    9.089,
+                    share,
+                    tuple((float(s), float(s) + SPAN_M) for s in starts),
+                    self.modes,
                     pinned=self.girder == "pinned",
                 ),
             },
@@ -126,18 +135,39 @@ class SlabTrackViaduct(FrozenModel):
 
 def _rail(rails: float) -> Beam:
     return Beam(
-        theory="timoshenko", youngs_modulus_Pa=2.1e11, second_moment_m4=3.217e-5, density_kg_per_m3=7850.0,
-        area_m2=7.745e-3, shear_modulus_Pa=7.7e10, shear_coefficient=0.4, loss_factor=0.01, share=rails,
+        theory="timoshenko",
+        youngs_modulus_Pa=2.1e11,
+        second_moment_m4=3.217e-5,
+        density_kg_per_m3=7850.0,
+        area_m2=7.745e-3,
+        shear_modulus_Pa=7.7e10,
+        shear_coefficient=0.4,
+        loss_factor=0.01,
+        share=rails,
     )
 
 
 def _deck(
-    modulus: float, inertia: float, density: float, area: float, share: float,
-    intervals: tuple[Interval, ...], modes: int | None, *, pinned: bool = False,
+    modulus: float,
+    inertia: float,
+    density: float,
+    area: float,
+    share: float,
+    intervals: tuple[Interval, ...],
+    modes: int | None,
+    *,
+    pinned: bool = False,
 ) -> Beam:
     return Beam(
-        youngs_modulus_Pa=modulus, second_moment_m4=inertia, density_kg_per_m3=density, area_m2=area,
-        loss_factor=0.1, intervals_m=intervals, ends="pinned" if pinned else "free", modes=modes, share=share,
+        youngs_modulus_Pa=modulus,
+        second_moment_m4=inertia,
+        density_kg_per_m3=density,
+        area_m2=area,
+        loss_factor=0.1,
+        intervals_m=intervals,
+        ends="pinned" if pinned else "free",
+        modes=modes,
+        share=share,
     )
 
 

@@ -1,7 +1,5 @@
 """Roughness in one-third octaves of wavelength, and tables of density."""
 
-# ruff: noqa: N815
-
 from __future__ import annotations
 
 from typing import Literal

@@ -1,7 +1,5 @@
 """A vehicle in its vertical plane: ten degrees of freedom a car, any number of cars."""
 
-# ruff: noqa: N802, N815
-
 from __future__ import annotations
 
 import math
@@ -111,9 +109,7 @@ class Vehicle(FrozenModel):
 
     def lags_m(self) -> Reals:
         """Distance (m) of each wheel behind the first, shape (4 n,), ascending (paper, equation (18))."""
-        car = np.array(
-            [0.0, self.wheelbase_m, self.bogie_distance_m, self.bogie_distance_m + self.wheelbase_m]
-        )
+        car = np.array([0.0, self.wheelbase_m, self.bogie_distance_m, self.bogie_distance_m + self.wheelbase_m])
         return np.concatenate([car + index * self.car_length_m for index in range(self.cars)])
 
     def wheel_positions_m(self) -> Reals:
@@ -130,8 +126,7 @@ class Vehicle(FrozenModel):
         Rows in kg, N s/m, N/m for a displacement and times m (m^2) for a pitch.
         """
         mass, damping, stiffness = (
-            np.asarray(np.kron(np.eye(self.cars), matrix), dtype=np.float64)
-            for matrix in self._car_matrices()
+            np.asarray(np.kron(np.eye(self.cars), matrix), dtype=np.float64) for matrix in self._car_matrices()
         )
         return mass, damping, stiffness
 

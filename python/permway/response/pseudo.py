@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
+
 from permway.errors import InputError, SolveError
 from permway.laws.base import Complexes, Reals, check_frequency
 from permway.model.irregularity_spectra import check_speed
@@ -144,9 +145,7 @@ def wheel_rail_forces(
     return np.asarray(-solution[:, :, 0])
 
 
-def power_spectrum(
-    response: ArrayLike, frequency_Hz: ArrayLike | None = None, *, derivatives: int = 0
-) -> Reals:
+def power_spectrum(response: ArrayLike, frequency_Hz: ArrayLike | None = None, *, derivatives: int = 0) -> Reals:
     """One-sided density of a response to pseudo-excitation, |(i omega)^d z|^2.
 
     Parameters
@@ -205,9 +204,7 @@ class _Namer:
 
     def __call__(self, mask: ArrayLike) -> str:
         index = int(np.flatnonzero(np.asarray(mask))[0])
-        return (
-            f"index {index}" if self._frequency is None else f"{self._frequency[index]:g} Hz (index {index})"
-        )
+        return f"index {index}" if self._frequency is None else f"{self._frequency[index]:g} Hz (index {index})"
 
 
 def _namer(frequency_Hz: ArrayLike | None, count: int) -> _Namer:

@@ -104,7 +104,10 @@ def receptance(
 
     def points(kind: str, places: Sequence[Place]) -> dict[str, np.ndarray]:
         found = [line.locate(p.body, p.x_m, where=f"{kind}.{i} ({p.label})") for i, p in enumerate(places)]
-        return {"body": np.array(found, dtype=np.int64), "x": np.array([p.x_m for p in places], dtype=np.float64)}
+        return {
+            "body": np.array(found, dtype=np.int64),
+            "x": np.array([p.x_m for p in places], dtype=np.float64),
+        }
 
     values, joints, failures = _core.solve_line(
         formulation=formulation,

@@ -40,16 +40,28 @@ def solve(model: Model, *, threads: int | None = None, progress: Progress | None
     if model.train is not None and model.irregularity is not None:
         parts.append(
             train_response(
-                model.line, model.train, model.irregularity, frequency, sensors=model.sensors,
-                temperature_C=model.temperature_C, conversion=model.conversion,
-                formulation=model.formulation, threads=threads, progress=progress,
+                model.line,
+                model.train,
+                model.irregularity,
+                frequency,
+                sensors=model.sensors,
+                temperature_C=model.temperature_C,
+                conversion=model.conversion,
+                formulation=model.formulation,
+                threads=threads,
+                progress=progress,
             )
         )
     if model.forces:
         parts.append(
             receptance(
-                model.line, frequency, forces=model.forces, sensors=model.sensors,
-                temperature_C=model.temperature_C, formulation=model.formulation, threads=threads,
+                model.line,
+                frequency,
+                forces=model.forces,
+                sensors=model.sensors,
+                temperature_C=model.temperature_C,
+                formulation=model.formulation,
+                threads=threads,
                 progress=progress,
             )
         )
@@ -79,6 +91,9 @@ def write_dataset(data: xr.Dataset, path: str | Path) -> Path:
             Path(temporary).unlink(missing_ok=True)
     except OSError as error:
         raise InputError(
-            "cannot be written", where=str(path), value=error.strerror or str(error), remedy="name a folder that exists"
+            "cannot be written",
+            where=str(path),
+            value=error.strerror or str(error),
+            remedy="name a folder that exists",
         ) from error
     return path

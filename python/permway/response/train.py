@@ -1,7 +1,5 @@
 """A train on a line: wheel-rail forces and power spectra of everything that moves."""
 
-# ruff: noqa: N815
-
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -90,8 +88,8 @@ def train_response(
     -------
     xarray.Dataset
         Receptances at the contacts in m/N (`wheel_receptance`, `track_receptance`, `total_receptance`, each
-        frequency x wheel x wheel_force; `contact_receptance` a scalar), `force` (complex, N/sqrt(Hz), frequency x
-        wheel) and one-sided densities: `irregularity_psd`, `force_psd`, and displacement, velocity and
+        frequency x wheel x wheel_force; `contact_receptance` a scalar), `wheel_rail_force` (complex, N/sqrt(Hz), frequency x
+        wheel) and one-sided densities: `irregularity_psd`, `wheel_rail_force_psd`, and displacement, velocity and
         acceleration of the vehicle (frequency x degree) and of the line (frequency x place).
 
     Raises
@@ -105,8 +103,14 @@ def train_response(
     wheels = train.wheels()
     places = [*wheels, *sensors]
     line_response = receptance(
-        line, frequency, forces=wheels, sensors=places, temperature_C=temperature_C,
-        formulation=formulation, threads=threads, progress=progress,
+        line,
+        frequency,
+        forces=wheels,
+        sensors=places,
+        temperature_C=temperature_C,
+        formulation=formulation,
+        threads=threads,
+        progress=progress,
     )
     to_places = line_response["receptance"].values
     track = to_places[:, : len(wheels), :]
@@ -145,11 +149,15 @@ def train_response(
         data[f"{name}_receptance"] = (square, values, {"long_name": f"{name} receptance", "units": "m/N"})
     data["contact_receptance"] = ((), contact, {"long_name": "contact receptance", "units": "m/N"})
     data["irregularity_psd"] = ("frequency", density, {"long_name": "irregularity", "units": "m2/Hz"})
-    data["force"] = (
-        ("frequency", "wheel"), force, {"long_name": "wheel-rail pseudo-force", "units": "N/sqrt(Hz)"}
+    data["wheel_rail_force"] = (
+        ("frequency", "wheel"),
+        force,
+        {"long_name": "wheel-rail pseudo-force", "units": "N/sqrt(Hz)"},
     )
-    data["force_psd"] = (
-        ("frequency", "wheel"), power_spectrum(force), {"long_name": "wheel-rail force", "units": "N2/Hz"}
+    data["wheel_rail_force_psd"] = (
+        ("frequency", "wheel"),
+        power_spectrum(force),
+        {"long_name": "wheel-rail force", "units": "N2/Hz"},
     )
     quantities = (("displacement", "m2/Hz"), ("velocity", "(m/s)2/Hz"), ("acceleration", "(m/s2)2/Hz"))
     for name, response, dimension in (("vehicle", on_vehicle, "degree"), ("line", on_line, "place")):
