@@ -6,6 +6,8 @@ from numpy.typing import NDArray
 
 __version__: Final[str]
 
+class InvalidTables(ValueError): ...
+
 def solve_line(
     *,
     formulation: str,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,16 +14,34 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
-from permway.errors import PermwayError
+from permway.errors import InputError, PermwayError
+
+_stderr = Console(stderr=True, highlight=False)
+
+
+class _Commands(typer.core.TyperGroup):
+    """The commands; Ctrl-C says so and ends with 130 whatever typer makes of it."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            _tell("interrupted")
+            raise typer.Exit(130) from None
+
+
+def _tell(message: object) -> None:
+    _stderr.print(f"permway: {message}", markup=False, soft_wrap=True)
+
 
 app = typer.Typer(
     name="permway",
+    cls=_Commands,
     help="Predicts how a train, its track and the viaduct below vibrate, frequency by frequency.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-_stderr = Console(stderr=True, highlight=False)
 
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, for machines.")]
 Threads = Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; by default all processors.")]
@@ -68,12 +87,17 @@ def solve(
     from permway.response.solve import solve as run
     from permway.response.solve import write_dataset
 
+    path = output or model.with_suffix(".nc")
     described = read_model(model)
+    # Said before the sweep, not after it.
+    if not path.parent.is_dir():
+        raise InputError("there is no such folder", where=str(path.parent), remedy="make it first")
+    if path.resolve() == model.resolve():
+        raise InputError("is the model file itself", where=str(path), remedy="name another file with -o")
     with _progress("solving", as_json) as progress:
         data = run(described, threads=threads, progress=progress)
-    path = write_dataset(data, output or model.with_suffix(".nc"))
     result: dict[str, Any] = {
-        "dataset": str(path),
+        "dataset": str(write_dataset(data, path)),
         "frequencies": int(data.sizes["frequency"]),
         "variables": sorted(str(name) for name in data.data_vars),
     }
@@ -173,14 +197,10 @@ def _root(
 
 def main() -> NoReturn:
     """Run the command line: 0 done, 2 bad input, 1 a model that cannot be solved, 130 interrupted."""
+    warnings.showwarning = lambda message, *_, **__: _tell(f"note: {message}")
     try:
         app(standalone_mode=True)
     except PermwayError as error:
-        from permway.errors import InputError
-
-        _stderr.print(f"permway: {error}", markup=False, soft_wrap=True)
+        _tell(error)
         sys.exit(2 if isinstance(error, InputError) else 1)
-    except KeyboardInterrupt:
-        _stderr.print("permway: interrupted", markup=False)
-        sys.exit(130)
     sys.exit(0)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Strict, ValidationError
 
 from permway.errors import InputError
 
@@ -20,12 +20,15 @@ Complexes = NDArray[np.complex128]
 ABSOLUTE_ZERO_C = -273.15
 
 
-def _as_list(value: object) -> object:
-    return value.tolist() if isinstance(value, np.ndarray) else value
+def _as_python(value: object) -> object:
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
-FloatTuple = Annotated[tuple[float, ...], BeforeValidator(_as_list)]
-"""A tuple of floats that also takes a numpy array."""
+Number = Annotated[float, Strict(), BeforeValidator(_as_python)]
+"""A float that takes integers and numpy's numbers, but neither text nor a truth value."""
+
+FloatTuple = Annotated[tuple[Number, ...], BeforeValidator(_as_python)]
+"""A tuple of such numbers that also takes a numpy array."""
 
 
 class FrozenModel(BaseModel):
@@ -57,9 +60,7 @@ def input_error(error: ValidationError, *, place: str) -> InputError:
 
 
 def _tags(model: type[BaseModel]) -> set[str]:
-    below = (
-        set().union(*(_tags(child) for child in model.__subclasses__())) if model.__subclasses__() else set()
-    )
+    below = set().union(*(_tags(child) for child in model.__subclasses__())) if model.__subclasses__() else set()
     return below | {_type_name(model)}
 
 

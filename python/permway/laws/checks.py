@@ -17,9 +17,6 @@ continuation explains is called a violation: without a bound on the tails nothin
 band is ever acausal.
 """
 
-# Units belong in names here: frequency_Hz, temperature_C.
-# ruff: noqa: N815
-
 from __future__ import annotations
 
 from dataclasses import dataclass

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from permway.errors import InputError
-from permway.laws.base import Complexes, Law, Reals
+from permway.laws.base import Complexes, Law, Number, Reals
 
 if TYPE_CHECKING:
     from permway.laws import AnyLaw
@@ -101,7 +101,7 @@ class Scaled(Law):
 
     type: Literal["scaled"] = "scaled"
     law: AnyLaw
-    factor: float
+    factor: Number
 
     @property
     def needs_temperature(self) -> bool:

@@ -86,7 +86,7 @@ def compare_laws(
     reference_temperature_C, vertical, seed
         As for :func:`permway.laws.identify.identify`.
     progress : callable, optional
-        Called with a fraction and a line of text.
+        Called with the steps done and the steps in all.
 
     Returns
     -------
@@ -97,9 +97,9 @@ def compare_laws(
     rows = []
     for index, (law, shift) in enumerate(cases):
 
-        def within(fraction: float, text: str, index: int = index) -> None:
+        def within(done: int, total: int, index: int = index) -> None:
             if progress is not None:
-                progress((index + fraction) / len(cases), text)
+                progress(index * total + done, len(cases) * total)
 
         rows.append(
             identify(

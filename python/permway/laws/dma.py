@@ -1,8 +1,5 @@
 """Tables of dynamic mechanical analysis: what is in one, and reading it from a file."""
 
-# Units belong in names here: frequency_Hz, temperature_C.
-# ruff: noqa: N815
-
 from __future__ import annotations
 
 import math

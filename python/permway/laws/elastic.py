@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from permway.laws.base import Complexes, Law, Reals
+from permway.laws.base import Complexes, Law, Number, Reals
 
 
 class Hysteretic(Law):
@@ -25,9 +25,9 @@ class Hysteretic(Law):
     """
 
     type: Literal["hysteretic"] = "hysteretic"
-    stiffness: float
+    stiffness: Number
     # The alias is what users write; the bare name belongs to the method every law has.
-    eta: float = Field(default=0.0, alias="loss_factor")
+    eta: Number = Field(default=0.0, alias="loss_factor")
 
     def _at(self, omega: Reals, temperature_C: Reals | None) -> Complexes:
         return np.full(omega.shape, self.stiffness * (1.0 + 1j * self.eta), dtype=np.complex128)
@@ -56,8 +56,8 @@ class KelvinVoigt(Law):
     """
 
     type: Literal["kelvin_voigt"] = "kelvin_voigt"
-    stiffness: float
-    damping: float
+    stiffness: Number
+    damping: Number
 
     def _at(self, omega: Reals, temperature_C: Reals | None) -> Complexes:
         return np.asarray(self.stiffness + 1j * omega * self.damping, dtype=np.complex128)
@@ -81,8 +81,8 @@ class Maxwell(Law):
     """
 
     type: Literal["maxwell"] = "maxwell"
-    stiffness: float
-    damping: float
+    stiffness: Number
+    damping: Number
 
     def _at(self, omega: Reals, temperature_C: Reals | None) -> Complexes:
         flow = 1j * omega * self.damping
@@ -107,9 +107,9 @@ class Zener(Law):
     """
 
     type: Literal["zener"] = "zener"
-    relaxed: float
-    unrelaxed: float
-    relaxation_time_s: float
+    relaxed: Number
+    unrelaxed: Number
+    relaxation_time_s: Number
 
     def _at(self, omega: Reals, temperature_C: Reals | None) -> Complexes:
         turn = 1j * omega * self.relaxation_time_s

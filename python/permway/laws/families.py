@@ -43,7 +43,7 @@ class Scales:
     @property
     def time(self) -> tuple[float, float]:
         """Bounds of the logarithm of a relaxation time, s."""
-        return -self.lg_omega_high - 4.0, -self.lg_omega_low + 4.0
+        return -self.lg_omega_high - 8.0, -self.lg_omega_low + 6.0
 
 
 @dataclass(frozen=True)
@@ -272,7 +272,16 @@ _FAMILIES: dict[str, Family] = {
         ),
         _simple(
             "fvmp",
-            lambda z: [z.softness, z.strength, _ORDER, z.strength, z.time, _ORDER, (0.0, 0.98)],
+            # g1 belongs to the frequency 1/tau, which may lie far below the data.
+            lambda z: [
+                z.softness,
+                (z.lg_low - 8.0, z.lg_high + 3.0),
+                _ORDER,
+                z.strength,
+                z.time,
+                _ORDER,
+                (0.0, 0.98),
+            ],
             _fvmp,
             lambda p: FVMP(**p),
             _fvmp_parameters,

@@ -7,7 +7,7 @@ from typing import Literal, TypeVar
 import numpy as np
 from pydantic import model_validator
 
-from permway.laws.base import Complexes, Law, Reals
+from permway.laws.base import Complexes, Law, Number, Reals
 
 
 def power(omega: Reals, order: float) -> Complexes:
@@ -28,8 +28,8 @@ class Springpot(Law):
     """
 
     type: Literal["springpot"] = "springpot"
-    coefficient: float
-    order: float
+    coefficient: Number
+    order: Number
 
     def _at(self, omega: Reals, temperature_C: Reals | None) -> Complexes:
         return self.coefficient * power(omega, self.order)
@@ -52,9 +52,9 @@ class FractionalKelvinVoigt(Law):
     """
 
     type: Literal["fractional_kelvin_voigt"] = "fractional_kelvin_voigt"
-    stiffness: float
-    coefficient: float
-    order: float
+    stiffness: Number
+    coefficient: Number
+    order: Number
 
     def _at(self, omega: Reals, temperature_C: Reals | None) -> Complexes:
         return self.stiffness + self.coefficient * power(omega, self.order)
@@ -83,10 +83,10 @@ class FractionalZener(Law):
     """
 
     type: Literal["fractional_zener"] = "fractional_zener"
-    relaxed: float
-    unrelaxed: float
-    relaxation_time_s: float
-    order: float
+    relaxed: Number
+    unrelaxed: Number
+    relaxation_time_s: Number
+    order: Number
 
     @model_validator(mode="after")
     def _time_is_positive(self) -> FractionalZener:
@@ -120,11 +120,11 @@ class HavriliakNegami(Law):
     """
 
     type: Literal["havriliak_negami"] = "havriliak_negami"
-    relaxed: float
-    unrelaxed: float
-    relaxation_time_s: float
-    order: float
-    skew: float
+    relaxed: Number
+    unrelaxed: Number
+    relaxation_time_s: Number
+    order: Number
+    skew: Number
 
     @model_validator(mode="after")
     def _time_is_positive(self) -> HavriliakNegami:
@@ -160,13 +160,13 @@ class FVMP(Law):
     """
 
     type: Literal["fvmp"] = "fvmp"
-    mu1: float
-    eta1: float
-    mu2: float
-    eta2: float
-    alpha: float
-    beta: float
-    gamma: float
+    mu1: Number
+    eta1: Number
+    mu2: Number
+    eta2: Number
+    alpha: Number
+    beta: Number
+    gamma: Number
 
     @model_validator(mode="after")
     def _ratio_exists(self) -> FVMP:
@@ -198,13 +198,9 @@ class FVMP(Law):
             if not 0.0 <= order <= 1.0:
                 notes.append(f"order {name} = {order:g} is outside 0 to 1: no spring-dashpot network has it")
         if self.mu2 != 0.0 and self.beta > 1.0 + self.alpha:
-            notes.append(
-                "beta - alpha > 1: grows faster than a dashpot at high frequency, storage turns negative"
-            )
+            notes.append("beta - alpha > 1: grows faster than a dashpot at high frequency, storage turns negative")
         if self.mu2 != 0.0 and self.beta < self.alpha:
-            notes.append(
-                "beta < alpha: the fractional Maxwell branch alone feeds energy in at high frequency"
-            )
+            notes.append("beta < alpha: the fractional Maxwell branch alone feeds energy in at high frequency")
         return tuple(notes)
 
 

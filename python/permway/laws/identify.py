@@ -7,9 +7,6 @@ paper fits the two apart, which gives no material (see `StorageLossPair`). A see
 their bottoms, and the Jacobian there the intervals.
 """
 
-# Units belong in names here: frequency_Hz, temperature_C.
-# ruff: noqa: N815
-
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -21,7 +18,7 @@ from permway.laws.base import ABSOLUTE_ZERO_C, Law, Reals
 from permway.laws.dma import DmaTable
 from permway.laws.families import Scales, family
 from permway.laws.intervals import Parameter, parameter_table
-from permway.laws.search import Found, Problem, Progress, nodes_of, search
+from permway.laws.search import STEPS, Found, Problem, Progress, nodes_of, search
 from permway.laws.shift_fit import ShiftFamily, shift_family
 from permway.laws.tfdv import TFDV
 
@@ -107,7 +104,7 @@ def identify(
     weights : (float, float)
         Of the errors of log modulus and of phase.
     progress : callable, optional
-        Called with a fraction and a line of text.
+        Called with the steps done and the steps in all.
 
     Returns
     -------
@@ -122,7 +119,7 @@ def identify(
     problem = _pose(table, law, shift, reference_temperature_C, vertical, weights)
     found = search(problem, table, reference_temperature_C, seed, progress)
     if progress is not None:
-        progress(1.0, f"{law} with shift {shift}: done")
+        progress(STEPS, STEPS)
     return _report(problem, table, found, reference_temperature_C, vertical, seed)
 
 
@@ -135,9 +132,7 @@ def _pose(
     weights: tuple[float, float],
 ) -> Problem:
     if vertical not in ("none", "paper"):
-        raise InputError(
-            "not a vertical factor", where="vertical", value=vertical, remedy='use "none" or "paper"'
-        )
+        raise InputError("not a vertical factor", where="vertical", value=vertical, remedy='use "none" or "paper"')
     if not (len(weights) == 2 and all(np.isfinite(w) and w > 0.0 for w in weights)):
         raise InputError("two finite weights above zero are needed", where="weights", value=weights)
     if shift != "none" and reference_C is None:

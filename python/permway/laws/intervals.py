@@ -73,9 +73,7 @@ def parameter_table(problem: Problem, x: Reals, jacobian: Reals, square: float) 
         if touched:
             note = "not identifiable: depends on a coordinate at the limit of its range"
         elif spread > (_WIDE_DECADES if scale else _WIDE_RANGE):
-            note = "not identifiable: the interval is wider than " + (
-                "a decade" if scale else f"{_WIDE_RANGE}"
-            )
+            note = "not identifiable: the interval is wider than " + ("a decade" if scale else f"{_WIDE_RANGE}")
             note += " on either side"
         low, high = (_power(low), _power(high)) if scale else (low, high)
         found.append(Parameter(name=name, value=value, low=low, high=high, note=note))

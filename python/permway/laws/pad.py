@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
-from permway.laws.base import Complexes, Law, Reals
+from permway.laws.base import Complexes, Law, Number, Reals
 
 if TYPE_CHECKING:
     from permway.laws import AnyLaw
@@ -29,9 +29,9 @@ class Pad(Law):
 
     type: Literal["pad"] = "pad"
     material: AnyLaw
-    area_m2: float = Field(gt=0.0)
-    thickness_m: float = Field(gt=0.0)
-    effective_fraction: float = Field(default=0.7, gt=0.0)
+    area_m2: Number = Field(gt=0.0)
+    thickness_m: Number = Field(gt=0.0)
+    effective_fraction: Number = Field(default=0.7, gt=0.0)
 
     @property
     def needs_temperature(self) -> bool:

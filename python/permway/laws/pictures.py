@@ -151,9 +151,7 @@ def surfaces(
             linewidth=0.0,
             alpha=0.9,
         )
-        axes.scatter(
-            measured[0][inside], measured[1][inside], points[inside], color="#b2182b", s=1.5, zorder=5
-        )
+        axes.scatter(measured[0][inside], measured[1][inside], points[inside], color="#b2182b", s=1.5, zorder=5)
         axes.set_title(title, fontsize=_FONT + 1, y=0.98)
         axes.set_xlabel("frequency, Hz", fontsize=_FONT, labelpad=-2)
         axes.set_ylabel("temperature, °C", fontsize=_FONT, labelpad=-2)

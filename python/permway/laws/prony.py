@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
-from permway.laws.base import Complexes, FloatTuple, Law, Reals
+from permway.laws.base import Complexes, FloatTuple, Law, Number, Reals
 
 
 class Prony(Law):
@@ -24,7 +24,7 @@ class Prony(Law):
     """
 
     type: Literal["prony"] = "prony"
-    relaxed: float
+    relaxed: Number
     strengths: FloatTuple
     relaxation_times_s: FloatTuple
 

@@ -1,8 +1,5 @@
 """Shift factors: how far temperature moves a law along the frequency axis."""
 
-# Units belong in names here: frequency_Hz, temperature_C.
-# ruff: noqa: N815
-
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
@@ -14,7 +11,7 @@ from pydantic import Field, model_validator
 from scipy.interpolate import PchipInterpolator
 
 from permway.errors import InputError
-from permway.laws.base import ABSOLUTE_ZERO_C, FloatTuple, FrozenModel, Reals, check_temperature
+from permway.laws.base import ABSOLUTE_ZERO_C, FloatTuple, FrozenModel, Number, Reals, check_temperature
 
 GAS_CONSTANT = 8.31446261815324
 """J/(mol K), exact in the SI of 2019."""
@@ -66,9 +63,9 @@ class WLF(Shift):
     """
 
     type: Literal["wlf"] = "wlf"
-    c1: float
-    c2_K: float
-    reference_temperature_C: float
+    c1: Number
+    c2_K: Number
+    reference_temperature_C: Number
 
     @model_validator(mode="after")
     def _slope_has_a_sign(self) -> WLF:
@@ -101,8 +98,8 @@ class Arrhenius(Shift):
     """
 
     type: Literal["arrhenius"] = "arrhenius"
-    activation_energy_J_per_mol: float
-    reference_temperature_C: float
+    activation_energy_J_per_mol: Number
+    reference_temperature_C: Number
 
     @model_validator(mode="after")
     def _reference_exists(self) -> Arrhenius:
@@ -140,9 +137,7 @@ class Free(Shift):
     @model_validator(mode="after")
     def _columns_fit(self) -> Free:
         if len(self.temperatures_C) != len(self.log10_shift):
-            raise ValueError(
-                f"{len(self.temperatures_C)} temperatures but {len(self.log10_shift)} shift factors"
-            )
+            raise ValueError(f"{len(self.temperatures_C)} temperatures but {len(self.log10_shift)} shift factors")
         if len(self.temperatures_C) < 2:
             raise ValueError("a free shift needs at least two temperatures")
         if not np.all(np.diff(self.temperatures_C) > 0.0):

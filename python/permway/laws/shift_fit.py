@@ -41,9 +41,7 @@ class ShiftFamily:
     parameters: Callable[[Reals], dict[str, float]]
 
 
-def shift_family(
-    name: str, temperature_C: Reals | None, nodes_C: Reals, reference_C: float | None
-) -> ShiftFamily:
+def shift_family(name: str, temperature_C: Reals | None, nodes_C: Reals, reference_C: float | None) -> ShiftFamily:
     """Look a shift family up by name.
 
     Parameters

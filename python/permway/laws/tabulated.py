@@ -1,8 +1,5 @@
 """A law given as a table over frequency."""
 
-# Units belong in names here: frequency_Hz, temperature_C.
-# ruff: noqa: N815
-
 from __future__ import annotations
 
 from typing import Literal

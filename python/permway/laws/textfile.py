@@ -63,12 +63,8 @@ def number(cell: str, place: str) -> float:
             "the cell is empty" if not cell else "not a number",
             where=place,
             value=cell,
-            remedy="use a decimal point, not a comma"
-            if comma
-            else "give a plain number, units in the header",
+            remedy="use a decimal point, not a comma" if comma else "give a plain number, units in the header",
         ) from None
     if not math.isfinite(value):
-        raise InputError(
-            "not a finite number", where=place, value=cell, remedy="remove the row or measure it"
-        )
+        raise InputError("not a finite number", where=place, value=cell, remedy="remove the row or measure it")
     return value

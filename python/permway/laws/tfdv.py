@@ -1,8 +1,5 @@
 """A law over frequency and temperature: any law, a shift factor and a vertical factor."""
 
-# Units belong in names here: frequency_Hz, temperature_C.
-# ruff: noqa: N815
-
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
@@ -10,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from pydantic import model_validator
 
-from permway.laws.base import ABSOLUTE_ZERO_C, Complexes, Law, Reals
+from permway.laws.base import ABSOLUTE_ZERO_C, Complexes, Law, Number, Reals
 from permway.laws.shift import AnyShift
 
 if TYPE_CHECKING:
@@ -41,18 +38,16 @@ class TFDV(Law):
     type: Literal["tfdv"] = "tfdv"
     law: AnyLaw
     shift: AnyShift
-    reference_temperature_C: float
+    reference_temperature_C: Number
     vertical: Literal["paper", "none"] = "paper"
-    volume_expansion_per_K: float = 0.0
+    volume_expansion_per_K: Number = 0.0
 
     @model_validator(mode="after")
     def _parts_fit(self) -> TFDV:
         if self.reference_temperature_C <= ABSOLUTE_ZERO_C:
             raise ValueError("reference_temperature_C must be above -273.15 degC")
         if self.law.needs_temperature:
-            raise ValueError(
-                f"law of type '{self.law.type}' depends on temperature already; shift it once only"
-            )
+            raise ValueError(f"law of type '{self.law.type}' depends on temperature already; shift it once only")
         self.shift.log10_factor(self.reference_temperature_C)
         return self
 

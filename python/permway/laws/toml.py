@@ -49,9 +49,7 @@ def _lines(table: Mapping[str, object], path: tuple[str, ...]) -> list[str]:
 
 def _is_table_array(value: object) -> bool:
     return (
-        isinstance(value, list | tuple)
-        and len(value) > 0
-        and all(isinstance(entry, Mapping) for entry in value)
+        isinstance(value, list | tuple) and len(value) > 0 and all(isinstance(entry, Mapping) for entry in value)
     )
 
 

@@ -6,9 +6,6 @@ was measured at: filled rubber softens with strain (Payne), so a record should b
 `shear_strain` says what a record saw.
 """
 
-# Units belong in names here: frequency_Hz, temperature_C.
-# ruff: noqa: N815
-
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -20,7 +17,7 @@ from pydantic import Field
 from scipy import optimize
 
 from permway.errors import InputError
-from permway.laws.base import Complexes, FrozenModel, Law, Reals, check_frequency
+from permway.laws.base import Complexes, FrozenModel, Law, Number, Reals, check_frequency
 from permway.laws.textfile import number, read_lines
 
 _COLUMNS = ("freq_hz", "base_accel_ms2", "base_phase_rad", "mass_accel_ms2", "mass_phase_rad")
@@ -41,11 +38,11 @@ class ShearRig(FrozenModel):
         What moves with the mass beside it (end discs), kg.
     """
 
-    outer_diameter_m: float = Field(gt=0.0)
-    inner_diameter_m: float = Field(ge=0.0)
-    thickness_m: float = Field(gt=0.0)
+    outer_diameter_m: Number = Field(gt=0.0)
+    inner_diameter_m: Number = Field(ge=0.0)
+    thickness_m: Number = Field(gt=0.0)
     rings: int = Field(default=2, ge=1)
-    moving_mass_kg: float = Field(default=0.0, ge=0.0)
+    moving_mass_kg: Number = Field(default=0.0, ge=0.0)
 
     @property
     def shape_factor_m(self) -> float:
@@ -191,7 +188,7 @@ def compare_record(
     record: ShakerRecord,
     *,
     temperature_C: float | None = None,
-    constant_Hz: float = 1.0,
+    constant_Hz: float = 10.0,
     stiffness_factor: float | None = None,
 ) -> TransmissibilityComparison:
     """Hold a law's prediction against a record, with a constant modulus and one common factor beside it.
@@ -209,7 +206,8 @@ def compare_record(
     temperature_C : float, optional
         Of the rubber.
     constant_Hz : float
-        Frequency of a quasi-static test, from which a designer without DMA would take a constant modulus.
+        Where to read a constant modulus off the law; 10 Hz is a usual single test frequency, and the middle of
+        a DMA sweep from 1 to 100 Hz.
     stiffness_factor : float, optional
         Factor on the stiffness; fitted to this record if None.
 
@@ -224,8 +222,7 @@ def compare_record(
     if stiffness_factor is None:
         stiffness_factor = common_factor([(stiffness, mass, record)])
     curves = [
-        transmissibility(value, mass, frequency)
-        for value in (stiffness, at_rest, stiffness_factor * stiffness)
+        transmissibility(value, mass, frequency) for value in (stiffness, at_rest, stiffness_factor * stiffness)
     ]
     errors = [rms_dB(curve, record.transmissibility) for curve in curves]
     return TransmissibilityComparison(
@@ -265,6 +262,6 @@ def common_factor(cases: list[tuple[Complexes, float, ShakerRecord]]) -> float:
     return float(10.0 ** float(found.x))
 
 
-def rms_dB(predicted: Complexes, measured: Complexes) -> float:  # noqa: N802
+def rms_dB(predicted: Complexes, measured: Complexes) -> float:
     """Root mean square of 20 lg |predicted/measured|."""
     return float(np.sqrt(np.mean((20.0 * np.log10(np.abs(predicted / measured))) ** 2)))

@@ -3,14 +3,38 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
-from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
+from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from permway.laws.base import FrozenModel
+from permway.model.faults import fault
 
 End = Literal["free", "pinned"]
-Interval = tuple[float, float]
+
+FARTHEST_M = 1e6
+"""Coordinates beyond this are taken for a slip of units."""
+
+Metres = Annotated[float, Field(ge=-FARTHEST_M, le=FARTHEST_M)]
+
+
+def _pair(value: object) -> object:
+    if isinstance(value, Sequence) and not isinstance(value, str) and len(value) != 2:
+        raise fault("must be two places [from, to]", value=value)
+    return value
+
+
+def _ends(value: object) -> object:
+    given = [value] if isinstance(value, str) else value
+    known = isinstance(given, Sequence) and all(isinstance(e, str) and e in ("free", "pinned") for e in given)
+    if not known or (value is given and len(given) != 2):  # type: ignore[arg-type]
+        raise fault('must be "free" or "pinned", or one of them for each end', value=value)
+    return value
+
+
+Interval = Annotated[tuple[Metres, Metres], BeforeValidator(_pair)]
+"""From and to, m."""
 
 
 class Beam(FrozenModel):
@@ -46,7 +70,7 @@ class Beam(FrozenModel):
     shear_coefficient: PositiveFloat | None = None
     loss_factor: NonNegativeFloat = 0.0
     intervals_m: tuple[Interval, ...] | None = Field(default=None, min_length=1)
-    ends: End | tuple[End, End] = "free"
+    ends: Annotated[End | tuple[End, End], BeforeValidator(_ends)] = "free"
     modes: int | None = Field(default=None, ge=1, le=10_000)
     share: PositiveFloat = 1.0
 
@@ -60,16 +84,21 @@ class Beam(FrozenModel):
         _check_units(self)
         if self.intervals_m is None:
             if self.modes is not None:
-                raise ValueError("modes need a beam with ends: give intervals_m")
+                raise fault("modes need a beam with ends: give intervals_m", "modes")
             return self
         if self.theory == "timoshenko" and self.modes is not None:
-            raise ValueError("modes are for euler beams; the closed form of timoshenko needs none")
+            raise fault("modes are for euler beams; the closed form of timoshenko needs none", "modes")
         reach = -math.inf
-        for start, stop in self.intervals_m:
+        for index, (start, stop) in enumerate(self.intervals_m):
             if not start < stop:
-                raise ValueError(f"the interval ({start:g}, {stop:g}) m does not run from left to right")
+                what = f"the interval ({start:g}, {stop:g}) m does not run from left to right"
+                raise fault(what, "intervals_m", index)
             if start < reach:
-                raise ValueError(f"the interval ({start:g}, {stop:g}) m overlaps the one before it")
+                what = (
+                    f"the interval ({start:g}, {stop:g}) m begins before {reach:g} m, where the one before it "
+                    "ends: name the beams from left to right, without overlap"
+                )
+                raise fault(what, "intervals_m", index)
             reach = stop
         return self
 
@@ -115,25 +144,29 @@ AnyBody = Annotated[Beam | Mass, Field(discriminator="type")]
 
 def _check_units(beam: Beam) -> None:
     """Refuse values that only a slip of units explains."""
-    if beam.youngs_modulus_Pa < 1e6:
-        raise ValueError(
-            f"youngs_modulus_Pa = {beam.youngs_modulus_Pa:g} is softer than rubber: give it in Pa, not GPa"
-        )
-    if beam.shear_modulus_Pa is not None and beam.shear_modulus_Pa < 1e5:
-        raise ValueError(
-            f"shear_modulus_Pa = {beam.shear_modulus_Pa:g} is softer than rubber: give it in Pa, not GPa"
-        )
-    if beam.density_kg_per_m3 < 20.0:
-        raise ValueError(
-            f"density_kg_per_m3 = {beam.density_kg_per_m3:g} is below any solid: give it in kg/m3, not t/m3"
-        )
-    if beam.loss_factor > 5.0:
-        raise ValueError(
-            f"loss_factor = {beam.loss_factor:g} is above any material's: give it as a ratio, not in percent"
-        )
-    # A solid square has I = A^2 / 12; no section of a beam comes near a thousand times that.
-    if beam.second_moment_m4 > 100.0 * beam.area_m2**2:
-        raise ValueError(
-            f"second_moment_m4 = {beam.second_moment_m4:g} does not fit area_m2 = {beam.area_m2:g}: "
-            "give both in metres, not cm4 or mm4"
-        )
+    shear = beam.shear_modulus_Pa
+    radius = math.sqrt(beam.second_moment_m4 / beam.area_m2)
+    for key, slipped, what in (
+        (
+            "youngs_modulus_Pa",
+            beam.youngs_modulus_Pa < 1e6,
+            "is softer than rubber: give it in Pa, not GPa or MPa",
+        ),
+        ("shear_modulus_Pa", shear is not None and shear < 1e5, "is softer than rubber: give it in Pa, not GPa"),
+        ("density_kg_per_m3", beam.density_kg_per_m3 < 20.0, "is below any solid: give it in kg/m3, not t/m3"),
+        ("loss_factor", beam.loss_factor > 5.0, "is above any material's: give it as a ratio, not in percent"),
+        (
+            "second_moment_m4",
+            radius > 5.0,
+            f"does not fit area_m2 = {beam.area_m2:g}, for its radius of gyration would be {radius:g} m: "
+            "give both in metres, not cm4 or mm4",
+        ),
+        # A solid square has I = A^2 / 12, a strip a hundred times as wide as high a hundredth of that.
+        (
+            "area_m2",
+            beam.second_moment_m4 < 1e-6 * beam.area_m2**2,
+            f"does not fit second_moment_m4 = {beam.second_moment_m4:g}: give both in metres, not cm2 or mm2",
+        ),
+    ):
+        if slipped:
+            raise fault(f"{key} = {getattr(beam, key):g} {what}", key)

@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 import inspect
+import re
 import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from pydantic import Field, PositiveFloat, ValidationError, model_validator
+from pydantic import Field, PositiveFloat, ValidationError, field_validator, model_validator
 
 from permway.errors import InputError
-from permway.laws.base import FrozenModel, Reals, input_error
+from permway.laws.base import FrozenModel, Law, Reals
+from permway.model.faults import fault, model_error, refuse_coercion
 from permway.model.irregularity import AnyIrregularity, Conversion
+from permway.model.irregularity_spectra import FASTEST_M_PER_S
 from permway.model.line import Line
-from permway.model.presets import LINES
+from permway.model.presets import LAWS, LINES
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_presets import VEHICLES
-from permway.response.receptance import Formulation, Place, check_sweep
+from permway.response.receptance import Formulation, Place, check_places, check_sweep
 from permway.response.train import Train
 
-FORMAT = 1
 LARGEST_FILE = 64 * 1024 * 1024
 MOST_FREQUENCIES = 10_000_000
 
@@ -39,7 +41,7 @@ class Frequencies(FrozenModel):
         Number of frequencies at equal ratios.
     """
 
-    values_Hz: tuple[float, ...] | None = None
+    values_Hz: tuple[float, ...] | None = Field(default=None, min_length=1, max_length=MOST_FREQUENCIES)
     from_Hz: PositiveFloat | None = None
     to_Hz: PositiveFloat | None = None
     step_Hz: PositiveFloat | None = None
@@ -51,16 +53,40 @@ class Frequencies(FrozenModel):
         if self.values_Hz is not None:
             if ranged != (None, None) or self.step_Hz is not None or self.points is not None:
                 raise ValueError("give values_Hz, or from_Hz and to_Hz, not both")
-            return self
+        else:
+            self._check_range()
+        return self
+
+    @field_validator("values_Hz")
+    @classmethod
+    def _check_values(cls, values: tuple[float, ...] | None) -> tuple[float, ...] | None:
+        if values is None:
+            return None
+        try:
+            check_sweep(values)
+        except InputError as error:
+            index = re.search(r"\[(\d+)\]", error.where)
+            place = (int(index[1]),) if index else ()
+            raise fault(f"{error.what} (got {error.value}): {error.remedy}", *place) from error
+        return values
+
+    def _check_range(self) -> None:
         if self.from_Hz is None or self.to_Hz is None:
             raise ValueError("give values_Hz, or from_Hz and to_Hz with step_Hz or points")
         if (self.step_Hz is None) == (self.points is None):
             raise ValueError("give one of step_Hz (equal steps) and points (equal ratios)")
         if self.to_Hz < self.from_Hz:
-            raise ValueError(f"to_Hz = {self.to_Hz:g} lies below from_Hz = {self.from_Hz:g}")
-        if self.step_Hz is not None and (self.to_Hz - self.from_Hz) / self.step_Hz > MOST_FREQUENCIES:
-            raise ValueError(f"step_Hz = {self.step_Hz:g} makes more than {MOST_FREQUENCIES} frequencies")
-        return self
+            raise fault(f"{self.to_Hz:g} Hz lies below from_Hz = {self.from_Hz:g}", "to_Hz")
+        if self.points is not None and self.to_Hz < self.from_Hz * (1.0 + 1e-12 * self.points):
+            raise fault(
+                f"{self.points} points do not fit between {self.from_Hz:g} and {self.to_Hz:g} Hz", "points"
+            )
+        if self.step_Hz is not None and (self.to_Hz - self.from_Hz) / self.step_Hz >= MOST_FREQUENCIES:
+            raise fault(f"{self.step_Hz:g} Hz makes more than {MOST_FREQUENCIES} frequencies", "step_Hz")
+        if self.step_Hz is not None and self.step_Hz < 1e-12 * self.to_Hz:
+            raise fault(
+                f"{self.step_Hz:g} Hz is below what numbers near {self.to_Hz:g} Hz can tell apart", "step_Hz"
+            )
 
     def array(self) -> Reals:
         """The frequencies in Hz."""
@@ -96,11 +122,11 @@ class Model(FrozenModel):
     formulation : "chain" or "receptance"
     """
 
-    format: Literal[1] = FORMAT
+    format: Literal[1] = 1
     title: str = ""
     frequencies: Frequencies
     line: Line
-    temperature_C: float | None = Field(default=None, gt=-273.15, lt=200.0)
+    temperature_C: float | None = None
     forces: tuple[Place, ...] = ()
     sensors: tuple[Place, ...] = ()
     train: Train | None = None
@@ -116,7 +142,31 @@ class Model(FrozenModel):
             raise ValueError("nothing to compute: give [[forces]] and [[sensors]], or [train] and [irregularity]")
         if self.forces and not self.sensors:
             raise ValueError("forces without [[sensors]]: say where the response is wanted")
+        if self.temperature_C is not None and not -100.0 <= self.temperature_C <= 150.0:
+            what = "is no temperature of a track: give degrees Celsius, not kelvin"
+            raise fault(what, "temperature_C", value=self.temperature_C)
         return self
+
+    def check(self) -> None:
+        """Check what the parts say of each other: names, places, and the laws at the ends of the band.
+
+        Raises
+        ------
+        InputError
+            With the place in the model file.
+        """
+        try:
+            self.line.joint_table()
+            self.line.stiffness(self.frequencies.array()[[0, -1]], self.temperature_C)
+        except InputError as error:
+            raise _below("line", error) from error
+        for kind, places in (("forces", self.forces), ("sensors", self.sensors)):
+            check_places(self.line, places, kind)
+        if self.train is not None:
+            try:
+                check_places(self.line, self.train.wheels(), "wheels")
+            except InputError as error:
+                raise _below("train", error) from error
 
 
 def read_model(path: str | Path) -> Model:
@@ -135,15 +185,23 @@ def read_model(path: str | Path) -> Model:
     """
     path = Path(path)
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError("too large for a model file", where=str(path), value=f"{path.stat().st_size} bytes")
-        table = tomllib.loads(path.read_bytes().decode("utf-8"))
-    except OSError as error:
-        raise InputError("cannot be read", where=str(path), value=error.strerror or str(error)) from error
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(
+            f"cannot be read: {reason}", where=str(path), remedy="name a model file (TOML)"
+        ) from error
+    if len(content) > LARGEST_FILE:
+        raise InputError(f"is larger than {LARGEST_FILE // 2**20} MiB: not a model file", where=str(path))
+    try:
+        table = tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
-        raise InputError("is not text in UTF-8", where=f"{path}, byte {error.start}") from error
-    except tomllib.TOMLDecodeError as error:
-        raise InputError("is not TOML", where=str(path), value=str(error)) from error
+        raise InputError(
+            "is not text in UTF-8", where=f"{path}, byte {error.start}", remedy="save it as UTF-8"
+        ) from error
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"is not TOML: {error}", where=str(path)) from error
     try:
         return model_from_dict(table)
     except InputError as error:
@@ -166,9 +224,17 @@ def model_from_dict(table: Mapping[str, Any]) -> Model:
     if "train" in filled:
         filled["train"] = _train(_table(filled["train"], "train"))
     try:
-        return Model.model_validate(filled)
+        model = Model.model_validate(filled)
     except ValidationError as error:
-        raise input_error(error, place="model") from error
+        raise model_error(error, filled, "") from error
+    refuse_coercion(filled, model, "")
+    model.check()
+    return model
+
+
+def _below(table: str, error: InputError) -> InputError:
+    """The same complaint, its place taken to lie in a table."""
+    return InputError(error.what, where=f"{table}.{error.where}", value=error.value, remedy=error.remedy)
 
 
 def _table(value: object, where: str) -> dict[str, Any]:
@@ -178,6 +244,8 @@ def _table(value: object, where: str) -> dict[str, Any]:
 
 
 def _line(table: dict[str, Any]) -> Line | dict[str, Any]:
+    if isinstance(table.get("laws"), Mapping):
+        table["laws"] = {name: _law(law, f"line.laws.{name}") for name, law in table["laws"].items()}
     if "preset" not in table:
         return table
     name = table.pop("preset")
@@ -189,7 +257,9 @@ def _line(table: dict[str, Any]) -> Line | dict[str, Any]:
             where=f"line.{next(iter(table))}",
             remedy="a preset takes options and laws",
         )
-    line: Line = _preset(LINES, name, options, "line")
+    if "pad" in options:
+        options["pad"] = _law(options["pad"], "line.options.pad")
+    line: Line = _preset(LINES, name, options, "line", "options")
     for law in laws:
         if law not in line.laws:
             raise InputError(
@@ -197,10 +267,22 @@ def _line(table: dict[str, Any]) -> Line | dict[str, Any]:
                 where=f"line.laws.{law}",
                 remedy=f"use one of {list(line.laws)}",
             )
+    changed = {"bodies": line.bodies, "joints": line.joints, "laws": {**line.laws, **laws}}
     try:
-        return Line.model_validate({"bodies": line.bodies, "joints": line.joints, "laws": {**line.laws, **laws}})
+        built = Line.model_validate(changed)
     except ValidationError as error:
-        raise input_error(error, place="line") from error
+        raise model_error(error, changed, "line") from error
+    refuse_coercion(laws, {key: built.laws[key] for key in laws}, "line.laws")
+    return built
+
+
+def _law(law: object, where: str) -> object:
+    """A law by name, or the table as it is."""
+    if not isinstance(law, Mapping) or "preset" not in law:
+        return law
+    options = dict(law)
+    built: Law = _preset(LAWS, options.pop("preset"), options, where)
+    return built
 
 
 def _train(table: dict[str, Any]) -> dict[str, Any]:
@@ -212,6 +294,13 @@ def _train(table: dict[str, Any]) -> dict[str, Any]:
         speed = table.pop("speed_km_per_h")
         if not isinstance(speed, int | float) or isinstance(speed, bool):
             raise InputError("must be a number", where="train.speed_km_per_h", value=speed)
+        # Out of all bounds, an integer may not even fit a float.
+        if not 0 < speed <= 3.6 * FASTEST_M_PER_S:
+            raise InputError(
+                f"must be above 0 and at most {3.6 * FASTEST_M_PER_S:g} km/h",
+                where="train.speed_km_per_h",
+                value=speed,
+            )
         table["speed_m_per_s"] = speed / 3.6
     vehicle = table.get("vehicle")
     if isinstance(vehicle, Mapping) and "preset" in vehicle:
@@ -226,17 +315,23 @@ def _constant(value: Vehicle) -> Callable[[], Vehicle]:
     return lambda: value
 
 
-def _preset(presets: Mapping[str, Callable[..., Any]], name: object, options: dict[str, Any], where: str) -> Any:
+def _preset(
+    presets: Mapping[str, Callable[..., Any]],
+    name: object,
+    options: dict[str, Any],
+    where: str,
+    key: str | None = None,
+) -> Any:
+    """Call a preset; its options lie in the table `key` of `where`, or in `where` itself."""
     if not isinstance(name, str) or name not in presets:
         raise InputError(
             "no such preset", where=f"{where}.preset", value=name, remedy=f"use one of {sorted(presets)}"
         )
+    inside = f"{where}.{key}" if key else where
     try:
         inspect.signature(presets[name]).bind(**options)
         return presets[name](**options)
     except InputError as error:
-        raise InputError(
-            error.what, where=f"{where}: {error.where}", value=error.value, remedy=error.remedy
-        ) from error
+        raise _below(inside, error) from error
     except TypeError as error:
-        raise InputError(f"the preset {name!r}: {error}", where=where) from error
+        raise InputError(f"the preset {name!r}: {error}", where=inside) from error

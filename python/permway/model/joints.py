@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, PositiveFloat, model_validator
+from pydantic import BeforeValidator, Field, PositiveFloat, TypeAdapter, model_validator
 
 from permway.laws.base import FrozenModel, Reals
+from permway.model.bodies import Interval, Metres
+from permway.model.faults import fault
 
 GROUND = "ground"
+MOST_STATIONS = 1_000_000
 
 
 class Spread(FrozenModel):
@@ -23,20 +27,24 @@ class Spread(FrozenModel):
         Distance between stations.
     """
 
-    from_m: float
-    to_m: float
+    from_m: Metres
+    to_m: Metres
     spacing_m: PositiveFloat
 
     @model_validator(mode="after")
     def _check(self) -> Spread:
+        if self.to_m < self.from_m:
+            raise fault(f"to_m = {self.to_m:g} lies left of from_m = {self.from_m:g}", "to_m")
         bays = (self.to_m - self.from_m) / self.spacing_m
-        if bays < 0.0 or abs(bays - round(bays)) > 1e-6 * max(bays, 1.0):
-            raise ValueError(
-                f"from {self.from_m:g} to {self.to_m:g} m is {bays:.6g} spacings of {self.spacing_m:g} m: "
-                "it must be a whole number"
+        if bays > MOST_STATIONS:
+            raise fault(f"makes {bays:.3g} stations: is the spacing in metres?", "spacing_m", value=self.spacing_m)
+        if abs(bays - round(bays)) > 1e-6 * max(bays, 1.0):
+            near = self.from_m + round(bays) * self.spacing_m
+            what = (
+                f"from {self.from_m:g} to {self.to_m:g} m is {bays:.6g} spacings of {self.spacing_m:g} m: it must "
+                f"be a whole number; the nearest to_m is {near:g}"
             )
-        if bays > 1e6:
-            raise ValueError(f"{bays:.3g} stations are too many: is the spacing in metres?")
+            raise fault(what, "to_m")
         return self
 
     def stations(self) -> Reals:
@@ -60,6 +68,28 @@ class Ends(FrozenModel):
     inset_m: float = Field(default=0.0, ge=0.0)
 
 
+def _stations(value: object) -> object:
+    """Read one of the three forms by its looks, so that a fault in it is told as that form's."""
+    if isinstance(value, Spread | Ends):
+        return value
+    if isinstance(value, Mapping):
+        return (Ends if "of" in value else Spread).model_validate(dict(value))
+    if isinstance(value, np.ndarray) or (isinstance(value, Sequence) and not isinstance(value, str)):
+        return _LIST.validate_python(tuple(value))
+    raise fault(
+        "must be a list of stations in m, {from_m, to_m, spacing_m} or {of = a body} for its ends", value=value
+    )
+
+
+_LIST: TypeAdapter[tuple[Metres, ...]] = TypeAdapter(tuple[Metres, ...])
+
+
+def _two(value: object) -> object:
+    if not (isinstance(value, Sequence) and len(value) == 2 and all(isinstance(name, str) for name in value)):
+        raise fault('must be the names of two bodies [upper, lower]; the lower may be "ground"', value=value)
+    return value
+
+
 class Joints(FrozenModel):
     """Joints of one law between two bodies, or a body and the ground.
 
@@ -80,29 +110,35 @@ class Joints(FrozenModel):
         Factor on the law.
     """
 
-    between: tuple[str, str]
+    between: Annotated[tuple[str, str], BeforeValidator(_two)]
     law: str
-    at: tuple[float, ...] | Spread | Ends
+    at: Annotated[tuple[float, ...] | Spread | Ends, BeforeValidator(_stations)]
     stiffness_is: Literal["each", "total"] = "each"
-    layer_m: tuple[float, float] | None = None
+    layer_m: Interval | None = None
     scale: float = Field(default=1.0, ge=0.0)
 
     @model_validator(mode="after")
     def _check(self) -> Joints:
         upper, lower = self.between
         if upper == GROUND:
-            raise ValueError("the ground can only be the lower of the two bodies")
+            raise fault("the ground can only be the lower of the two bodies", "between")
         if upper == lower:
-            raise ValueError(f"both bodies are {upper!r}: a joint ties two")
+            raise fault(f"both bodies are {upper!r}: a joint ties two", "between")
         if isinstance(self.at, tuple) and not self.at:
-            raise ValueError("at is empty: name at least one station")
+            raise fault("at is empty: name at least one station", "at")
         if self.layer_m is not None:
             if self.stiffness_is == "each":
-                raise ValueError('layer_m goes with stiffness_is = "total"')
-            if not self.layer_m[0] < self.layer_m[1]:
-                raise ValueError(f"layer_m {self.layer_m} does not run from left to right")
+                raise fault('layer_m goes with stiffness_is = "total"', "layer_m")
+            start, stop = self.layer_m
+            if not start < stop:
+                raise fault(f"({start:g}, {stop:g}) m does not run from left to right", "layer_m")
+            if not isinstance(self.at, Ends):
+                x = self.at if isinstance(self.at, tuple) else (self.at.from_m, self.at.to_m)
+                if min(x) < start - 1e-9 or max(x) > stop + 1e-9:
+                    what = f"({start:g}, {stop:g}) m does not hold all stations, {min(x):g} to {max(x):g} m"
+                    raise fault(what, "layer_m")
         if self.stiffness_is == "total" and isinstance(self.at, Ends):
-            raise ValueError('stiffness_is = "total" needs stations along the layer, not its ends')
+            raise fault('stiffness_is = "total" needs stations along the layer, not its ends', "stiffness_is")
         return self
 
     def weights(self, stations: Reals) -> Reals:

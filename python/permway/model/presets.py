@@ -6,12 +6,13 @@ from collections.abc import Callable
 from typing import Any, Literal
 
 import numpy as np
-from pydantic import Field, PositiveFloat
+from pydantic import Field, ValidationError
 
 from permway.errors import InputError
 from permway.laws import AnyLaw, Hysteretic
-from permway.laws.base import FrozenModel
+from permway.laws.base import FrozenModel, Number
 from permway.model.bodies import Beam, Interval
+from permway.model.faults import model_error
 from permway.model.joints import Ends, Joints
 from permway.model.line import Line
 
@@ -20,7 +21,7 @@ SPACING_M = 0.625
 
 
 def wj7b(temperature_C: Literal[20, -20, -30] = 20) -> Hysteretic:
-    """Pad of the WJ-7B fastener as a constant stiffness and loss factor, one value for each of the paper's temperatures.
+    """Pad of the WJ-7B fastener: constant stiffness and loss factor at each of the paper's temperatures.
 
     The paper prints neither. These values were identified from its tables 5 and 7 (see `permway reproduce`).
 
@@ -29,10 +30,10 @@ def wj7b(temperature_C: Literal[20, -20, -30] = 20) -> Hysteretic:
     temperature_C : 20, -20 or -30
     """
     identified = {20: (62.7e6, 0.122), -20: (108e6, 0.411), -30: (190e6, 0.647)}
-    if temperature_C not in identified:
+    if not isinstance(temperature_C, int | float) or temperature_C not in identified:
         raise InputError(
             "the paper has no such temperature",
-            where="wj7b.temperature_C",
+            where="temperature_C",
             value=temperature_C,
             remedy="use 20, -20 or -30, or a law that depends on temperature",
         )
@@ -68,11 +69,11 @@ class SlabTrackViaduct(FrozenModel):
 
     model: Literal["half", "full"] = "half"
     girder: Literal["elastic_bearings", "pinned"] = "elastic_bearings"
-    spans: int = Field(default=1, ge=1, le=1000)
-    fasteners: int = Field(default=51, ge=1, le=1000)
-    fastener_spacing_m: PositiveFloat = SPACING_M
-    layer_springs: int | None = Field(default=None, ge=2, le=1000)
-    modes: int | None = Field(default=None, ge=1, le=10_000)
+    spans: int = Field(default=1, ge=1, le=1000, strict=True)
+    fasteners: int = Field(default=51, ge=1, le=1000, strict=True)
+    fastener_spacing_m: Number = Field(default=SPACING_M, gt=0.0)
+    layer_springs: int | None = Field(default=None, ge=2, le=1000, strict=True)
+    modes: int | None = Field(default=None, ge=1, le=10_000, strict=True)
     pad: AnyLaw = Field(default_factory=wj7b)
 
     def line(self) -> Line:
@@ -87,7 +88,7 @@ class SlabTrackViaduct(FrozenModel):
         if reach > SPAN_M:
             raise InputError(
                 f"{self.fasteners} fasteners at {self.fastener_spacing_m:g} m do not fit on {SPAN_M:g} m",
-                where="line.options.fasteners",
+                where="fasteners",
                 value=self.fasteners,
                 remedy="take fewer, or closer ones",
             )
@@ -173,8 +174,15 @@ def _deck(
 
 def slab_track_viaduct_32m(**options: Any) -> Line:
     """The paper's line; options as in :class:`SlabTrackViaduct`."""
-    return SlabTrackViaduct(**options).line()
+    try:
+        chosen = SlabTrackViaduct.model_validate(options)
+    except ValidationError as error:
+        raise model_error(error, options, "") from error
+    return chosen.line()
 
 
 LINES: dict[str, Callable[..., Line]] = {"slab_track_viaduct_32m": slab_track_viaduct_32m}
 """Lines by the name that a model file uses."""
+
+LAWS: dict[str, Callable[..., Hysteretic]] = {"wj7b": wj7b}
+"""Laws by the name that a model file uses."""

@@ -1,0 +1,1 @@
+"""Responses: receptances, pseudo-excitation, decay."""

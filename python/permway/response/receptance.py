@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 import xarray as xr
@@ -13,7 +13,9 @@ from numpy.typing import ArrayLike
 from permway import _core
 from permway.errors import InputError, SolveError
 from permway.laws.base import FrozenModel, Reals
+from permway.model.bodies import Metres
 from permway.model.line import Line
+from permway.response.limits import check_answer, check_dense, check_elements, check_threads
 
 Formulation = Literal["chain", "receptance"]
 Progress = Callable[[int, int], object]
@@ -35,7 +37,7 @@ class Place(FrozenModel):
     """
 
     body: str
-    x_m: float
+    x_m: Metres
     name: str | None = None
 
     @property
@@ -93,44 +95,48 @@ def receptance(
         If the line is singular, not finite or badly conditioned at a frequency.
     """
     frequency = check_sweep(frequency_Hz)
+    for where, chosen, choices in (
+        ("formulation", formulation, get_args(Formulation)),
+        ("on_error", on_error, ("raise", "mark")),
+    ):
+        if chosen not in choices:
+            raise InputError("unknown", where=where, value=chosen, remedy=f"use one of {list(choices)}")
+    check_threads(threads)
     segments = line.segments()
     table = line.joint_table()
     pairs = line.beams()
-    for kind, places in (("forces", forces), ("sensors", sensors)):
-        labels = [p.label for p in places]
-        if len(set(labels)) != len(labels):
-            twice = next(label for label in labels if labels.count(label) > 1)
-            raise InputError("the name stands twice", where=kind, value=twice, remedy="give each its own name")
+    points = {"forces": check_places(line, forces, "forces"), "sensors": check_places(line, sensors, "sensors")}
+    check_answer(frequency.size, len(sensors) + (table.x.size if extensions else 0), len(forces))
+    if formulation == "receptance":
+        check_dense(table)
+    elif frequency.size:
+        check_elements(line, table, np.concatenate([p["x"] for p in points.values()]), float(frequency[-1]))
 
-    def points(kind: str, places: Sequence[Place]) -> dict[str, np.ndarray]:
-        found = [line.locate(p.body, p.x_m, where=f"{kind}.{i} ({p.label})") for i, p in enumerate(places)]
-        return {
-            "body": np.array(found, dtype=np.int64),
-            "x": np.array([p.x_m for p in places], dtype=np.float64),
-        }
-
-    values, joints, failures = _core.solve_line(
-        formulation=formulation,
-        frequencies=frequency,
-        names=[s.name for s in segments],
-        beams={
-            "bending": np.array([b.bending_Nm2 for b, _ in pairs], dtype=np.complex128),
-            "shear": np.array([b.shear_N for b, _ in pairs], dtype=np.complex128),
-            "mass": np.array([b.mass_kg_per_m for b, _ in pairs], dtype=np.float64),
-            "rotary": np.array([b.rotary_kg_m for b, _ in pairs], dtype=np.float64),
-            "interval": np.array([(s.start, s.stop) for _, s in pairs], dtype=np.float64).reshape(-1, 2),
-            "pinned": np.array([b.pinned for b, _ in pairs], dtype=np.bool_).reshape(-1, 2),
-            "modes": np.array([b.modes or 0 for b, _ in pairs], dtype=np.int64),
-        },
-        masses=line.masses_kg(),
-        joints={name: getattr(table, name) for name in ("x", "upper", "lower", "law", "scale")},
-        laws=line.stiffness(frequency, temperature_C),
-        forces=points("forces", forces),
-        sensors=points("sensors", sensors),
-        extensions=extensions,
-        threads=threads or os.cpu_count() or 1,
-        progress=progress,
-    )
+    try:
+        values, joints, failures = _core.solve_line(
+            formulation=formulation,
+            frequencies=frequency,
+            names=[s.name for s in segments],
+            beams={
+                "bending": np.array([b.bending_Nm2 for b, _ in pairs], dtype=np.complex128),
+                "shear": np.array([b.shear_N for b, _ in pairs], dtype=np.complex128),
+                "mass": np.array([b.mass_kg_per_m for b, _ in pairs], dtype=np.float64),
+                "rotary": np.array([b.rotary_kg_m for b, _ in pairs], dtype=np.float64),
+                "interval": np.array([(s.start, s.stop) for _, s in pairs], dtype=np.float64).reshape(-1, 2),
+                "pinned": np.array([b.pinned for b, _ in pairs], dtype=np.bool_).reshape(-1, 2),
+                "modes": np.array([b.modes or 0 for b, _ in pairs], dtype=np.int64),
+            },
+            masses=line.masses_kg(),
+            joints={name: getattr(table, name) for name in ("x", "upper", "lower", "law", "scale")},
+            laws=line.stiffness(frequency, temperature_C),
+            forces=points["forces"],
+            sensors=points["sensors"],
+            extensions=extensions,
+            threads=threads or os.cpu_count() or 1,
+            progress=progress,
+        )
+    except _core.InvalidTables as error:
+        raise InputError(str(error), where="line") from error
     if failures and on_error == "raise":
         more = f" (and {len(failures) - 1} more frequencies)" if len(failures) > 1 else ""
         raise SolveError(failures[0][2] + more)
@@ -157,6 +163,24 @@ def receptance(
         data.coords["joint_x"] = ("joint", table.x, {"units": "m"})
         data.coords["joint_law"] = ("joint", [list(line.laws)[i] for i in table.law])
     return data
+
+
+def check_places(line: Line, places: Sequence[Place], where: str) -> dict[str, np.ndarray]:
+    """Places as the core's columns: segment of each, and x.
+
+    Raises
+    ------
+    InputError
+        For a name that stands twice, and a place that is on no body, off it, or where two beams meet.
+    """
+    labels = [p.label for p in places]
+    for index, label in enumerate(labels):
+        if label in labels[:index]:
+            raise InputError(
+                "the name stands twice", where=f"{where}[{index}]", value=label, remedy="give each its own name"
+            )
+    found = [line.locate(p.body, p.x_m, where=f"{where}[{i}]") for i, p in enumerate(places)]
+    return {"body": np.array(found, dtype=np.int64), "x": np.array([p.x_m for p in places], dtype=np.float64)}
 
 
 def check_sweep(frequency_Hz: ArrayLike) -> Reals:

@@ -66,7 +66,12 @@ def solve(model: Model, *, threads: int | None = None, progress: Progress | None
             )
         )
     data = xr.merge(parts, combine_attrs="drop_conflicts", join="exact")
-    data.attrs = {**parts[-1].attrs, **parts[0].attrs, "title": model.title, "model": model.model_dump_json()}
+    data.attrs = {
+        **parts[-1].attrs,
+        **parts[0].attrs,
+        "title": model.title,
+        "model": model.model_dump_json(by_alias=True),
+    }
     return data
 
 
@@ -81,19 +86,27 @@ def write_dataset(data: xr.Dataset, path: str | Path) -> Path:
         If the place cannot be written.
     """
     path = Path(path)
+    temporary = None
     try:
+        # In the same folder, for only within one file system is a rename a single step.
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
         os.close(handle)
-        try:
-            data.to_netcdf(temporary, engine="h5netcdf", invalid_netcdf=True)
-            os.replace(temporary, path)
-        finally:
-            Path(temporary).unlink(missing_ok=True)
-    except OSError as error:
+        data.to_netcdf(temporary, engine="h5netcdf", invalid_netcdf=True)
+        # mkstemp's files are for the owner alone; a dataset is as public as any other file.
+        Path(temporary).chmod(0o666 & ~_umask())
+        os.replace(temporary, path)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
         raise InputError(
-            "cannot be written",
-            where=str(path),
-            value=error.strerror or str(error),
-            remedy="name a folder that exists",
+            f"cannot be written: {reason}", where=str(path), remedy="name a file in a folder that exists"
         ) from error
+    finally:
+        if temporary is not None:
+            Path(temporary).unlink(missing_ok=True)
     return path
+
+
+def _umask() -> int:
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return mask

@@ -7,14 +7,19 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from pydantic import Field, PositiveFloat
+from pydantic import Field, field_validator
 
 from permway import _core
-from permway.laws.base import FrozenModel
+from permway.errors import InputError, SolveError
+from permway.laws.base import Complexes, FrozenModel, Number, Reals
+from permway.model.bodies import Metres
 from permway.model.contact import ContactStiffness, GivenContact
+from permway.model.faults import fault
 from permway.model.irregularity import AnyIrregularity, Conversion
+from permway.model.irregularity_spectra import check_speed
 from permway.model.line import Line
 from permway.model.vehicle import Vehicle
+from permway.response.limits import check_answer
 from permway.response.pseudo import power_spectrum, pseudo_excitation, wheel_rail_forces
 from permway.response.receptance import (
     CONVENTION,
@@ -44,9 +49,17 @@ class Train(FrozenModel):
 
     vehicle: Vehicle
     contact: ContactStiffness = Field(default_factory=lambda: GivenContact(stiffness_N_per_m=1.3e9))
-    centre_m: float
-    speed_m_per_s: PositiveFloat
+    centre_m: Metres
+    speed_m_per_s: Number
     body: str = "rail"
+
+    @field_validator("speed_m_per_s")
+    @classmethod
+    def _check_speed(cls, speed: float) -> float:
+        try:
+            return check_speed(speed)
+        except InputError as error:
+            raise fault(f"{error.what}: {error.remedy}", value=speed) from error
 
     def wheels(self) -> list[Place]:
         """The contact points, leading wheel first."""
@@ -88,8 +101,8 @@ def train_response(
     -------
     xarray.Dataset
         Receptances at the contacts in m/N (`wheel_receptance`, `track_receptance`, `total_receptance`, each
-        frequency x wheel x wheel_force; `contact_receptance` a scalar), `wheel_rail_force` (complex, N/sqrt(Hz), frequency x
-        wheel) and one-sided densities: `irregularity_psd`, `wheel_rail_force_psd`, and displacement, velocity and
+        frequency x wheel x wheel_force; `contact_receptance` a scalar), `wheel_rail_force` (complex,
+        N/sqrt(Hz), frequency x wheel) and one-sided densities: `irregularity_psd`, `wheel_rail_force_psd`, and displacement, velocity and
         acceleration of the vehicle (frequency x degree) and of the line (frequency x place).
 
     Raises
@@ -102,6 +115,7 @@ def train_response(
     frequency = check_sweep(frequency_Hz)
     wheels = train.wheels()
     places = [*wheels, *sensors]
+    check_answer(frequency.size, 4, len(wheels), len(wheels))
     line_response = receptance(
         line,
         frequency,
@@ -115,15 +129,24 @@ def train_response(
     to_places = line_response["receptance"].values
     track = to_places[:, : len(wheels), :]
     vehicle = train.vehicle
-    wheel = vehicle.wheel_receptance(frequency)
     contact = train.contact.receptance(vehicle.share)
-    density = irregularity.density(frequency, train.speed_m_per_s, conversion)
-    excitation = pseudo_excitation(frequency, density, vehicle.lags_m(), train.speed_m_per_s)
-    force = wheel_rail_forces(wheel, track, contact, excitation, frequency_Hz=frequency)
-    # Compression pushes the rail down and the wheel up.
-    on_vehicle = vehicle.response_to_wheel_force(frequency, -force)
-    on_line = np.einsum("fsw,fw->fs", to_places, force)
-    total = wheel + track + contact * np.eye(len(wheels))
+    # What overflows is found below, with its frequency.
+    with np.errstate(all="ignore"):
+        try:
+            wheel = vehicle.wheel_receptance(frequency)
+        except np.linalg.LinAlgError as error:
+            raise SolveError(f"the vehicle alone is singular between {_band(frequency)}") from error
+        density = irregularity.density(frequency, train.speed_m_per_s, conversion)
+        excitation = pseudo_excitation(frequency, density, vehicle.lags_m(), train.speed_m_per_s)
+        force = wheel_rail_forces(wheel, track, contact, excitation, frequency_Hz=frequency)
+        # Compression pushes the rail down and the wheel up.
+        on_vehicle = vehicle.response_to_wheel_force(frequency, -force)
+        on_line = np.einsum("fsw,fw->fs", to_places, force)
+        total = wheel + track + contact * np.eye(len(wheels))
+
+    def spectrum(response: Complexes, derivatives: int) -> Reals:
+        with np.errstate(all="ignore"):
+            return power_spectrum(response, frequency, derivatives=derivatives)
 
     labels = [p.label for p in places]
     data = xr.Dataset(
@@ -156,7 +179,7 @@ def train_response(
     )
     data["wheel_rail_force_psd"] = (
         ("frequency", "wheel"),
-        power_spectrum(force),
+        spectrum(force, 0),
         {"long_name": "wheel-rail force", "units": "N2/Hz"},
     )
     quantities = (("displacement", "m2/Hz"), ("velocity", "(m/s)2/Hz"), ("acceleration", "(m/s2)2/Hz"))
@@ -164,11 +187,25 @@ def train_response(
         for derivatives, (quantity, units) in enumerate(quantities):
             data[f"{name}_{quantity}_psd"] = (
                 ("frequency", dimension),
-                power_spectrum(response, frequency, derivatives=derivatives),
+                spectrum(response, derivatives),
                 {"long_name": f"{name} {quantity}", "units": units},
             )
+    _check_finite(data)
     # A pitch is an angle; its densities have rad for m.
     pitch = "pitch degrees in rad, rad/s, rad/s2 instead of m, m/s, m/s2"
     for _, (quantity, _units) in enumerate(quantities):
         data[f"vehicle_{quantity}_psd"].attrs["comment"] = pitch
     return data
+
+
+def _check_finite(data: xr.Dataset) -> None:
+    for name, values in data.data_vars.items():
+        if values.dims[:1] != ("frequency",):
+            continue
+        bad = ~np.isfinite(values.values).reshape(values.shape[0], -1).all(axis=1)
+        if bad.any():
+            raise SolveError(f"{name} is not finite at {float(data['frequency'][bad][0]):g} Hz")
+
+
+def _band(frequency: Reals) -> str:
+    return f"{frequency[0]:g} and {frequency[-1]:g} Hz"

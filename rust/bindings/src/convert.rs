@@ -3,7 +3,9 @@
 use num_complex::Complex;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use permway_core::line::{Beam, Body, End, Joint, Line, Point};
-use pyo3::{exceptions::PyValueError, prelude::*};
+use pyo3::{create_exception, exceptions::PyValueError, prelude::*};
+
+create_exception!(_core, InvalidTables, PyValueError, "Tables that do not fit together, or describe no line.");
 
 /// Columns of a table of beams, one row each.
 #[derive(FromPyObject)]
@@ -54,11 +56,11 @@ fn same_length(table: &str, lengths: &[usize]) -> PyResult<usize> {
     if lengths.iter().all(|l| *l == n) {
         return Ok(n);
     }
-    Err(PyValueError::new_err(format!("{table}: the columns have different lengths {lengths:?}")))
+    Err(InvalidTables::new_err(format!("{table}: the columns have different lengths {lengths:?}")))
 }
 
 fn index(value: i64, what: &str) -> PyResult<usize> {
-    usize::try_from(value).map_err(|_| PyValueError::new_err(format!("{what} {value} must not be negative")))
+    usize::try_from(value).map_err(|_| InvalidTables::new_err(format!("{what} {value} must not be negative")))
 }
 
 /// Bodies are the beams, then the masses.
@@ -75,7 +77,10 @@ pub fn line(
         [bending.len(), shear.len(), mass.len(), rotary.len(), interval.nrows(), pinned.nrows(), modes.len()];
     let n = same_length("beams", &lengths)?;
     if n > 0 && (interval.ncols() != 2 || pinned.ncols() != 2) {
-        return Err(PyValueError::new_err("beams: interval and pinned have two columns"));
+        return Err(InvalidTables::new_err("beams: interval and pinned have two columns"));
+    }
+    if modes.iter().any(|m| *m < 0) {
+        return Err(InvalidTables::new_err("beams: a number of modes must not be negative"));
     }
     let end = |p: bool| if p { End::Pinned } else { End::Free };
     let mut bodies = Vec::with_capacity(n);

@@ -1,6 +1,6 @@
 //! One sweep: the interpreter released, Ctrl-C and progress answered while it runs.
 
-use crate::convert::{self, Beams, Joints, Points};
+use crate::convert::{self, Beams, InvalidTables, Joints, Points};
 use num_complex::Complex;
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use permway_core::{
@@ -8,7 +8,7 @@ use permway_core::{
     sweep::{Answer, Control, Formulation, Request, sweep},
 };
 use pyo3::{
-    exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyValueError},
+    exceptions::{PyKeyboardInterrupt, PyRuntimeError},
     prelude::*,
 };
 use std::{
@@ -26,13 +26,17 @@ type Solved<'py> = (
 /// How often a running sweep looks for Ctrl-C, and reports progress.
 const TICK: Duration = Duration::from_millis(50);
 
+/// More threads than any machine has processors are a slip.
+const MOST_THREADS: usize = 1024;
+
 /// Harmonic response of a line to unit forces.
 ///
 /// Bodies are the beams, then the masses; a lower body of -1 is the ground, a shear stiffness of 0
 /// an Euler-Bernoulli beam, 0 modes the closed form. `laws` has shape (frequency, law), N/m.
 /// Returns receptance in m/N, shape (frequency, sensor, force); joint extension, shape (frequency,
 /// joint, force), or None; and the frequencies that failed as (index, kind, message), NaN in the
-/// arrays. Raises ValueError for tables that do not fit together.
+/// arrays. `progress(done, total)` is called now and then, and at the end; an exception from it
+/// stops the sweep. Raises InvalidTables, a ValueError, for tables that do not fit together.
 #[pyfunction]
 #[pyo3(signature = (*, formulation, frequencies, names, beams, masses, joints, laws, forces, sensors, extensions, threads, progress))]
 #[allow(clippy::too_many_arguments)]
@@ -55,13 +59,20 @@ pub fn solve_line<'py>(
         "chain" => Formulation::Chain,
         "receptance" => Formulation::Receptance,
         other => {
-            return Err(PyValueError::new_err(format!("formulation {other:?}: use \"chain\" or \"receptance\"")));
+            return Err(InvalidTables::new_err(format!("formulation {other:?}: use \"chain\" or \"receptance\"")));
         }
     };
+    if !(1..=MOST_THREADS).contains(&threads) {
+        return Err(InvalidTables::new_err(format!("threads {threads}: use 1 to {MOST_THREADS}")));
+    }
     let line = convert::line(names, &beams, &masses, &joints)?;
     let (forces, sensors) = (convert::points("forces", &forces)?, convert::points("sensors", &sensors)?);
     let frequencies = frequencies.as_array().to_vec();
     let n_laws = laws.as_array().ncols();
+    let rows = laws.as_array().nrows();
+    if rows != frequencies.len() {
+        return Err(InvalidTables::new_err(format!("laws: {rows} rows for {} frequencies", frequencies.len())));
+    }
     let laws: Vec<_> = laws.as_array().iter().copied().collect();
     let request = Request {
         line: &line,
@@ -72,10 +83,13 @@ pub fn solve_line<'py>(
         sensors: &sensors,
         formulation,
         joints: extensions,
-        threads: threads.max(1),
+        threads,
     };
     let progress = progress.map(Bound::unbind);
     let answer = py.detach(|| watched(&request, progress.as_ref()))?;
+    if let Some(progress) = &progress {
+        progress.call1(py, (frequencies.len(), frequencies.len()))?;
+    }
     let shape = |rows: usize| [frequencies.len(), rows, forces.len()];
     let failures = answer.failures.iter().map(|(i, e)| (*i, kind(e), e.to_string())).collect();
     let array = |v: Vec<Complex<f64>>, rows| PyArray1::from_vec(py, v).reshape(shape(rows));
@@ -121,7 +135,7 @@ fn watched(request: &Request<'_>, progress: Option<&Py<PyAny>>) -> PyResult<Answ
         match result {
             Ok(Ok(Ok(answer))) => Ok(answer),
             Ok(Ok(Err(CoreError::Cancelled))) => Err(PyKeyboardInterrupt::new_err("cancelled")),
-            Ok(Ok(Err(e))) => Err(PyValueError::new_err(e.to_string())),
+            Ok(Ok(Err(e))) => Err(InvalidTables::new_err(e.to_string())),
             Ok(Err(_)) | Err(_) => {
                 Err(PyRuntimeError::new_err("the core failed unexpectedly; please report the model"))
             }

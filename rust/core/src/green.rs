@@ -3,24 +3,31 @@
 //! The infinite beam's is the paper's equation (4). Ends reflect: to the direct wave come waves
 //! that decay from each end, their amplitudes from the end conditions. All exponentials decay, so
 //! no length and no frequency overflows.
+//!
+//! Where a finite beam is short against its waves these all but cancel: a free one then moves as a
+//! rigid body, each wave by (k L)^-2 as much. There the receptance is composed of the solutions that
+//! meet the conditions of one end each, from [`Transfer`]'s power series, which lose no digits.
 
 use crate::{
     c64,
+    element::Transfer,
     error::CoreError,
     line::{Beam, End},
+    small::{self, M2},
     waves::Waves,
 };
 use faer::{Mat, linalg::solvers::Solve};
 
+/// Longest beam, as a multiple of the steepest wave's length scale, that is composed of end solutions.
+const SHORT: f64 = 2.0;
+
 /// Receptance of one beam at one frequency.
 #[derive(Debug, Clone)]
-pub struct Green {
-    exponents: [c64; 2],
-    direct: [c64; 2],
-    /// Coordinates of the finite ends, -1 at the left and +1 at the right.
-    ends: Vec<(f64, f64)>,
-    /// Symmetric matrix between the decaying waves at the point of response and of force.
-    reflection: Mat<c64>,
+pub enum Green {
+    /// Direct and reflected waves.
+    Waves(Reflected),
+    /// Solutions from both ends.
+    Short(Composed),
 }
 
 impl Green {
@@ -29,6 +36,46 @@ impl Green {
     /// # Errors
     /// `Singular` or `NonFinite` if the end conditions cannot be met.
     pub fn new(beam: &Beam, omega: f64) -> Result<Self, CoreError> {
+        let length = beam.interval[1] - beam.interval[0];
+        if Waves::new(beam, omega).steepest() * length < SHORT {
+            Composed::new(beam, omega).map(Self::Short)
+        } else {
+            Reflected::new(beam, omega).map(Self::Waves)
+        }
+    }
+
+    /// What a place contributes to [`Green::between`]: amplitudes there of the waves that decay from the
+    /// ends, or displacements there of the solutions from both ends.
+    pub fn at(&self, x: f64) -> Vec<c64> {
+        match self {
+            Self::Waves(g) => g.end_waves(x),
+            Self::Short(g) => g.solutions(x),
+        }
+    }
+
+    /// Receptance between `x` and `y`, m/N, given what both contribute.
+    pub fn between(&self, x: f64, y: f64, at_x: &[c64], at_y: &[c64]) -> c64 {
+        match self {
+            Self::Waves(g) => g.between((x - y).abs(), at_x, at_y),
+            Self::Short(g) if x < y => g.between(at_x, at_y),
+            Self::Short(g) => g.between(at_y, at_x),
+        }
+    }
+}
+
+/// Direct and reflected waves of one beam at one frequency.
+#[derive(Debug, Clone)]
+pub struct Reflected {
+    exponents: [c64; 2],
+    direct: [c64; 2],
+    /// Coordinates of the finite ends, -1 at the left and +1 at the right.
+    ends: Vec<(f64, f64)>,
+    /// Symmetric matrix between the decaying waves at the point of response and of force.
+    reflection: Mat<c64>,
+}
+
+impl Reflected {
+    fn new(beam: &Beam, omega: f64) -> Result<Self, CoreError> {
         let w = Waves::new(beam, omega);
         let exponents = w.exponents();
         let states = exponents.map(|l| w.state(l));
@@ -76,25 +123,140 @@ impl Green {
         let reflection = if n == 0 { source } else { -matrix.partial_piv_lu().solve(&source) };
         let finite = |m: &Mat<c64>| (0..n).all(|i| (0..n).all(|j| m[(i, j)].is_finite()));
         if !finite(&reflection) || !direct.iter().all(|d| d.is_finite()) {
-            let frequency = omega / std::f64::consts::TAU;
-            return Err(CoreError::Singular { frequency, place: "the ends of a beam".into() });
+            return Err(singular(omega));
         }
         Ok(Self { exponents, direct, ends, reflection })
     }
 
     /// Amplitudes at x of the waves that decay from the ends.
-    pub fn end_waves(&self, x: f64) -> Vec<c64> {
+    fn end_waves(&self, x: f64) -> Vec<c64> {
         let wave = |(end, side): &(f64, f64)| self.exponents.map(|l| (l * ((end - x) * side)).exp());
         self.ends.iter().flat_map(wave).collect()
     }
 
     /// Receptance at distance `d`, the ends' waves at both points given, m/N.
-    pub fn between(&self, d: f64, at: &[c64], force: &[c64]) -> c64 {
+    fn between(&self, d: f64, at: &[c64], force: &[c64]) -> c64 {
         let mut g: c64 = (0..2).map(|j| self.direct[j] * (self.exponents[j] * d).exp()).sum();
         for (i, a) in at.iter().enumerate() {
             let reflected: c64 = force.iter().enumerate().map(|(j, f)| self.reflection[(i, j)] * f).sum();
             g += a * reflected;
         }
         g
+    }
+}
+
+fn singular(omega: f64) -> CoreError {
+    CoreError::Singular { frequency: omega / std::f64::consts::TAU, place: "the ends of a beam".into() }
+}
+
+/// The two solutions that meet the conditions of each end, of one beam at one frequency.
+///
+/// For a unit force at y the beam moves as a left solution before it and as a right one behind it.
+/// The form `u1 f2 - f1 u2` of two solutions is the same at every place, and vanishes for two of the
+/// same end, so `w(x) = -R(x) M^-1 L(y)`, x > y, with M the form of every left and right solution.
+#[derive(Debug, Clone)]
+pub struct Composed {
+    waves: Waves,
+    interval: [f64; 2],
+    ends: [End; 2],
+    /// -M^-1, right solutions by left ones.
+    coupling: M2,
+}
+
+impl Composed {
+    fn new(beam: &Beam, omega: f64) -> Result<Self, CoreError> {
+        let waves = Waves::new(beam, omega);
+        let across = Transfer::new(&waves, beam.interval[1] - beam.interval[0]);
+        // At the left end, where the left solutions have a unit of what that end leaves free.
+        let form = |free: usize, [u, f]: [[c64; 2]; 2]| match (beam.ends[0], free) {
+            (End::Free, i) => f[i],
+            (End::Pinned, 0) => f[1],
+            (End::Pinned, _) => -u[0],
+        };
+        let right = [0, 1].map(|j| {
+            let ([w, rotation], [force, moment]) = arrive(&across, beam.ends[1], j);
+            // Seen from the right the beam is mirrored: rotation and force change sign.
+            [[w, -rotation], [-force, moment]]
+        });
+        let m = [0, 1].map(|i| [form(i, right[0]), form(i, right[1])]);
+        let (inverse, _) = small::inverse(&m).ok_or_else(|| singular(omega))?;
+        let coupling = inverse.map(|row| row.map(|v| -v));
+        Ok(Self { waves, interval: beam.interval, ends: beam.ends, coupling })
+    }
+
+    /// Displacements at x of the two left and the two right solutions.
+    fn solutions(&self, x: f64) -> Vec<c64> {
+        let from = |end: usize| {
+            let transfer = Transfer::new(&self.waves, (x - self.interval[end]).abs());
+            [0, 1].map(|j| arrive(&transfer, self.ends[end], j).0[0])
+        };
+        [from(0), from(1)].concat()
+    }
+
+    fn between(&self, before: &[c64], behind: &[c64]) -> c64 {
+        (0..2).map(|i| behind[2 + i] * (self.coupling[i][0] * before[0] + self.coupling[i][1] * before[1])).sum()
+    }
+}
+
+/// Displacements and forces beyond a length that starts with unit `j` of what its end leaves free:
+/// displacement and rotation of a free end, rotation and force of a pinned one.
+fn arrive(t: &Transfer, end: End, j: usize) -> ([c64; 2], [c64; 2]) {
+    let column = |m: &M2, j: usize| [m[0][j], m[1][j]];
+    match (end, j) {
+        (End::Free, j) => (column(&t.a, j), column(&t.c, j)),
+        (End::Pinned, 0) => (column(&t.a, 1), column(&t.c, 1)),
+        (End::Pinned, _) => (column(&t.b, 0), column(&t.d, 0)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where both forms hold they agree, for either theory and all ends.
+    #[test]
+    fn forms_agree() {
+        let ends = [End::Free, End::Pinned];
+        for (shear, rotary) in [(None, 0.0), (Some(c64::new(2e9, 2e7)), 40.0)] {
+            for pair in [[0, 0], [0, 1], [1, 0], [1, 1]] {
+                let beam = Beam {
+                    bending: c64::new(3e7, 3e5),
+                    shear,
+                    mass: 600.0,
+                    rotary,
+                    interval: [1.0, 4.0],
+                    ends: pair.map(|i| ends[i]),
+                    modes: None,
+                };
+                let omega = 60.0;
+                let short = Green::Short(Composed::new(&beam, omega).unwrap());
+                let waves = Green::Waves(Reflected::new(&beam, omega).unwrap());
+                for (x, y) in [(1.0, 1.0), (1.3, 3.9), (3.9, 1.3), (2.2, 2.2), (4.0, 1.1)] {
+                    let [a, b] = [&short, &waves].map(|g| g.between(x, y, &g.at(x), &g.at(y)));
+                    assert!((a - b).norm() <= 1e-12 * b.norm() + 1e-20, "{pair:?} {x} {y}: {a} {b}");
+                }
+            }
+        }
+    }
+
+    /// A short free beam moves as a rigid body: G = -(1/m + 12 a b / (m l^2)) / omega^2.
+    #[test]
+    fn rigid_body_limit() {
+        let beam = Beam {
+            bending: c64::new(1.5e11, 3e9),
+            shear: None,
+            mass: 5e4,
+            rotary: 0.0,
+            interval: [0.0, 2.0],
+            ends: [End::Free; 2],
+            modes: None,
+        };
+        let omega = 1e-3;
+        let g = Green::new(&beam, omega).unwrap();
+        for (x, y) in [(0.0, 0.0), (0.2, 1.7), (1.0, 0.5)] {
+            let rigid = -(1.0 + 3.0 * (x - 1.0) * (y - 1.0)) / (1e5 * omega * omega);
+            let value = g.between(x, y, &g.at(x), &g.at(y));
+            assert!((value - rigid).norm() < 1e-13 * rigid.abs(), "{value} {rigid}");
+        }
     }
 }

@@ -97,8 +97,8 @@ impl Dense {
                 fill(&mut g, &|r, c| modes.between(r, c, omega));
             } else {
                 let green = Green::new(beam, omega)?;
-                let waves: Vec<_> = xs.iter().map(|&x| green.end_waves(x)).collect();
-                fill(&mut g, &|r, c| green.between((xs[r] - xs[c]).abs(), &waves[r], &waves[c]));
+                let waves: Vec<_> = xs.iter().map(|&x| green.at(x)).collect();
+                fill(&mut g, &|r, c| green.between(xs[r], xs[c], &waves[r], &waves[c]));
             }
             Ok(g)
         };

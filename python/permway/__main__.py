@@ -1,0 +1,5 @@
+"""`python -m permway`: the command line."""
+
+from permway.cli import main
+
+main()

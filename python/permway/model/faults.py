@@ -1,0 +1,111 @@
+"""Where in a model file a fault lies, and what to say of it."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import PydanticCustomError
+
+from permway.errors import InputError
+from permway.laws.base import FrozenModel, input_error
+
+
+def fault(what: str, *place: str | int, value: object = None) -> ValidationError:
+    """A complaint of a validator about a part of its record, which keeps the part's place.
+
+    Parameters
+    ----------
+    what : str
+        What is wrong and what would be right.
+    *place : str or int
+        Keys and indices from the record down to the part.
+    value : object, optional
+        The value met, if `what` does not say it.
+    """
+    told = PydanticCustomError("fault", "{what}", {"what": what})
+    return ValidationError.from_exception_data("fault", [{"type": told, "loc": place, "input": value}])
+
+
+def model_error(error: ValidationError, table: Mapping[str, Any], place: str) -> InputError:
+    """Turn the first complaint about a table into an `InputError` with its place in that table.
+
+    Parameters
+    ----------
+    error : ValidationError
+    table : mapping
+        What was validated, as the file has it.
+    place : str
+        Name of the table itself; "" for the whole file.
+    """
+    first = error.errors(include_url=False)[0]
+    plain = input_error(error, place=place)
+    where = place_in(table, first["loc"], place)
+    context = first.get("ctx", {})
+    what, value = plain.what, plain.value
+    match first["type"]:
+        case "extra_forbidden":
+            what, value = _unknown(str(first["loc"][-1])), None
+        case "missing":
+            what, value = "missing", None
+        case "float_type" | "float_parsing":
+            what = "must be a number"
+        case "union_tag_invalid":
+            what = f"there is no type {context['tag']!r}; use one of {context['expected_tags']}"
+        case "union_tag_not_found":
+            what, value = "type is missing", None
+    return InputError(what, where=where, value=value, remedy=plain.remedy)
+
+
+def place_in(table: object, location: tuple[str | int, ...], place: str = "") -> str:
+    """Write pydantic's location as a place in the file, without the tags of unions: `line.joints[2].law`."""
+    for part in location:
+        if isinstance(part, int):
+            place, table = f"{place}[{part}]", _item(table, part)
+            continue
+        if isinstance(table, Mapping) and part not in table and part == table.get("type"):
+            continue
+        place, table = f"{place}.{part}" if place else part, _item(table, part)
+    return place or "the file"
+
+
+def _item(table: object, key: str | int) -> object:
+    try:
+        return table[key]  # type: ignore[index]
+    except (KeyError, IndexError, TypeError):
+        return None
+
+
+def refuse_coercion(given: object, built: object, place: str) -> None:
+    """Refuse text and truth values that were taken for numbers.
+
+    Raises
+    ------
+    InputError
+        Where the file has `"2.1e11"` or `true` and the record a number.
+    """
+    if isinstance(built, BaseModel) and isinstance(given, Mapping):
+        for name, field in type(built).model_fields.items():
+            key = field.alias or name
+            if key in given:
+                refuse_coercion(given[key], getattr(built, name), f"{place}.{key}" if place else key)
+    elif isinstance(built, Mapping) and isinstance(given, Mapping):
+        for key, item in built.items():
+            refuse_coercion(given.get(key), item, f"{place}.{key}")
+    elif isinstance(built, tuple) and isinstance(given, list | tuple):
+        for index, (had, item) in enumerate(zip(given, built, strict=False)):
+            refuse_coercion(had, item, f"{place}[{index}]")
+    elif isinstance(built, int | float) and not isinstance(built, bool) and isinstance(given, str | bool):
+        raise InputError("must be a number", where=place, value=given, remedy="write it without quotes")
+
+
+def _unknown(key: str) -> str:
+    close = difflib.get_close_matches(key, sorted(_keys(FrozenModel)), n=1)
+    return "unknown key" + (f"; did you mean {close[0]!r}?" if close else "")
+
+
+def _keys(model: type[BaseModel]) -> set[str]:
+    own = {field.alias or name for name, field in model.model_fields.items()}
+    return own.union(*(_keys(child) for child in model.__subclasses__()))

@@ -1,0 +1,85 @@
+"""What a sweep would need, refused before it begins: memory, and elements shorter than the waves."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from permway.errors import InputError
+from permway.laws.base import Reals
+from permway.model.line import JointTable, Line
+
+MOST_THREADS = 1024
+LARGEST_ANSWER = 16 * 2**30
+"""Bytes of complex numbers that one call returns at most."""
+
+MOST_DENSE_JOINTS = 5000
+"""Joints of the receptance formulation: its dense system then takes 0.4 GB on each thread."""
+
+MOST_ELEMENTS = 1_000_000
+"""Elements of the chain formulation, over all beams."""
+
+_ELEMENT = 4.0
+"""Longest element of the core as a multiple of the steepest wave's length scale."""
+
+
+def check_threads(threads: int | None) -> None:
+    """Refuse a number of threads that is not 1 to :data:`MOST_THREADS`."""
+    if threads is None:
+        return
+    if isinstance(threads, bool) or not isinstance(threads, int) or not 1 <= threads <= MOST_THREADS:
+        raise InputError(
+            "must be a whole number from 1 on",
+            where="threads",
+            value=threads,
+            remedy=f"at most {MOST_THREADS}; leave it out for all processors",
+        )
+
+
+def check_answer(*sizes: int) -> None:
+    """Refuse an answer too large to hold: sizes are frequencies, then rows, then forces."""
+    size = 16 * int(np.prod([float(s) for s in sizes]))
+    if size > LARGEST_ANSWER:
+        raise InputError(
+            f"the answer would take {size / 2**30:.3g} GiB, more than {LARGEST_ANSWER // 2**30}",
+            where="frequencies, sensors and forces",
+            value=sizes,
+            remedy="ask for fewer, or in several calls",
+        )
+
+
+def check_dense(table: JointTable) -> None:
+    """Refuse a line with too many joints for the receptance formulation."""
+    if table.x.size > MOST_DENSE_JOINTS:
+        raise InputError(
+            f"the receptance formulation takes at most {MOST_DENSE_JOINTS} joints",
+            where="formulation",
+            value=f"{table.x.size} joints",
+            remedy='use "chain"',
+        )
+
+
+def check_elements(line: Line, table: JointTable, places_m: Reals, highest_Hz: float) -> None:
+    """Refuse a beam that the highest frequency would cut into too many elements."""
+    finite = [x for s in line.segments() for x in (s.start, s.stop) if np.isfinite(x)]
+    x = np.concatenate([table.x, places_m, np.array(finite, dtype=np.float64)])
+    if not x.size:
+        return
+    omega = 2.0 * np.pi * np.float64(highest_Hz)
+    total = 0.0
+    for beam, segment in line.beams():
+        length = min(segment.stop, float(x.max())) - max(segment.start, float(x.min()))
+        with np.errstate(all="ignore"):
+            # A bound on both roots of z^2 - s z + p = 0, the squared exponents.
+            compliance = np.complex128(1.0 / beam.shear_N if beam.shear_N else 0.0)
+            inertia, rotary = beam.mass_kg_per_m * omega**2, beam.rotary_kg_m * omega**2
+            bending = np.complex128(beam.bending_Nm2)
+            s = abs(rotary / bending + compliance * inertia)
+            p = abs(inertia / bending * (compliance * rotary - 1.0))
+            total += float(np.sqrt(s + np.sqrt(p))) * max(length, 0.0) / _ELEMENT
+        if not total <= MOST_ELEMENTS:
+            raise InputError(
+                f"waves at {highest_Hz:g} Hz are too short: {segment.name} would need {total:.3g} elements",
+                where="frequency_Hz",
+                value=highest_Hz,
+                remedy=f"at most {MOST_ELEMENTS}: lower the highest frequency, or check the beam's units",
+            )

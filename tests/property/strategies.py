@@ -1,0 +1,161 @@
+"""Random lines of railway magnitudes, for properties that hold whatever the line.
+
+Ranges are log-uniform where a magnitude spans decades: rails to box girders, baseplate pads to bearings, loss
+factors 0.005 to 0.5 in everything. Beams of both theories, with or without ends, free or pinned, lie anywhere
+over 60 m and overlap as they happen to.
+"""
+
+import math
+
+from hypothesis import strategies as st
+from permway.laws import FractionalKelvinVoigt, FractionalZener, Hysteretic, KelvinVoigt, Zener
+from permway.model.bodies import Beam, Mass
+from permway.model.joints import GROUND, Joints
+from permway.model.line import Line
+from permway.response.receptance import Place
+
+REACH_M = 30.0
+
+
+def between(low, high):
+    return st.floats(low, high, allow_nan=False)
+
+
+def decades(low, high):
+    """Log-uniform from low to high."""
+    return between(math.log10(low), math.log10(high)).map(lambda exponent: 10.0**exponent)
+
+
+def frequencies(count=3):
+    """Ascending frequencies, 1 to 3000 Hz."""
+    distinct = st.lists(decades(1.0, 3000.0), min_size=1, max_size=count, unique_by=lambda f: round(f, 6))
+    return distinct.map(sorted)
+
+
+@st.composite
+def laws(draw):
+    """A passive law, 1e6 to 3e9 N/m, loss factor 0.005 to 0.5 somewhere in the band."""
+    stiffness, loss = draw(decades(1e6, 3e9)), draw(decades(0.005, 0.5))
+    corner = 2.0 * math.pi * draw(decades(1.0, 3000.0))
+    kind = draw(st.sampled_from(["hysteretic", "kelvin_voigt", "zener", "fractional_kelvin_voigt", "fractional_zener"]))
+    if kind == "hysteretic":
+        return Hysteretic(stiffness=stiffness, loss_factor=loss)
+    if kind == "kelvin_voigt":
+        return KelvinVoigt(stiffness=stiffness, damping=stiffness * loss / corner)
+    if kind == "zener":
+        return Zener(relaxed=stiffness, unrelaxed=stiffness * (1.0 + 2.0 * loss), relaxation_time_s=1.0 / corner)
+    order = draw(between(0.1, 0.9))
+    if kind == "fractional_kelvin_voigt":
+        return FractionalKelvinVoigt(stiffness=stiffness, coefficient=stiffness * loss / corner**order, order=order)
+    return FractionalZener(
+        relaxed=stiffness, unrelaxed=stiffness * (1.0 + 4.0 * loss), relaxation_time_s=1.0 / corner, order=order
+    )
+
+
+@st.composite
+def beams(draw, *, finite=None, lossless=False):
+    """A rail, slab, base plate or girder: 0.1 to 3 m high, up to 3 m wide, 20 to 210 GPa, 5 to 50 heights long.
+
+    A block shorter than five heights is no beam.
+    """
+    modulus, height = draw(decades(2e10, 2.1e11)), draw(decades(0.1, 3.0))
+    area = height * draw(decades(0.25 * height, 3.0))
+    # From a solid section (1/12) towards all of it in two flanges (1/4).
+    second = area * height**2 * draw(between(1.0 / 12.0, 0.2))
+    timoshenko, with_ends = draw(st.booleans()), draw(st.booleans()) if finite is None else finite
+    interval = None
+    if with_ends:
+        start = round(draw(between(-REACH_M, REACH_M)), 3)
+        interval = ((start, round(start + height * draw(decades(5.0, 50.0)), 3)),)
+    return Beam(
+        theory="timoshenko" if timoshenko else "euler",
+        youngs_modulus_Pa=modulus,
+        second_moment_m4=second,
+        density_kg_per_m3=draw(between(2300.0, 7850.0)),
+        area_m2=area,
+        shear_modulus_Pa=modulus / draw(between(2.3, 2.7)) if timoshenko else None,
+        shear_coefficient=draw(between(0.3, 0.87)) if timoshenko else None,
+        loss_factor=0.0 if lossless else draw(decades(0.005, 0.5)),
+        intervals_m=interval,
+        ends=(draw(_ENDS), draw(_ENDS)),
+    )
+
+
+_ENDS = st.sampled_from(["free", "pinned"])
+
+
+def extent(body):
+    """Where a beam can be joined or pushed: not within 5 % of a pin, which does not move and carries any load."""
+    if body.intervals_m is None:
+        return -REACH_M, REACH_M
+    (start, stop), (left, right) = body.intervals_m[0], body.pinned
+    margin = 0.05 * (stop - start)
+    return start + left * margin, stop - right * margin
+
+
+def station(draw, start, stop):
+    """A place between two, to the millimetre, and often at one of them."""
+    return min(max(round(start + draw(between(0.0, 1.0)) * (stop - start), 3), start), stop)
+
+
+@st.composite
+def layers(draw, bodies, laws, upper, lower):
+    """Joints of one law at one to six stations that both beams, or beam and ground, reach; none if they do not meet."""
+    reaches = [extent(bodies[name]) for name in (upper, lower) if name != GROUND]
+    start, stop = max(r[0] for r in reaches), min(r[1] for r in reaches)
+    if start > stop:
+        return []
+    at = sorted({station(draw, start, stop) for _ in range(draw(st.integers(1, 6)))})
+    return [_joints(draw, laws, upper, lower, at)]
+
+
+def _joints(draw, laws, upper, lower, at):
+    return Joints(between=(upper, lower), law=draw(st.sampled_from(laws)), at=tuple(at), scale=draw(decades(0.1, 3.0)))
+
+
+@st.composite
+def lines(draw, *, finite=None, lossless=False):
+    """One to five beams, up to three masses at one station each, and joints between them and to the ground."""
+    materials = {f"law{i}": law for i, law in enumerate(draw(st.lists(laws(), min_size=1, max_size=3)))}
+    names = sorted(materials)
+    shapes = st.lists(beams(finite=finite, lossless=lossless), min_size=1, max_size=5)
+    bodies = {f"beam{i}": beam for i, beam in enumerate(draw(shapes))}
+    joints = []
+    for name in bodies:
+        for _ in range(draw(st.integers(0, 2))):
+            below = draw(st.sampled_from([GROUND, *(other for other in bodies if other != name)]))
+            joints += draw(layers(bodies, names, name, below))
+    for i, mass in enumerate(draw(st.lists(decades(20.0, 20_000.0), max_size=3))):
+        above = draw(st.sampled_from(_beams(bodies)))
+        x = station(draw, *extent(bodies[above]))
+        bodies[f"mass{i}"] = Mass(mass_kg=mass)
+        joints.append(_joints(draw, names, above, f"mass{i}", [x]))
+        if draw(st.booleans()):
+            joints.append(_joints(draw, names, f"mass{i}", GROUND, [x]))
+    return Line(bodies=bodies, joints=tuple(joints), laws=materials)
+
+
+def _beams(bodies):
+    return [name for name, body in bodies.items() if isinstance(body, Beam)]
+
+
+@st.composite
+def places(draw, line, count=4):
+    """Distinct places on beams anywhere, on masses where they are joined."""
+    found = set()
+    for _ in range(draw(st.integers(1, count))):
+        name = draw(st.sampled_from(sorted(line.bodies)))
+        body = line.bodies[name]
+        if isinstance(body, Mass):
+            x = next(layer.at[0] for layer in line.joints if name in layer.between)
+        else:
+            x = station(draw, *extent(body))
+        found.add((name, x))
+    return [Place(body=name, x_m=x, name=f"place{i}") for i, (name, x) in enumerate(sorted(found))]
+
+
+@st.composite
+def solvable(draw, **options):
+    """A line, places on it and frequencies."""
+    line = draw(lines(**options))
+    return line, draw(places(line)), draw(frequencies())
