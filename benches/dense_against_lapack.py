@@ -4,23 +4,19 @@ The two alternate, round after round, and the least time of each counts, so that
 decide. Both copy the matrix, factor it with partial pivoting and solve one right side.
 """
 
-import os
-
-for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
-    os.environ[name] = "1"
-
 import argparse
 import json
-import platform
 import subprocess
 import time
 from pathlib import Path
 
+from common import HERE, build, machine, one_thread
+
+one_thread()
+
 import numpy as np
-import scipy
 from scipy.linalg import lapack
 
-HERE = Path(__file__).resolve().parent
 ORDERS = (100, 153, 200, 300, 500, 700, 1000)
 
 
@@ -36,17 +32,6 @@ def openblas_ms(n: int, repeat: int) -> tuple[float, float]:
         x, _ = lapack.zgetrs(factor, pivots, load)
         least = min(least, time.perf_counter() - start)
     return 1e3 * least, float(np.abs(matrix @ x - load).max() / np.abs(load).max())
-
-
-def build() -> Path:
-    """Build the faer side; the path of its binary."""
-    command = ["cargo", "build", "--release", "-p", "permway-benches", "--bin", "dense", "--message-format", "json"]
-    done = subprocess.run(command, cwd=HERE.parent, check=True, stdout=subprocess.PIPE, text=True)
-    for line in done.stdout.splitlines():
-        message = json.loads(line)
-        if message.get("executable") and message["target"]["name"] == "dense":
-            return Path(message["executable"])
-    raise SystemExit("cargo built no binary called dense")
 
 
 def faer_ms(binary: Path, n: int, repeat: int) -> dict[str, float]:
@@ -72,33 +57,6 @@ def measure(binary: Path, n: int, rounds: int) -> dict[str, float]:
     return row | {"openblas_residual": max(r for _, r in blas), "faer_residual": max(f["residual"] for f in faer)}
 
 
-def machine() -> dict[str, object]:
-    """Processor and versions."""
-    model = platform.processor()
-    info = Path("/proc/cpuinfo")
-    flags: list[str] = []
-    if info.exists():
-        fields = dict(line.split(":", 1) for line in info.read_text().splitlines() if ":" in line)
-        fields = {key.strip(): value.strip() for key, value in fields.items()}
-        model = fields.get("model name", model)
-        flags = [f for f in ("avx2", "fma", "avx512f") if f in fields.get("flags", "").split()]
-    lock = (HERE.parent / "Cargo.lock").read_text().split("[[package]]")
-    faer = next(part for part in lock if 'name = "faer"' in part).split('version = "')[1].split('"')[0]
-    blas = scipy.show_config(mode="dicts")["Build Dependencies"]["lapack"]
-    rustc = subprocess.run(["rustc", "--version"], check=True, stdout=subprocess.PIPE, text=True).stdout.split()[1]
-    return {
-        "processor": model,
-        "cores": os.cpu_count(),
-        "instructions": flags,
-        "system": platform.system(),
-        "python": platform.python_version(),
-        "scipy": scipy.__version__,
-        "lapack": f"{blas['name']} {blas['version']}",
-        "faer": faer,
-        "rustc": rustc,
-    }
-
-
 def main() -> None:
     """Measure, print the table, write it."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -107,7 +65,7 @@ def main() -> None:
     parser.add_argument("--binary", type=Path, help="the faer side, if already built")
     parser.add_argument("-o", "--output", type=Path, default=HERE / "dense.json", help="default: %(default)s")
     options = parser.parse_args()
-    binary = options.binary or build()
+    binary = options.binary or build("dense")
     print("|    n | OpenBLAS ms | faer ms, fresh | faer ms, reused | ratio fresh | ratio reused | faer Gflop/s |")
     print("|-----:|------------:|---------------:|----------------:|------------:|-------------:|-------------:|")
     rows = []

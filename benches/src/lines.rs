@@ -136,13 +136,4 @@ mod tests {
             }
         }
     }
-
-    /// REFERENCE: mobility 1.35155979e-5 m/s/N at 499.106 Hz.
-    #[test]
-    fn rail_on_supports_is_the_published_one() {
-        let (case, frequency) = (rail_on_supports(), [499.106]);
-        let answer = sweep(&case.request(&frequency, &case.laws, Formulation::Chain, false), &Control::default());
-        let mobility = answer.unwrap().sensors[0].norm() * std::f64::consts::TAU * frequency[0];
-        assert!((mobility / 1.35155979e-5 - 1.0).abs() < 1e-6, "{mobility}");
-    }
 }

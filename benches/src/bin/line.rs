@@ -49,13 +49,18 @@ fn run(arguments: &[String]) -> Result<String, String> {
     };
     let (frequencies, laws) = (lines::frequencies(n), case.law_table(n));
     let request = case.request(&frequencies, &laws, chosen, false);
+    let answer = sweep(&request, &Control::default()).map_err(|e| e.to_string())?;
     let ms = least_ms(repeat, || {
         black_box(sweep(black_box(&request), &Control::default()).is_ok());
     });
     let (joints, per) = (case.line.joints.len(), ms / n as f64);
+    let values = answer.sensors.len() / n;
+    let direct: Vec<String> =
+        answer.sensors.iter().step_by(values).map(|v| format!("[{:e}, {:e}]", v.re, v.im)).collect();
     let memory = peak_memory_kib().map_or("null".into(), |kib| kib.to_string());
     Ok(format!(
         "{{\"line\": \"{line}\", \"formulation\": \"{formulation}\", \"joints\": {joints}, \
-         \"ms_per_frequency\": {per:.6}, \"peak_memory_kib\": {memory}}}"
+         \"ms_per_frequency\": {per:.6}, \"peak_memory_kib\": {memory}, \"direct_m_per_N\": [{}]}}",
+        direct.join(", ")
     ))
 }

@@ -164,7 +164,7 @@ def _check_units(beam: Beam) -> None:
         # A solid square has I = A^2 / 12, a strip a hundred times as wide as high a hundredth of that.
         (
             "area_m2",
-            beam.second_moment_m4 < 1e-6 * beam.area_m2**2,
+            beam.second_moment_m4 < 1e-6 * beam.area_m2 * beam.area_m2,
             f"does not fit second_moment_m4 = {beam.second_moment_m4:g}: give both in metres, not cm2 or mm2",
         ),
     ):

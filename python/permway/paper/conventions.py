@@ -79,8 +79,8 @@ PAPER = Convention(
     name="paper",
     description=(
         "as the paper computed: half model; girder modes simply supported, so that its bearings carry nothing; "
-        "equation (28) as printed, with w_s where the German spectrum has w_c; densities over wavenumber called per "
-        "hertz; Sato below 1 m wavelength"
+        "equation (28) as printed, with w_s where the German spectrum has w_c; densities over wavenumber called "
+        "per hertz; Sato below 1 m wavelength"
     ),
     girder="pinned",
     german="paper_eq28",

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import differential_evolution, least_squares
+from scipy.optimize import Bounds, differential_evolution, least_squares
 
 from permway.laws import (
     FVMP,
@@ -185,8 +185,11 @@ def free_pad(layer: PadLayer, temperature_C: int) -> Hysteretic:
     def pad(p: Reals) -> Hysteretic:
         return Hysteretic(stiffness=float(np.exp(p[0])), loss_factor=float(np.exp(p[1])))
 
-    starts = [(math.log(k), math.log(eta)) for k in (5e7, 1e8, 2e8) for eta in (0.1, 0.4, 0.7)]
-    fits = [least_squares(lambda p: residuals(layer, pad(p), temperature_C), s, diff_step=1e-4) for s in starts]
+    def off(p: Reals) -> Reals:
+        return residuals(layer, pad(p), temperature_C)
+
+    starts = [np.log([k, eta]) for k in (5e7, 1e8, 2e8) for eta in (0.1, 0.4, 0.7)]
+    fits = [least_squares(off, start, diff_step=np.full(2, 1e-4)) for start in starts]
     return pad(min(fits, key=lambda fit: float(fit.cost)).x)
 
 
@@ -233,13 +236,20 @@ def one_law(
         # Different seeds end in different valleys: the aims leave the law's shape away from the peaks open.
         starts.append(
             differential_evolution(
-                near, list(family.box), seed=seed + number, maxiter=40, popsize=5, polish=False, init="sobol"
+                near, Bounds(low, high), seed=seed + number, maxiter=40, popsize=5, polish=False, init="sobol"
             ).x
         )
     best = None
     for start in starts:
         inside = np.clip(start, low + 1e-6 * (high - low), high - 1e-6 * (high - low))
-        fit = least_squares(on_tables, inside, bounds=(low, high), diff_step=1e-5, x_scale=high - low, max_nfev=60)
+        fit = least_squares(
+            on_tables,
+            inside,
+            bounds=(low, high),
+            diff_step=np.full(low.size, 1e-5),
+            x_scale=high - low,
+            max_nfev=60,
+        )
         if best is None or fit.cost < best.cost:
             best = fit
     assert best is not None

@@ -1,7 +1,7 @@
 """The paper's train on its line as an exact function of the pads' stiffness.
 
-All pads are alike, so the track's receptance at the wheels follows for any pad stiffness k from one solution without
-pads: with G the receptance between fasteners, rail and slab together, and G = V diag(lambda) V^-1,
+All pads are alike, so the track's receptance at the wheels follows for any pad stiffness k from one solution
+without pads: with G the receptance between fasteners, rail and slab together, and G = V diag(lambda) V^-1,
 `beta(k) = R_ww - R_wn V diag(1 / (lambda + 1/k)) V^-1 R_nw`. A thousand pads then cost what one sweep does.
 """
 

@@ -84,8 +84,8 @@ class Judge:
                 "Figure 7",
                 f"the loss factor at 2 Hz peaks at {GLASS_TRANSITION_C} degC with {LOSS_FACTOR_PEAK}",
                 abs(hot - GLASS_TRANSITION_C) <= 2.0 and abs(peak - LOSS_FACTOR_PEAK) <= 0.05,
-                f"the law behind the tables peaks at {hot:.1f} degC with {peak:.2f} (within -60 to 40 degC); the tables "
-                f"ask for {float(factor[0, 84]):.2f} at -30 degC and 85 Hz already, above the highest loss factor measured",
+                f"the law behind the tables peaks at {hot:.1f} degC with {peak:.2f} (within -60 to 40 degC); "
+                f"the tables ask for {float(factor[0, 84]):.2f} at -30 degC and 85 Hz, above the highest measured",
             ),
             Statement(
                 "Figure 7",
@@ -157,13 +157,14 @@ class Judge:
                 ),
             ]
         wheel = np.abs(self.runs[20]["wheel_receptance"].sel(wheel="wheel1", wheel_force="wheel1").values)
+        rises = np.count_nonzero(np.diff(wheel) > 0)
         found.insert(
             0,
             Statement(
                 "Figure 11",
                 "the wheel's flexibility is largest at 1 Hz and falls all the way to 200 Hz",
                 bool(np.argmax(wheel) == 0 and (np.diff(wheel) < 0).all()),
-                f"largest at {self.f[np.argmax(wheel)]:g} Hz; rises again in {int((np.diff(wheel) > 0).sum())} of 199 steps",
+                f"largest at {self.f[np.argmax(wheel)]:g} Hz; rises in {rises} of 199 steps",
             ),
         )
         track = np.abs(self.runs[20]["track_receptance"].sel(wheel="wheel1", wheel_force="wheel1").values)
@@ -186,8 +187,8 @@ class Judge:
                 "the colder, the smaller the minimum of the total flexibility",
                 minima[0].value > minima[1].value > minima[2].value,
                 ", ".join(f"{m.value:.2e} m/N at {t} degC" for m, t in zip(minima, TEMPERATURES_C, strict=True))
-                + f"; Table 5 says the same: its forces and the irregularity ask for a minimum {self._minimum_by_table_5():.2f} "
-                "times larger at -20 than at 20 degC, for the loss factor fills it",
+                + "; Table 5 says the same: its forces and the irregularity ask for one "
+                f"{self._minimum_by_table_5():.2f} times larger at -20 than at 20 degC: the loss factor fills it",
             ),
         ]
         return found
@@ -199,7 +200,7 @@ class Judge:
             row = next(r for r in PRINTED if r.quantity == "force" and r.temperature_C == t)
             profile = float(self.runs[t]["irregularity_psd"].sel(frequency=row.at_Hz)) ** 0.5
             flexibility.append(profile / row.value)
-        return flexibility[1] / flexibility[0]
+        return float(flexibility[1] / flexibility[0])
 
     def _decay(self) -> list[Statement]:
         rates = {t: track_decay(self.runs[t]) for t in TEMPERATURES_C}
@@ -273,11 +274,12 @@ class Judge:
         inside = self.f <= below
         stack = np.array([curves[t] for t in TEMPERATURES_C])
         spread = stack.max(axis=0) / stack.min(axis=0) - 1.0
+        worst = self.f[inside][np.argmax(spread[inside])]
         return Statement(
             figure,
             text,
             bool(spread[inside].max() <= SAME),
-            f"largest difference {100 * spread[inside].max():.1f} %, at {self.f[inside][np.argmax(spread[inside])]:g} Hz",
+            f"largest difference {100 * spread[inside].max():.1f} %, at {worst:g} Hz",
         )
 
     def _ordered(

@@ -102,8 +102,9 @@ def train_response(
     xarray.Dataset
         Receptances at the contacts in m/N (`wheel_receptance`, `track_receptance`, `total_receptance`, each
         frequency x wheel x wheel_force; `contact_receptance` a scalar), `wheel_rail_force` (complex,
-        N/sqrt(Hz), frequency x wheel) and one-sided densities: `irregularity_psd`, `wheel_rail_force_psd`, and displacement, velocity and
-        acceleration of the vehicle (frequency x degree) and of the line (frequency x place).
+        N/sqrt(Hz), frequency x wheel) and one-sided densities: `irregularity_psd`, `wheel_rail_force_psd`, and
+        displacement, velocity and acceleration of the vehicle (frequency x degree) and of the line
+        (frequency x place).
 
     Raises
     ------
