@@ -1,4 +1,4 @@
-"""What the comparisons share: one thread, the Rust binaries, the machine."""
+"""What the comparisons share: the Rust binaries, the machine."""
 
 import ctypes
 import json
@@ -8,12 +8,6 @@ import subprocess
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-
-
-def one_thread() -> None:
-    """Hold OpenBLAS to one thread; before numpy is imported."""
-    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
-        os.environ[name] = "1"
 
 
 def build(name: str) -> Path:
@@ -42,8 +36,7 @@ def _kernel() -> str | None:
 
 def machine() -> dict[str, object]:
     """Processor and versions."""
-    import scipy
-    import scipy.linalg  # noqa: F401  loads OpenBLAS
+    import scipy.linalg
 
     model, flags = platform.processor(), []
     info = Path("/proc/cpuinfo")

@@ -442,17 +442,22 @@ def parent(table, place):
 
 @st.composite
 def mutated(draw):
-    """A good model with one to three places deleted, replaced by anything, or swapped."""
+    """A good model with one to three places deleted, replaced, swapped, or numbers made larger or smaller."""
     table = copy.deepcopy(draw(st.sampled_from([TABLE, PRESETS])))
     for _ in range(draw(st.integers(1, 3))):
         place = draw(st.sampled_from(list(places(table)) or [None]))
         if place is None:
             break
-        change = draw(st.sampled_from(["delete", "replace", "swap"]))
+        change = draw(st.sampled_from(["delete", "replace", "swap", "scale", "scale", "scale"]))
         if change == "delete":
             del parent(table, place)[place[-1]]
         elif change == "replace":
             parent(table, place)[place[-1]] = copy.deepcopy(draw(HOSTILE))
+        elif change == "scale":
+            numbers = [p for p in places(table) if type(parent(table, p)[p[-1]]) is float]
+            place = draw(st.sampled_from(numbers or [place]))
+            if numbers:
+                parent(table, place)[place[-1]] *= 10.0 ** draw(st.integers(-12, 12))
         else:
             other = draw(st.sampled_from(list(places(table))))
             value = copy.deepcopy(parent(table, other)[other[-1]])

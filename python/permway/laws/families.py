@@ -41,6 +41,11 @@ class Scales:
         return self.lg_low - 3.0, self.lg_high + 3.0
 
     @property
+    def faintness(self) -> tuple[float, float]:
+        """Bounds of the logarithm of a modulus at a frequency 1/tau that may lie far below the data."""
+        return self.lg_low - 8.0, self.lg_high + 3.0
+
+    @property
     def time(self) -> tuple[float, float]:
         """Bounds of the logarithm of a relaxation time, s."""
         return -self.lg_omega_high - 8.0, -self.lg_omega_low + 6.0
@@ -272,16 +277,7 @@ _FAMILIES: dict[str, Family] = {
         ),
         _simple(
             "fvmp",
-            # g1 belongs to the frequency 1/tau, which may lie far below the data.
-            lambda z: [
-                z.softness,
-                (z.lg_low - 8.0, z.lg_high + 3.0),
-                _ORDER,
-                z.strength,
-                z.time,
-                _ORDER,
-                (0.0, 0.98),
-            ],
+            lambda z: [z.softness, z.faintness, _ORDER, z.strength, z.time, _ORDER, (0.0, 0.98)],
             _fvmp,
             lambda p: FVMP(**p),
             _fvmp_parameters,

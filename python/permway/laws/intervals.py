@@ -50,7 +50,7 @@ def parameter_table(problem: Problem, x: Reals, jacobian: Reals, square: float) 
     """
     width = problem.bounds[:, 1] - problem.bounds[:, 0]
     bound = np.minimum(x - problem.bounds[:, 0], problem.bounds[:, 1] - x) < _AT_BOUND * width
-    covariance, quantile = _covariance(jacobian, square, ~bound)
+    covariance, quantile = _covariance(jacobian, square)
     own = len(x) - len(problem.shift.bounds)
 
     def named(coordinates: Reals) -> dict[str, float]:
@@ -92,15 +92,14 @@ class _Viewed:
         return _view(self.named(x)[self.name], self.scale)
 
 
-def _covariance(jacobian: Reals, square: float, free: np.ndarray) -> tuple[Reals, float]:
-    rows, columns = jacobian.shape[0], int(free.sum())
-    covariance = np.zeros((len(free), len(free)))
+def _covariance(jacobian: Reals, square: float) -> tuple[Reals, float]:
+    rows, columns = jacobian.shape
     freedom = max(rows - columns, 1)
-    _, singular, right = np.linalg.svd(jacobian[:, free], full_matrices=False)
+    _, singular, right = np.linalg.svd(jacobian, full_matrices=False)
     # A direction the data do not see gets a very large variance, not a missing one.
     singular = np.maximum(singular, 1e-10 * singular.max(initial=1e-300))
-    covariance[np.ix_(free, free)] = (right.T / singular**2) @ right * (square / freedom)
-    return covariance, float(stats.t.ppf(0.5 + 0.5 * _CONFIDENCE, freedom))
+    covariance = (right.T / singular**2) @ right * (square / freedom)
+    return np.asarray(covariance), float(stats.t.ppf(0.5 + 0.5 * _CONFIDENCE, freedom))
 
 
 def _gradient(function: Callable[[Reals], float], x: Reals, width: Reals) -> Reals:

@@ -223,12 +223,14 @@ def model_from_dict(table: Mapping[str, Any]) -> Model:
         filled["line"] = _line(_table(filled["line"], "line"))
     if "train" in filled:
         filled["train"] = _train(_table(filled["train"], "train"))
-    try:
-        model = Model.model_validate(filled)
-    except ValidationError as error:
-        raise model_error(error, filled, "") from error
-    refuse_coercion(filled, model, "")
-    model.check()
+    # Absurd numbers overflow on the way to the check that refuses them.
+    with np.errstate(all="ignore"):
+        try:
+            model = Model.model_validate(filled)
+        except ValidationError as error:
+            raise model_error(error, filled, "") from error
+        refuse_coercion(filled, model, "")
+        model.check()
     return model
 
 
