@@ -172,8 +172,8 @@ def main() -> None:
         ("viaduct, 60 modes", "numpy", (*numpy_command, "viaduct-modes")),
     ]
     rounds = [[run(*command) for *_, command in cases] for _ in range(options.rounds)]
-    print("| line | formulation | ms per frequency | peak memory, MiB | off the line's first row |")
-    print("|------|-------------|-----------------:|-----------------:|-------------------------:|")
+    print("| line | formulation | ms per frequency | peak memory, MiB | difference from the line's first row |")
+    print("|------|-------------|-----------------:|-----------------:|------------------------------------:|")
     rows = []
     for i, (line, formulation, _) in enumerate(cases):
         ms = min(r[i]["ms_per_frequency"] for r in rounds)

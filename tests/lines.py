@@ -30,7 +30,8 @@ def supported(rail, *, count, spacing_m, pad, ballast=None, sleeper_kg=None):
     reach = 0.5 * (count - 1) * spacing_m
     at = Spread(from_m=-reach, to_m=reach, spacing_m=spacing_m)
     if sleeper_kg is None:
-        return Line(bodies={"rail": rail}, joints=(Joints(between=("rail", GROUND), law="pad", at=at),), laws={"pad": pad})
+        pads = Joints(between=("rail", GROUND), law="pad", at=at)
+        return Line(bodies={"rail": rail}, joints=(pads,), laws={"pad": pad})
     bodies, joints = {"rail": rail}, []
     for number, x in enumerate(at.stations()):
         name = f"sleeper{number}"

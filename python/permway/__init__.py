@@ -1,5 +1,88 @@
-"""permway: how a train, its track and the viaduct below vibrate, frequency by frequency."""
+"""permway: how a train, its track and the viaduct below vibrate, frequency by frequency.
+
+SI units; exp(+i omega t); displacement positive down; frequencies in Hz; densities one-sided per hertz.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 from permway._core import __version__
 
-__all__ = ["__version__"]
+if TYPE_CHECKING:
+    from permway.errors import InputError, PermwayError, SolveError
+    from permway.laws import law_from_dict
+    from permway.model.bodies import Beam, Mass
+    from permway.model.file import Model, model_from_dict, read_model
+    from permway.model.joints import Ends, Joints, Spread
+    from permway.model.line import Line
+    from permway.model.presets import slab_track_viaduct_32m, wj7b
+    from permway.model.vehicle import Vehicle
+    from permway.model.vehicle_presets import crh380a
+    from permway.response.decay import decay_rate
+    from permway.response.quantities import accelerance, mobility
+    from permway.response.receptance import Place, receptance
+    from permway.response.solve import solve, write_dataset
+    from permway.response.train import Train, train_response
+
+_HOMES = {
+    "errors": ("InputError", "PermwayError", "SolveError"),
+    "laws": ("law_from_dict",),
+    "model.bodies": ("Beam", "Mass"),
+    "model.file": ("Model", "model_from_dict", "read_model"),
+    "model.joints": ("Ends", "Joints", "Spread"),
+    "model.line": ("Line",),
+    "model.presets": ("slab_track_viaduct_32m", "wj7b"),
+    "model.vehicle": ("Vehicle",),
+    "model.vehicle_presets": ("crh380a",),
+    "response.decay": ("decay_rate",),
+    "response.quantities": ("accelerance", "mobility"),
+    "response.receptance": ("Place", "receptance"),
+    "response.solve": ("solve", "write_dataset"),
+    "response.train": ("Train", "train_response"),
+}
+_HOME = {name: home for home, names in _HOMES.items() for name in names}
+
+__all__ = [
+    "Beam",
+    "Ends",
+    "InputError",
+    "Joints",
+    "Line",
+    "Mass",
+    "Model",
+    "PermwayError",
+    "Place",
+    "SolveError",
+    "Spread",
+    "Train",
+    "Vehicle",
+    "__version__",
+    "accelerance",
+    "crh380a",
+    "decay_rate",
+    "law_from_dict",
+    "mobility",
+    "model_from_dict",
+    "read_model",
+    "receptance",
+    "slab_track_viaduct_32m",
+    "solve",
+    "train_response",
+    "wj7b",
+    "write_dataset",
+]
+
+
+def __getattr__(name: str) -> object:
+    # Names are loaded when first used: importing permway takes no second for what it may not need.
+    if name in _HOME:
+        value: object = getattr(import_module(f"permway.{_HOME[name]}"), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module 'permway' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return __all__

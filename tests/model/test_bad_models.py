@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from permway.errors import InputError, PermwayError, SolveError
+from permway.errors import InputError, SolveError
 from permway.model.file import Frequencies, Model, model_from_dict, read_model
 from permway.model.irregularity import RangeWarning
 from permway.response.solve import solve
@@ -134,8 +134,10 @@ SHORT = PRESET + "[line.options]\n"
 EDITS = [
     # Keys
     ("top-level key", 'title = "A', 'titel = "A', "titel", ["unknown key", "did you mean 'title'?"]),
-    ("deep key", "area_m2 = 4.5", "area_m2 = 4.5\nlos_factor = 0.1", "line.bodies.girder.los_factor", ["'loss_factor'"]),
-    ("key of a law", "stiffness = 6.0e9", "stifness = 6.0e9", "line.laws.bearing.stiffness", ["missing", "1 further"]),
+    ("deep key", "area_m2 = 4.5", "area_m2 = 4.5\nlos_factor = 0.1",
+     "line.bodies.girder.los_factor", ["'loss_factor'"]),
+    ("key of a law", "stiffness = 6.0e9", "stifness = 6.0e9",
+     "line.laws.bearing.stiffness", ["missing", "1 further"]),
     ("missing key", "area_m2 = 7.67e-3\n", "", "line.bodies.rail.area_m2", ["missing"]),
     ("missing table", "[frequencies]\n" + VALUES, "", "frequencies", ["missing"]),
     ("missing type of body", 'type = "mass"\n', "", "line.bodies.sleeper", ["type is missing"]),
@@ -149,15 +151,23 @@ EDITS = [
     ("words for a number", "mass_kg = 150.0", 'mass_kg = "150 kg"',
      "line.bodies.sleeper.mass_kg", ["must be a number", "'150 kg'"]),
     ("number for a table", LINE, "[[line]]\n", "line", ["must be a table"]),
+    ("number for a list", VALUES, "values_Hz = 10.0", "frequencies.values_Hz", ["must be a list", "got 10.0"]),
+    ("name for a table", '[line.laws.bearing]\ntype = "hysteretic"\n',
+     '[line.laws]\nbearing = "stiff"\n[ignored]\n',
+     "line.laws.bearing", ["must be a table", "got 'stiff'"]),
+    ("key of another table", "mass_kg = 150.0", "mass_kg = 150.0\narea_m2 = 0.1",
+     "line.bodies.sleeper.area_m2", ["does not belong in this table"]),
     ("number for a name", 'law = "bearing"', "law = 4", "line.joints[3].law", ["string", "got 4"]),
     ("one body in a joint", 'between = ["girder", "ground"]', 'between = ["girder"]',
      "line.joints[3].between", ["two bodies", "ground", "['girder']"]),
     ("place as a number", "at = [-5.0]", "at = -5.0",
      "line.joints[1].at", ["list of stations", "spacing_m", "got -5.0"]),
-    ("place in words", "at = [-5.0]", 'at = [-5.0, "here"]', "line.joints[1].at[1]", ["must be a number", "'here'"]),
+    ("place in words", "at = [-5.0]", 'at = [-5.0, "here"]',
+     "line.joints[1].at[1]", ["must be a number", "'here'"]),
     ("interval of three", SPANS, "intervals_m = [[0.0, 32.0, 64.0]]",
      "line.bodies.girder.intervals_m[0]", ["[from, to]", "64.0"]),
-    ("kind of end", 'ends = "free"', 'ends = "clamped"', "line.bodies.girder.ends", ['"free" or "pinned"', "'clamped'"]),
+    ("kind of end", 'ends = "free"', 'ends = "clamped"',
+     "line.bodies.girder.ends", ['"free" or "pinned"', "'clamped'"]),
     ("third end", 'ends = "free"', 'ends = ["free", "free", "free"]', "line.bodies.girder.ends", ["for each end"]),
     ("kind of body", 'type = "mass"', 'type = "sprung"', "line.bodies.sleeper", ["'sprung'", "'beam', 'mass'"]),
     ("kind of law", 'type = "hysteretic"', 'type = "spring"', "line.laws.bearing", ["'spring'", "'hysteretic'"]),
@@ -174,7 +184,8 @@ EDITS = [
      "line.laws.bearing.stiffness", ["negative", "got -6000000000.0"]),
     ("no contact", "stiffness_N_per_m = 1.3e9", "stiffness_N_per_m = 0",
      "train.contact.stiffness_N_per_m", ["greater than 0", "got 0"]),
-    ("negative scale", 'at = [-5.0]', "at = [-5.0]\nscale = -1.0", "line.joints[1].scale", ["greater than or equal to 0"]),
+    ("negative scale", 'at = [-5.0]', "at = [-5.0]\nscale = -1.0",
+     "line.joints[1].scale", ["greater than or equal to 0"]),
     ("negative loss", "loss_factor = 0.25", "loss_factor = -0.25",
      "line.laws.bearing", ["creates energy at 10 Hz", "loss is positive"]),
     # Units
@@ -194,7 +205,8 @@ EDITS = [
     ("km/h", "speed_m_per_s = 60.0", "speed_m_per_s = 350.0", "train.speed_m_per_s", ["got 350.0", "97.22 m/s"]),
     ("kelvin", "temperature_C = 20.0\nform", "temperature_C = 293.15\nform",
      "temperature_C", ["got 293.15", "not kelvin"]),
-    ("millimetres along the line", "x_m = 48.0", "x_m = 48e6", "sensors[1].x_m", ["less than or equal to 1000000"]),
+    ("millimetres along the line", "x_m = 48.0", "x_m = 48e6",
+     "sensors[1].x_m", ["less than or equal to 1000000"]),
     ("spacing in kilometres", "spacing_m = 0.6 }", "spacing_m = 0.6e-6 }",
      "line.joints[0].at.spacing_m", ["1.05e+08 stations", "in metres?"]),
     # Names
@@ -202,17 +214,24 @@ EDITS = [
     ("body unknown", 'between = ["rail", "sleeper"]', 'between = ["rail", "slepper"]',
      "line.joints[1].at[0]", ["no such body", "'slepper'", "'sleeper'"]),
     ("body of a sensor", 'body = "girder"\nx_m', 'body = "slab"\nx_m', "sensors[1]", ["no such body", "'slab'"]),
-    ("third of two spans", 'body = "girder"\nx_m', 'body = "girder[3]"\nx_m', "sensors[1]", ["no such body", "[2]"]),
-    ("body of the train", "centre_m = 16.0", 'centre_m = 16.0\nbody = "rayl"', "train.wheels[0]", ["'rayl'", "'rail'"]),
+    ("third of two spans", 'body = "girder"\nx_m', 'body = "girder[3]"\nx_m',
+     "sensors[1]", ["no such body", "[2]"]),
+    ("body of the train", "centre_m = 16.0", 'centre_m = 16.0\nbody = "rayl"',
+     "train.wheels[0]", ["'rayl'", "'rail'"]),
     ("ends of nothing", '{ of = "girder", inset_m = 0.5 }', '{ of = "bridge" }',
      "line.joints[3].at.of", ["'bridge'", "'girder'"]),
     ("name not for a body", "[line.bodies.sleeper]", '[line.bodies."3 sleepers"]',
      "line.bodies.3 sleepers", ["cannot name a body", "letters"]),
-    ("ground as a body", "[line.bodies.sleeper]", "[line.bodies.ground]", "line.bodies.ground", ["cannot name a body"]),
-    ("sensors of one name", 'name = "girder"\n\n[train]', 'name = "rail"\n\n[train]', "sensors[1]", ["stands twice", "'rail'"]),
-    ("preset of a line", LINE, PRESET.replace("32m", "40m"), "line.preset", ["no such preset", "slab_track_viaduct_32m"]),
-    ("preset of a vehicle", 'preset = "crh380a"', 'preset = "tgv"', "train.vehicle.preset", ["'tgv'", "'crh380a'"]),
-    ("preset of a law", LINE, PRESET + '[line.laws.pad]\npreset = "wj8"\n', "line.laws.pad.preset", ["'wj8'", "'wj7b'"]),
+    ("ground as a body", "[line.bodies.sleeper]", "[line.bodies.ground]",
+     "line.bodies.ground", ["cannot name a body"]),
+    ("sensors of one name", 'name = "girder"\n\n[train]', 'name = "rail"\n\n[train]',
+     "sensors[1]", ["stands twice", "'rail'"]),
+    ("preset of a line", LINE, PRESET.replace("32m", "40m"),
+     "line.preset", ["no such preset", "slab_track_viaduct_32m"]),
+    ("preset of a vehicle", 'preset = "crh380a"', 'preset = "tgv"',
+     "train.vehicle.preset", ["'tgv'", "'crh380a'"]),
+    ("preset of a law", LINE, PRESET + '[line.laws.pad]\npreset = "wj8"\n',
+     "line.laws.pad.preset", ["'wj8'", "'wj7b'"]),
     ("temperature of a preset", LINE, PRESET + '[line.laws.pad]\npreset = "wj7b"\ntemperature_C = 10\n',
      "line.laws.pad.temperature_C", ["got 10", "20, -20 or -30"]),
     ("law that a preset has not", LINE, PRESET + '[line.laws.ballast]\ntype = "hysteretic"\nstiffness = 1e8\n',
@@ -223,30 +242,39 @@ EDITS = [
     ("body beside a preset", LINE, PRESET + "[line.bodies.slab]\n", "line.bodies", ["does not go with a preset"]),
     ("options without a preset", "[line.bodies.rail]", "[line.options]\nspans = 2\n[line.bodies.rail]",
      "line.options", ["unknown key"]),
-    ("irregularity unknown", 'type = "german_sato"', 'type = "german"', "irregularity", ["'german'", "'german_low'"]),
+    ("irregularity unknown", 'type = "german_sato"', 'type = "german"',
+     "irregularity", ["'german'", "'german_low'"]),
     # Places
-    ("joint off a body", "to_m = 63.5", "to_m = 65.9", "line.joints[0].at[106]", ["off the girder", "32 to 64 m", "got 64.1"]),
+    ("joint off a body", "to_m = 63.5", "to_m = 65.9",
+     "line.joints[0].at[106]", ["off the girder", "32 to 64 m", "got 64.1"]),
     ("sensor off a body", "x_m = 48.0", "x_m = 70.0", "sensors[1]", ["off the girder", "got 70.0"]),
-    ("sensor where spans meet", "x_m = 48.0", "x_m = 32.0", "sensors[1]", ["['girder[1]', 'girder[2]']", "name the one"]),
-    ("wheels off a body", "centre_m = 16.0", 'centre_m = 9.0\nbody = "girder[1]"', "train.wheels[3]", ["off the girder[1]"]),
+    ("sensor where spans meet", "x_m = 48.0", "x_m = 32.0",
+     "sensors[1]", ["['girder[1]', 'girder[2]']", "name the one"]),
+    ("wheels off a body", "centre_m = 16.0", 'centre_m = 9.0\nbody = "girder[1]"',
+     "train.wheels[3]", ["off the girder[1]"]),
     ("interval reversed", SPANS, "intervals_m = [[32.0, 0.0]]",
      "line.bodies.girder.intervals_m[0]", ["(32, 0)", "left to right"]),
     ("spans overlap", SPANS, "intervals_m = [[0.0, 32.0], [31.0, 64.0]]",
      "line.bodies.girder.intervals_m[1]", ["(31, 64)", "before 32 m"]),
-    ("spacings not whole", "to_m = 63.5", "to_m = 63.7", "line.joints[0].at.to_m", ["105.333 spacings", "nearest to_m is 63.5"]),
+    ("spacings not whole", "to_m = 63.5", "to_m = 63.7",
+     "line.joints[0].at.to_m", ["105.333 spacings", "nearest to_m is 63.5"]),
     ("spread reversed", "to_m = 63.5", "to_m = -63.5", "line.joints[0].at.to_m", ["-63.5 lies left of"]),
-    ("station twice", "at = [-5.0]", "at = [-5.0, -4.4, -5.0]", "line.joints[1].at", ["share a station", "got -5.0"]),
+    ("station twice", "at = [-5.0]", "at = [-5.0, -4.4, -5.0]",
+     "line.joints[1].at", ["share a station", "got -5.0"]),
     ("no station", "at = [-5.0]", "at = []", "line.joints[1].at", ["empty", "at least one"]),
     ("ends of an endless body", '{ of = "girder", inset_m = 0.5 }', '{ of = "rail" }',
      "line.joints[3].at.of", ["rail has no ends", "intervals_m"]),
-    ("ends of a mass", '{ of = "girder", inset_m = 0.5 }', '{ of = "sleeper" }', "line.joints[3].at.of", ["sleeper has no ends"]),
-    ("inset past the middle", "inset_m = 0.5", "inset_m = 16.0", "line.joints[3].at.inset_m", ["32 m long", "got 16.0"]),
+    ("ends of a mass", '{ of = "girder", inset_m = 0.5 }', '{ of = "sleeper" }',
+     "line.joints[3].at.of", ["sleeper has no ends"]),
+    ("inset past the middle", "inset_m = 0.5", "inset_m = 16.0",
+     "line.joints[3].at.inset_m", ["32 m long", "got 16.0"]),
     ("ground above", 'between = ["girder", "ground"]', 'between = ["ground", "girder"]',
      "line.joints[3].between", ["the ground can only be the lower"]),
     ("body to itself", 'between = ["girder", "ground"]', 'between = ["girder", "girder"]',
      "line.joints[3].between", ["both bodies are 'girder'"]),
     ("span to itself", 'between = ["girder", "ground"]\nlaw = "bearing"\nat = { of = "girder", inset_m = 0.5 }',
-     'between = ["girder[1]", "girder"]\nlaw = "bearing"\nat = [5.0]', "line.joints[3].between", ["girder[1] to itself"]),
+     'between = ["girder[1]", "girder"]\nlaw = "bearing"\nat = [5.0]',
+     "line.joints[3].between", ["girder[1] to itself"]),
     ("layer of single springs", "at = [-5.0]", "at = [-5.0]\nlayer_m = [-6.0, -4.0]",
      "line.joints[1].layer_m", ['stiffness_is = "total"']),
     ("layer that ends before", PAD_AT, PAD_AT + '\nstiffness_is = "total"\nlayer_m = [0.0, 32.0]',
@@ -254,9 +282,11 @@ EDITS = [
     ("total at ends", 'at = { of = "girder", inset_m = 0.5 }', 'at = { of = "girder" }\nstiffness_is = "total"',
      "line.joints[3].stiffness_is", ["not its ends"]),
     # Beams
-    ("modes of timoshenko", 'ends = "free"', 'ends = "free"\nmodes = 20\nshear_modulus_Pa = 1e10\nshear_coefficient = 0.8',
+    ("modes of timoshenko", 'ends = "free"',
+     'ends = "free"\nmodes = 20\nshear_modulus_Pa = 1e10\nshear_coefficient = 0.8',
      "line.bodies.girder", ["an euler beam has no shear_modulus_Pa"]),
-    ("shear forgotten", 'theory = "euler"', 'theory = "timoshenko"', "line.bodies.girder", ["needs shear_modulus_Pa"]),
+    ("shear forgotten", 'theory = "euler"', 'theory = "timoshenko"',
+     "line.bodies.girder", ["needs shear_modulus_Pa"]),
     ("modes of an endless beam", "shear_coefficient = 0.4\n", "shear_coefficient = 0.4\nmodes = 20\n",
      "line.bodies.rail.modes", ["a beam with ends"]),
     ("modes of a timoshenko girder", 'theory = "euler"',
@@ -264,33 +294,45 @@ EDITS = [
      "line.bodies.girder.modes", ["for euler beams"]),
     ("half a mode", 'ends = "free"', "modes = 2.5", "line.bodies.girder.modes", ["integer", "got 2.5"]),
     # Frequencies
-    ("0 Hz", VALUES, "values_Hz = [0.0, 50.0]", "frequencies.values_Hz[0]", ["above 0 Hz", "got 0.0", "leave 0 Hz out"]),
-    ("negative frequency", VALUES, "values_Hz = [10.0, -50.0]", "frequencies.values_Hz[1]", ["above 0 Hz", "got -50.0"]),
-    ("unsorted", VALUES, "values_Hz = [10.0, 200.0, 50.0]", "frequencies.values_Hz[2]", ["ascend", "got 50.0", "follows 200 Hz"]),
+    ("0 Hz", VALUES, "values_Hz = [0.0, 50.0]",
+     "frequencies.values_Hz[0]", ["above 0 Hz", "got 0.0", "leave 0 Hz out"]),
+    ("negative frequency", VALUES, "values_Hz = [10.0, -50.0]",
+     "frequencies.values_Hz[1]", ["above 0 Hz", "got -50.0"]),
+    ("unsorted", VALUES, "values_Hz = [10.0, 200.0, 50.0]",
+     "frequencies.values_Hz[2]", ["ascend", "got 50.0", "follows 200 Hz"]),
     ("repeated", VALUES, "values_Hz = [10.0, 10.0]", "frequencies.values_Hz[1]", ["ascend", "drop repetitions"]),
     ("none", VALUES, "values_Hz = []", "frequencies.values_Hz", ["at least 1"]),
     ("both forms", VALUES, VALUES + "\nfrom_Hz = 1.0\nto_Hz = 2.0\npoints = 2", "frequencies", ["not both"]),
     ("neither form", VALUES, "points = 10", "frequencies", ["give values_Hz, or from_Hz and to_Hz"]),
     ("no step", VALUES, "from_Hz = 1.0\nto_Hz = 2.0", "frequencies", ["step_Hz (equal steps)", "points"]),
     ("two steps", VALUES, "from_Hz = 1.0\nto_Hz = 2.0\nstep_Hz = 1.0\npoints = 3", "frequencies", ["give one of"]),
-    ("from above to", VALUES, "from_Hz = 20.0\nto_Hz = 10.0\npoints = 5", "frequencies.to_Hz", ["10 Hz lies below", "20"]),
-    ("too many", VALUES, "from_Hz = 10.0\nto_Hz = 500.0\nstep_Hz = 1e-9", "frequencies.step_Hz", ["more than 10000000"]),
-    ("points between nothing", VALUES, "from_Hz = 10.0\nto_Hz = 10.0\npoints = 5", "frequencies.points", ["5 points do not fit"]),
+    ("from above to", VALUES, "from_Hz = 20.0\nto_Hz = 10.0\npoints = 5",
+     "frequencies.to_Hz", ["10 Hz lies below", "20"]),
+    ("too many", VALUES, "from_Hz = 10.0\nto_Hz = 500.0\nstep_Hz = 1e-9",
+     "frequencies.step_Hz", ["more than 10000000"]),
+    ("points between nothing", VALUES, "from_Hz = 10.0\nto_Hz = 10.0\npoints = 5",
+     "frequencies.points", ["5 points do not fit"]),
     # The parts together
     ("train alone", EXCITATION, "", "the file", ["a train needs an irregularity"]),
     ("irregularity alone", TRAIN, EXCITATION, "the file", ["an irregularity a train"]),
     ("nothing asked", FORCES + SENSORS + TRAIN, "", "the file", ["nothing to compute", "[[forces]]"]),
     ("forces without sensors", SENSORS, "", "the file", ["forces without [[sensors]]"]),
-    ("speed twice", "speed_m_per_s = 60.0", "speed_m_per_s = 60.0\nspeed_km_per_h = 216.0", "train", ["given twice"]),
+    ("speed twice", "speed_m_per_s = 60.0", "speed_m_per_s = 60.0\nspeed_km_per_h = 216.0",
+     "train", ["given twice"]),
     ("speed of light", "speed_m_per_s = 60.0", "speed_km_per_h = 1.08e9", "train.speed_km_per_h", ["at most 540"]),
-    ("bogies overlap", "share = 0.5", "share = 0.5\nwheelbase_m = 20.0", "train.vehicle", ["the bogies would overlap"]),
+    ("bogies overlap", "share = 0.5", "share = 0.5\nwheelbase_m = 20.0",
+     "train.vehicle", ["the bogies would overlap"]),
     ("share of two", "share = 0.5", "share = 2.0", "train.vehicle.share", ["less than or equal to 1", "got 2.0"]),
-    ("no temperature", "temperature_C = 20.0\nform", "form", "line.laws.pad", ["depends on temperature", "degrees Celsius"]),
+    ("no temperature", "temperature_C = 20.0\nform", "form",
+     "line.laws.pad", ["depends on temperature", "degrees Celsius"]),
     ("temperature beyond the shift", "temperature_C = 20.0\nform", "temperature_C = 60.0\nform",
      "line.laws.pad", ["-30 to 50 degC", "got 60.0"]),
-    ("frequency beyond the table", VALUES, "values_Hz = [10.0, 800.0]", "line.laws.ballast", ["5 to 500 Hz", "got 800.0"]),
-    ("columns of a table", "storage = [4.0e7, 5.0e7]", "storage = [4.0e7]", "line.laws.ballast", ["storage has 1 rows"]),
-    ("formulation unknown", 'formulation = "chain"', 'formulation = "fem"', "formulation", ["'chain' or 'receptance'", "'fem'"]),
+    ("frequency beyond the table", VALUES, "values_Hz = [10.0, 800.0]",
+     "line.laws.ballast", ["5 to 500 Hz", "got 800.0"]),
+    ("columns of a table", "storage = [4.0e7, 5.0e7]", "storage = [4.0e7]",
+     "line.laws.ballast", ["storage has 1 rows"]),
+    ("formulation unknown", 'formulation = "chain"', 'formulation = "fem"',
+     "formulation", ["'chain' or 'receptance'", "'fem'"]),
 ]  # fmt: skip
 
 
@@ -339,7 +381,7 @@ def test_directory(tmp_path):
 
 
 def test_name_with_a_nul():
-    with pytest.raises(InputError, match="cannot be read: .*null"):
+    with pytest.raises(InputError, match=r"cannot be read: .*null"):
         read_model("model\0.toml")
 
 
@@ -409,7 +451,9 @@ HOSTILE = st.one_of(
     st.none(),
     st.booleans(),
     st.sampled_from([0, -1, 1, 2, 64, 10**9, 10**400, -0.0, 0.5, 32.0, 5e-324, 1e-3, 1e12, 1e200, 1.7e308]),
-    st.sampled_from([float("nan"), float("inf"), float("-inf"), "", "rail", "ground", "1e3", "\0", "crh380a", "wj7b"]),
+    st.sampled_from(
+        [float("nan"), float("inf"), float("-inf"), "", "rail", "ground", "1e3", "\0", "crh380a", "wj7b"]
+    ),
     st.floats(1e-6, 1e6),
     st.lists(st.floats(-10.0, 70.0), max_size=3),
     st.sampled_from([{}, [], [[]], [[0.0, 64.0]], {"of": "girder"}, {"preset": "wj7b"}, {"type": "beam"}]),
@@ -473,14 +517,12 @@ def test_a_mutated_model_is_read_or_refused_and_a_read_one_solved_or_refused(tab
         warnings.simplefilter("ignore", RangeWarning)
         try:
             model = model_from_dict(table)
-        except InputError as error:
-            assert str(error).startswith(error.where)
+        except InputError:
             return
         assert isinstance(model, Model)
         try:
             data = solve(model.model_copy(update={"frequencies": Frequencies(values_Hz=(20.0, 60.0))}), threads=1)
-        except PermwayError as error:
-            assert isinstance(error, InputError | SolveError)
+        except (InputError, SolveError):
             return
     assert data.attrs["failures"] == ""
     for name, values in data.data_vars.items():

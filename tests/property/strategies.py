@@ -4,21 +4,22 @@ Ranges are log-uniform where a magnitude spans decades: rails to box girders, ba
 factors 0.005 to 0.5 in everything. Beams of both theories, with or without ends, free or pinned, lie anywhere
 over 60 m and overlap as they happen to.
 
-Four bounds are there for rounding's sake, each where the other formulation, against 60 digits, kept 1e-12 or better.
-A free body of mass m has the receptance 1/(m omega^2), and what a joint k leaves of it loses k/(m omega^2) of the dense
-system's digits: hence beams from 50 kg/m and 2 m on, masses from 100 kg on, joints to 9e9 N/m, which at 1 Hz still
-leave nine. The impedance that is marched loses k |H| of them in a joint much stiffer than all that it ties, which the
-same bound keeps, and E I/(d^3 k) at a distance d behind a pin: hence the margin of :func:`extent`.
+Four bounds are there for rounding's sake, each where the other formulation, against 60 digits, kept 1e-12 or
+better. A free body of mass m has the receptance 1/(m omega^2), and what a joint k leaves of it loses k/(m omega^2)
+of the dense system's digits: hence beams from 50 kg/m and 2 m on, masses from 100 kg on, joints to 9e9 N/m, which
+leave nine at 1 Hz. The impedance that is marched loses k |H| in a joint much stiffer than all that it ties, which
+the same bound keeps, and E I/(d^3 k) at a distance d behind a pin: hence the margin of :func:`extent`.
 """
 
 import math
 
+import numpy as np
 from hypothesis import strategies as st
 from permway.laws import FractionalKelvinVoigt, FractionalZener, Hysteretic, KelvinVoigt, Zener
 from permway.model.bodies import Beam, Mass
 from permway.model.joints import GROUND, Joints
 from permway.model.line import Line
-from permway.response.receptance import Place
+from permway.response.receptance import Place, receptance
 
 REACH_M = 30.0
 
@@ -38,12 +39,15 @@ def frequencies(count=3):
     return distinct.map(sorted)
 
 
+KINDS = ["hysteretic", "kelvin_voigt", "zener", "fractional_kelvin_voigt", "fractional_zener"]
+
+
 @st.composite
 def laws(draw):
     """A passive law, 1e6 to 3e9 N/m, loss factor 0.005 to 0.5 somewhere in the band."""
     stiffness, loss = draw(decades(1e6, 3e9)), draw(decades(0.005, 0.5))
     corner = 2.0 * math.pi * draw(decades(1.0, 3000.0))
-    kind = draw(st.sampled_from(["hysteretic", "kelvin_voigt", "zener", "fractional_kelvin_voigt", "fractional_zener"]))
+    kind = draw(st.sampled_from(KINDS))
     if kind == "hysteretic":
         return Hysteretic(stiffness=stiffness, loss_factor=loss)
     if kind == "kelvin_voigt":
@@ -52,7 +56,9 @@ def laws(draw):
         return Zener(relaxed=stiffness, unrelaxed=stiffness * (1.0 + 2.0 * loss), relaxation_time_s=1.0 / corner)
     order = draw(between(0.1, 0.9))
     if kind == "fractional_kelvin_voigt":
-        return FractionalKelvinVoigt(stiffness=stiffness, coefficient=stiffness * loss / corner**order, order=order)
+        return FractionalKelvinVoigt(
+            stiffness=stiffness, coefficient=stiffness * loss / corner**order, order=order
+        )
     return FractionalZener(
         relaxed=stiffness, unrelaxed=stiffness * (1.0 + 4.0 * loss), relaxation_time_s=1.0 / corner, order=order
     )
@@ -72,7 +78,9 @@ def beams(draw, *, finite=None, lossless=False):
     interval = None
     if with_ends:
         start = round(draw(between(-REACH_M, REACH_M)), 3)
-        interval = ((start, round(start + draw(decades(max(5.0 * height, 2.0), max(50.0 * height, 10.0))), 3)),)
+        interval = (
+            (start, round(start + draw(decades(max(5.0 * height, 2.0), min(max(50.0 * height, 10.0), 60.0))), 3)),
+        )
     return Beam(
         theory="timoshenko" if timoshenko else "euler",
         youngs_modulus_Pa=modulus,
@@ -106,7 +114,7 @@ def station(draw, start, stop):
 
 @st.composite
 def layers(draw, bodies, laws, upper, lower):
-    """Joints of one law at one to six stations that both beams, or beam and ground, reach; none if they do not meet."""
+    """Joints of one law at one to six stations that both beams, or beam and ground, reach; none if they part."""
     reaches = [extent(bodies[name]) for name in (upper, lower) if name != GROUND]
     start, stop = max(r[0] for r in reaches), min(r[1] for r in reaches)
     if start > stop:
@@ -116,7 +124,9 @@ def layers(draw, bodies, laws, upper, lower):
 
 
 def _joints(draw, laws, upper, lower, at):
-    return Joints(between=(upper, lower), law=draw(st.sampled_from(laws)), at=tuple(at), scale=draw(decades(0.1, 3.0)))
+    return Joints(
+        between=(upper, lower), law=draw(st.sampled_from(laws)), at=tuple(at), scale=draw(decades(0.1, 3.0))
+    )
 
 
 @st.composite
@@ -165,3 +175,20 @@ def solvable(draw, **options):
     """A line, places on it and frequencies."""
     line = draw(lines(**options))
     return line, draw(places(line)), draw(frequencies())
+
+
+def respond(line, places, frequency, *, formulation="chain"):
+    """Receptances between all places, (F, P, P)."""
+    data = receptance(line, frequency, forces=places, sensors=places, formulation=formulation, threads=1)
+    return data["receptance"].values
+
+
+def both(line, places, frequency):
+    """By either formulation."""
+    return respond(line, places, frequency), respond(line, places, frequency, formulation="receptance")
+
+
+def magnitude(values):
+    """What an error in a receptance is measured by: itself, or the direct ones at its two places if larger."""
+    direct = np.abs(np.diagonal(values, axis1=1, axis2=2))
+    return np.maximum(np.abs(values), np.sqrt(direct[:, :, None] * direct[:, None, :]))

@@ -52,6 +52,10 @@ def model_error(error: ValidationError, table: Mapping[str, Any], place: str) ->
             what, value = "missing", None
         case "float_type" | "float_parsing":
             what = "must be a number"
+        case "tuple_type":
+            what = "must be a list"
+        case "model_type" | "model_attributes_type" | "dict_type":
+            what = "must be a table"
         case "union_tag_invalid":
             what = f"there is no type {context['tag']!r}; use one of {context['expected_tags']}"
         case "union_tag_not_found":
@@ -102,7 +106,10 @@ def refuse_coercion(given: object, built: object, place: str) -> None:
 
 
 def _unknown(key: str) -> str:
-    close = difflib.get_close_matches(key, sorted(_keys(FrozenModel)), n=1)
+    known = _keys(FrozenModel)
+    if key in known:
+        return "does not belong in this table"
+    close = difflib.get_close_matches(key, sorted(known), n=1)
     return "unknown key" + (f"; did you mean {close[0]!r}?" if close else "")
 
 

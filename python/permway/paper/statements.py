@@ -105,8 +105,12 @@ class Judge:
                 all(rises.values()),
                 "on 1 to 200 Hz, -30 to 20 degC: "
                 + ", ".join(f"{n} {'monotonic' if r else 'not monotonic'}" for n, r in rises.items())
-                + f"; where warm and slow, the factor rho T / (rho_s T_s) of (27) lowers the storage as it cools "
-                f"(by up to {100 * drop:.1f} % of it)",
+                + (
+                    f"; where warm and slow, the factor rho T / (rho_s T_s) of (27) lowers the storage as it "
+                    f"cools, by up to {100 * drop:.1f} % of it"
+                    if drop > 0.0005
+                    else ""
+                ),
             ),
         ]
 
@@ -206,7 +210,11 @@ class Judge:
         rates = {t: track_decay(self.runs[t]) for t in TEMPERATURES_C}
         return [
             self._ordered(
-                "Figure 15", "up to 122 Hz the decay rate falls with temperature", rates, (1, 122), rises=False
+                "Figure 15",
+                "up to 122 Hz the decay rate is smaller the colder it is",
+                rates,
+                (1, 122),
+                rises=False,
             ),
             self._ordered(
                 "Figure 15", "from 181 Hz the decay rate grows as it gets colder", rates, (181, 200), rises=True
@@ -246,10 +254,11 @@ class Judge:
                 for t in TEMPERATURES_C
             ]
             spread = max(values) / min(values) - 1.0
+            named = degree.replace("body.", "car body ")
             found.append(
                 Statement(
                     "Figure 17",
-                    f"{degree} at {at:g} Hz differs by {100 * most:g} % between the temperatures",
+                    f"{named} at {at:g} Hz differs by {100 * most:g} % between the temperatures",
                     spread <= 1.25 * most,
                     f"by {100 * spread:.2f} %",
                 )

@@ -173,6 +173,9 @@ def check_places(line: Line, places: Sequence[Place], where: str) -> dict[str, n
     InputError
         For a name that stands twice, and a place that is on no body, off it, or where two beams meet.
     """
+    for index, place in enumerate(places):
+        if not isinstance(place, Place):
+            raise InputError("must be a Place", where=f"{where}[{index}]", value=place)
     labels = [p.label for p in places]
     for index, label in enumerate(labels):
         if label in labels[:index]:

@@ -8,6 +8,7 @@
 //! SI units, `exp(+i omega t)`, displacement positive down, receptance in m/N.
 
 pub mod chain;
+pub mod dense;
 pub mod element;
 pub mod error;
 pub mod green;

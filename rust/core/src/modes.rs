@@ -1,6 +1,10 @@
 //! Receptance as a sum over modes, the paper's equations (6), (8) and (10).
 
-use crate::line::{Beam, End};
+use crate::{
+    c64,
+    line::{Beam, End},
+};
+use faer::Mat;
 
 /// Modes of a finite Euler-Bernoulli beam at given points.
 #[derive(Debug, Clone)]
@@ -52,10 +56,14 @@ impl Modes {
         Self { modes, loss: beam.bending.im / beam.bending.re }
     }
 
-    /// Receptance between points `i` and `j` at angular frequency `omega`, m/N.
-    pub fn between(&self, i: usize, j: usize, omega: f64) -> crate::c64 {
-        let denominator = |m: &Mode| crate::c64::new(m.omega2 - omega * omega, m.omega2 * self.loss);
-        self.modes.iter().map(|m| m.shape[i] * m.shape[j] / denominator(m)).sum()
+    /// Receptances between all points at angular frequency `omega`, m/N.
+    pub fn receptance(&self, omega: f64) -> Mat<c64> {
+        let (points, count) = (self.modes.first().map_or(0, |m| m.shape.len()), self.modes.len());
+        let shapes = Mat::from_fn(points, count, |i, m| c64::new(self.modes[m].shape[i], 0.0));
+        let inverse = |m: &Mode| c64::new(m.omega2 - omega * omega, m.omega2 * self.loss).inv();
+        let weights: Vec<c64> = self.modes.iter().map(inverse).collect();
+        let weighted = Mat::from_fn(count, points, |m, j| weights[m] * self.modes[m].shape[j]);
+        shapes * weighted
     }
 }
 
@@ -107,7 +115,6 @@ fn hinged_shape(b: f64, pinned_left: bool) -> impl Fn(f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::c64;
 
     fn beam(ends: [End; 2]) -> Beam {
         Beam {

@@ -7,20 +7,19 @@
 
 use crate::{
     c64,
+    dense::solve_dense,
     error::CoreError,
     green::Green,
     line::{Body, Line, Point, SAME_PLACE},
     modes::Modes,
 };
-use faer::{Mat, linalg::solvers::Solve};
-
-/// Estimated relative error above which an answer is refused.
-const WORST: f64 = 1e-5;
+use faer::Mat;
 
 /// A line compiled for the dense formulation: the points of each body.
 #[derive(Debug, Clone)]
 pub struct Dense {
     places: Vec<Vec<f64>>,
+    distances: Vec<Distances>,
     modes: Vec<Option<Modes>>,
     joints: Vec<Ends>,
     forces: Vec<Place>,
@@ -36,6 +35,31 @@ struct Ends {
     b: Option<Place>,
     law: usize,
     scale: f64,
+}
+
+/// Distances between the points of a body: with equal spacing there are few distinct ones.
+#[derive(Debug, Clone)]
+struct Distances {
+    distinct: Vec<f64>,
+    /// For each pair (r, c) with c <= r, at r (r + 1) / 2 + c, its place among the distinct.
+    index: Vec<usize>,
+}
+
+impl Distances {
+    fn new(xs: &[f64]) -> Self {
+        let pairs = || (0..xs.len()).flat_map(|r| (0..=r).map(move |c| (xs[r] - xs[c]).abs()));
+        let mut distinct: Vec<f64> = pairs().collect();
+        distinct.sort_by(f64::total_cmp);
+        // Distances that differ by rounding of the coordinates are one.
+        distinct.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
+        let find = |d: f64| {
+            let after = distinct.partition_point(|v| *v < d);
+            let near = |i: usize| distinct.get(i).map_or(f64::INFINITY, |v| (v - d).abs());
+            if after > 0 && near(after - 1) < near(after) { after - 1 } else { after }
+        };
+        let index = pairs().map(find).collect();
+        Self { distinct, index }
+    }
 }
 
 impl Dense {
@@ -72,7 +96,8 @@ impl Dense {
                 Body::Mass(_) => None,
             })
             .collect();
-        Self { places, modes, joints, forces, sensors }
+        let distances = places.iter().map(|xs| Distances::new(xs)).collect();
+        Self { places, distances, modes, joints, forces, sensors }
     }
 
     /// Receptances between all points of all bodies at angular frequency `omega`.
@@ -84,21 +109,20 @@ impl Dense {
                 Body::Mass(m) => return Ok(Mat::from_fn(n, n, |_, _| c64::new(-1.0 / (omega * omega * m), 0.0))),
                 Body::Beam(beam) => beam,
             };
-            let mut g = Mat::zeros(n, n);
-            let fill = |g: &mut Mat<c64>, f: &dyn Fn(usize, usize) -> c64| {
-                for r in 0..n {
-                    for c in 0..=r {
-                        g[(r, c)] = f(r, c);
-                        g[(c, r)] = g[(r, c)];
-                    }
-                }
-            };
             if let Some(modes) = &self.modes[i] {
-                fill(&mut g, &|r, c| modes.between(r, c, omega));
-            } else {
-                let green = Green::new(beam, omega)?;
-                let waves: Vec<_> = xs.iter().map(|&x| green.at(x)).collect();
-                fill(&mut g, &|r, c| green.between(xs[r], xs[c], &waves[r], &waves[c]));
+                return Ok(modes.receptance(omega));
+            }
+            let green = Green::new(beam, omega)?;
+            let direct: Vec<_> = self.distances[i].distinct.iter().map(|&d| green.direct(d)).collect();
+            let waves: Vec<_> = xs.iter().map(|&x| green.end_waves(x)).collect();
+            let reflected: Vec<_> = waves.iter().map(|w| green.reflect(w)).collect();
+            let mut g = Mat::zeros(n, n);
+            for r in 0..n {
+                for c in 0..=r {
+                    let ends: c64 = waves[r].iter().zip(&reflected[c]).map(|(a, b)| a * b).sum();
+                    g[(r, c)] = direct[self.distances[i].index[r * (r + 1) / 2 + c]] + ends;
+                    g[(c, r)] = g[(r, c)];
+                }
             }
             Ok(g)
         };
@@ -136,7 +160,7 @@ impl Dense {
             identity + k[r] * coupling(r, c)
         });
         let load = Mat::from_fn(n, f, |r, c| k[r] * extension(&self.joints[r], self.forces[c]));
-        let tension = solve(&matrix, &load, frequency)?;
+        let tension = solve_dense(&matrix, &load, frequency)?;
         for (s, &at) in self.sensors.iter().enumerate() {
             for (c, &force) in self.forces.iter().enumerate() {
                 let mut u = between(at, force);
@@ -164,44 +188,4 @@ impl Dense {
             Err(CoreError::NonFinite { frequency, place: "the response".into() })
         }
     }
-}
-
-/// Dense solve; refused when rounding in the matrix's own entries would spoil the answer.
-fn solve(matrix: &Mat<c64>, load: &Mat<c64>, frequency: f64) -> Result<Mat<c64>, CoreError> {
-    let (n, f) = (load.nrows(), load.ncols());
-    if n == 0 || f == 0 {
-        return Ok(load.clone());
-    }
-    let lu = matrix.partial_piv_lu();
-    let mut x = lu.solve(load);
-    let place = || "the joints".to_string();
-    if !finite(&x) {
-        // faer's elimination divides by a vanished pivot without a word.
-        return Err(if finite(matrix) && finite(load) {
-            CoreError::Singular { frequency, place: place() }
-        } else {
-            CoreError::NonFinite { frequency, place: place() }
-        });
-    }
-    x += lu.solve(load - matrix * &x);
-    // Each entry is 1 + K G with rounding errors of its terms; what they do to the answer.
-    let worst = |c: usize| (0..n).map(|r| x[(r, c)].norm()).fold(0.0, f64::max);
-    let error = Mat::from_fn(n, f, |r, c| {
-        let row: f64 = (0..n).map(|k| matrix[(r, k)].norm() * x[(k, c)].norm()).sum();
-        c64::new(f64::EPSILON * (row + x[(r, c)].norm()), 0.0)
-    });
-    let error = lu.solve(error);
-    for c in 0..f {
-        let (size, off) = (worst(c), (0..n).map(|r| error[(r, c)].norm()).fold(0.0, f64::max));
-        let estimate = off / size;
-        if size > 0.0 && (estimate.is_nan() || estimate > WORST) {
-            return Err(CoreError::IllConditioned { frequency, place: place(), estimate });
-        }
-    }
-    Ok(x)
-}
-
-/// Whether every entry is finite; faer's norms pass over NaN.
-fn finite(m: &Mat<c64>) -> bool {
-    (0..m.ncols()).all(|j| (0..m.nrows()).all(|i| m[(i, j)].is_finite()))
 }

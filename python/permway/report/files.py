@@ -1,0 +1,90 @@
+"""Writing a report's files: each whole or not at all, and faults said before the work."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+
+from permway.errors import InputError
+
+
+def prepare_folder(folder: Path, names: Iterable[str] = ()) -> Path:
+    """Make a folder, and see that files of these names can be written in it.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if its parent exists.
+    names : iterable of str
+        Files that will be written.
+
+    Returns
+    -------
+    Path
+        The folder.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made or written, or a name in it is taken by a folder.
+    """
+    if not folder.parent.is_dir():
+        raise InputError("there is no such folder", where=str(folder.parent), remedy="make it first")
+    if folder.exists() and not folder.is_dir():
+        raise InputError("is a file, not a folder", where=str(folder), remedy="name another folder")
+    try:
+        folder.mkdir(exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise _unwritable(folder, error) from error
+    for name in names:
+        if (folder / name).is_dir():
+            raise InputError("is a folder, not a file", where=str(folder / name), remedy="name another folder")
+    return folder
+
+
+def write_bytes(path: Path, content: bytes) -> Path:
+    """Write a file whole or not at all.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    temporary = None
+    try:
+        # In the same folder, for only within one file system is a rename a single step.
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        # mkstemp's files are for the owner alone; a report is as public as any other file.
+        Path(temporary).chmod(0o666 & ~_umask())
+        os.replace(temporary, path)
+    except OSError as error:
+        raise _unwritable(path, error) from error
+    finally:
+        if temporary is not None:
+            Path(temporary).unlink(missing_ok=True)
+    return path
+
+
+def write_text(path: Path, text: str) -> Path:
+    """Write a text in UTF-8, whole or not at all. See :func:`write_bytes`."""
+    return write_bytes(path, text.encode("utf-8"))
+
+
+def _unwritable(path: Path, error: OSError) -> InputError:
+    return InputError(
+        f"cannot be written: {error.strerror or error}",
+        where=str(path),
+        remedy="name a place that you may write to",
+    )
+
+
+def _umask() -> int:
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return mask
