@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from permway.model.file import Model, model_from_dict, read_model
     from permway.model.joints import Ends, Joints, Spread
     from permway.model.line import Line
-    from permway.model.presets import slab_track_viaduct_32m, wj7b
+    from permway.model.presets import slab_track_viaduct_32m, wj7b, wj7b_constant
     from permway.model.vehicle import Vehicle
     from permway.model.vehicle_presets import crh380a
     from permway.response.decay import decay_rate
@@ -33,7 +33,7 @@ _HOMES = {
     "model.file": ("Model", "model_from_dict", "read_model"),
     "model.joints": ("Ends", "Joints", "Spread"),
     "model.line": ("Line",),
-    "model.presets": ("slab_track_viaduct_32m", "wj7b"),
+    "model.presets": ("slab_track_viaduct_32m", "wj7b", "wj7b_constant"),
     "model.vehicle": ("Vehicle",),
     "model.vehicle_presets": ("crh380a",),
     "response.decay": ("decay_rate",),
@@ -71,6 +71,7 @@ __all__ = [
     "solve",
     "train_response",
     "wj7b",
+    "wj7b_constant",
     "write_dataset",
 ]
 

@@ -232,7 +232,7 @@ EDITS = [
      "train.vehicle.preset", ["'tgv'", "'crh380a'"]),
     ("preset of a law", LINE, PRESET + '[line.laws.pad]\npreset = "wj8"\n',
      "line.laws.pad.preset", ["'wj8'", "'wj7b'"]),
-    ("temperature of a preset", LINE, PRESET + '[line.laws.pad]\npreset = "wj7b"\ntemperature_C = 10\n',
+    ("temperature of a preset", LINE, PRESET + '[line.laws.pad]\npreset = "wj7b_constant"\ntemperature_C = 10\n',
      "line.laws.pad.temperature_C", ["got 10", "20, -20 or -30"]),
     ("law that a preset has not", LINE, PRESET + '[line.laws.ballast]\ntype = "hysteretic"\nstiffness = 1e8\n',
      "line.laws.ballast", ["no such law", "'mortar'"]),
@@ -463,7 +463,7 @@ PRESETS = {
     "line": {
         "preset": "slab_track_viaduct_32m",
         "options": {"spans": 1, "model": "half", "girder": "pinned", "fasteners": 51, "modes": 30},
-        "laws": {"pad": {"preset": "wj7b", "temperature_C": -20}},
+        "laws": {"pad": {"preset": "wj7b_constant", "temperature_C": -20}},
     },
     "sensors": [{"body": "girder", "x_m": 9.0, "name": "girder"}],
     "formulation": "receptance",

@@ -9,7 +9,7 @@ from permway.model.bodies import Beam, Mass
 from permway.model.irregularity import GermanLow, Sato
 from permway.model.joints import Ends, Joints, Spread
 from permway.model.line import Line
-from permway.model.presets import slab_track_viaduct_32m, wj7b
+from permway.model.presets import slab_track_viaduct_32m, wj7b_constant
 from permway.model.vehicle_presets import crh380a
 from permway.response.decay import decay_rate
 from permway.response.receptance import Place, receptance
@@ -103,8 +103,8 @@ def joined(at, between=("rail", "ground")):
         (lambda: slab_track_viaduct_32m(spans=0), "spans", "greater than or equal to 1 (got 0)"),
         (lambda: slab_track_viaduct_32m(fasteners=90), "fasteners", "do not fit on 32 m"),
         (lambda: slab_track_viaduct_32m(rails=2), "rails", "unknown key"),
-        (lambda: wj7b(5), "temperature_C", "got 5"),
-        (lambda: wj7b([20]), "temperature_C", "got [20]"),
+        (lambda: wj7b_constant(5), "temperature_C", "got 5"),
+        (lambda: wj7b_constant([20]), "temperature_C", "got [20]"),
         (lambda: Train(vehicle=crh380a(), centre_m=0.0, speed_m_per_s=350.0), "Train.speed_m_per_s", "97.22 m/s"),
         (lambda: Train(vehicle=crh380a(), centre_m=0.0, speed_m_per_s=0.0), "Train.speed_m_per_s", "above 0"),
         (

@@ -14,6 +14,7 @@ from pydantic import Field, PositiveFloat, ValidationError, field_validator, mod
 
 from permway.errors import InputError
 from permway.laws.base import FrozenModel, Law, Reals
+from permway.laws.lawfile import load_law
 from permway.model.faults import fault, model_error, refuse_coercion
 from permway.model.irregularity import AnyIrregularity, Conversion
 from permway.model.irregularity_spectra import FASTEST_M_PER_S
@@ -203,15 +204,21 @@ def read_model(path: str | Path) -> Model:
     except (ValueError, RecursionError) as error:
         raise InputError(f"is not TOML: {error}", where=str(path)) from error
     try:
-        return model_from_dict(table)
+        return model_from_dict(table, folder=path.parent)
     except InputError as error:
         raise InputError(
             error.what, where=f"{path}: {error.where}", value=error.value, remedy=error.remedy
         ) from error
 
 
-def model_from_dict(table: Mapping[str, Any]) -> Model:
-    """Build a model from a table, as TOML gives it; presets are filled in.
+def model_from_dict(table: Mapping[str, Any], *, folder: Path | None = None) -> Model:
+    """Build a model from a table, as TOML gives it; presets and law files are filled in.
+
+    Parameters
+    ----------
+    table : mapping
+    folder : path, optional
+        Where the files of laws lie; without it the table must not name any.
 
     Raises
     ------
@@ -220,7 +227,7 @@ def model_from_dict(table: Mapping[str, Any]) -> Model:
     """
     filled = dict(table)
     if "line" in filled:
-        filled["line"] = _line(_table(filled["line"], "line"))
+        filled["line"] = _line(_table(filled["line"], "line"), folder)
     if "train" in filled:
         filled["train"] = _train(_table(filled["train"], "train"))
     # Absurd numbers overflow on the way to the check that refuses them.
@@ -245,9 +252,9 @@ def _table(value: object, where: str) -> dict[str, Any]:
     return dict(value)
 
 
-def _line(table: dict[str, Any]) -> Line | dict[str, Any]:
+def _line(table: dict[str, Any], folder: Path | None) -> Line | dict[str, Any]:
     if isinstance(table.get("laws"), Mapping):
-        table["laws"] = {name: _law(law, f"line.laws.{name}") for name, law in table["laws"].items()}
+        table["laws"] = {name: _law(law, f"line.laws.{name}", folder) for name, law in table["laws"].items()}
     if "preset" not in table:
         return table
     name = table.pop("preset")
@@ -260,7 +267,7 @@ def _line(table: dict[str, Any]) -> Line | dict[str, Any]:
             remedy="a preset takes options and laws",
         )
     if "pad" in options:
-        options["pad"] = _law(options["pad"], "line.options.pad")
+        options["pad"] = _law(options["pad"], "line.options.pad", folder)
     line: Line = _preset(LINES, name, options, "line", "options")
     for law in laws:
         if law not in line.laws:
@@ -278,13 +285,38 @@ def _line(table: dict[str, Any]) -> Line | dict[str, Any]:
     return built
 
 
-def _law(law: object, where: str) -> object:
-    """A law by name, or the table as it is."""
-    if not isinstance(law, Mapping) or "preset" not in law:
+def _law(law: object, where: str, folder: Path | None) -> object:
+    """A law by name or from a file, also within a law made of laws; else the table as it is."""
+    if not isinstance(law, Mapping):
         return law
-    options = dict(law)
-    built: Law = _preset(LAWS, options.pop("preset"), options, where)
-    return built
+    if "preset" in law:
+        options = dict(law)
+        built: Law = _preset(LAWS, options.pop("preset"), options, where)
+        return built
+    if "file" in law:
+        return _law_file(dict(law), where, folder)
+    return {key: _law(part, f"{where}.{key}", folder) for key, part in law.items()}
+
+
+def _law_file(table: dict[str, Any], where: str, folder: Path | None) -> Law:
+    name = table.pop("file")
+    if table:
+        raise InputError("does not go with a file", where=f"{where}.{next(iter(table))}", remedy="name the file alone")
+    if not isinstance(name, str) or not name or "\0" in name:
+        raise InputError("must be the name of a file", where=f"{where}.file", value=name)
+    if folder is None:
+        raise InputError("a table without a folder cannot name a file", where=f"{where}.file", value=name)
+    path = (folder / name).resolve()
+    if not path.is_relative_to(folder.resolve()):
+        raise InputError(
+            "lies outside the model's folder", where=f"{where}.file", value=name, remedy="put it beside the model"
+        )
+    try:
+        return load_law(path)
+    except InputError as error:
+        raise InputError(
+            error.what, where=f"{where}.file: {error.where}", value=error.value, remedy=error.remedy
+        ) from error
 
 
 def _train(table: dict[str, Any]) -> dict[str, Any]:

@@ -14,7 +14,7 @@ import numpy as np
 from permway.laws.base import Complexes, Reals
 from permway.model.joints import Joints
 from permway.model.line import Line
-from permway.model.presets import slab_track_viaduct_32m
+from permway.model.presets import slab_track_viaduct_32m, wj7b_constant
 from permway.paper.conventions import Convention, train
 from permway.paper.readings import Curves
 from permway.response.pseudo import pseudo_excitation
@@ -54,7 +54,7 @@ class PadLayer:
     @classmethod
     def of(cls, convention: Convention, frequency: Reals) -> PadLayer:
         """Solve the line without pads once for all."""
-        whole = slab_track_viaduct_32m(girder=convention.girder)
+        whole = slab_track_viaduct_32m(girder=convention.girder, pad=wj7b_constant())
         fasteners, *others = whole.joints
         stations = fasteners.at
         assert isinstance(stations, tuple)

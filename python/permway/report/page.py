@@ -80,8 +80,9 @@ def _minus(text: str) -> str:
 
 
 def _subscript(text: str) -> Markup:
-    """Subscripts for w_s and its like."""
-    return Markup(re.sub(r"(?<!\w)([A-Za-zρ])_([A-Za-z])(?!\w)", r"\1<sub>\2</sub>", str(escape(text))))
+    """Subscripts and powers for w_s, x^n and their like."""
+    lowered = re.sub(r"(?<!\w)([A-Za-zρ])_([A-Za-z])(?!\w)", r"\1<sub>\2</sub>", str(escape(text)))
+    return Markup(re.sub(r"\^\(?(−?\w)\)?", r"<sup>\1</sup>", lowered))
 
 
 def _figure(result: Reproduction, number: int) -> dict[str, Any]:
@@ -105,7 +106,9 @@ def _figure(result: Reproduction, number: int) -> dict[str, Any]:
             for name, draw in drawn.items()
             if re.sub(r"\D", "", name) == str(number)
         ],
-        "statements": [s for s in result.statements if f"Figure {number}" == re.match(r"Figure \d+", s.figure)[0]],
+        "statements": [
+            s for s in result.statements if re.match(rf"Figure {number}\b|Figure {number}[ab]", s.figure)
+        ],
         "tables": [(name, table(result, name)) for name in _TABLES_AFTER.get(number, [])],
     }
 

@@ -53,6 +53,34 @@ impl Green {
         }
     }
 
+    /// Receptances between all points `xs`, m/N.
+    pub fn between_all(&self, xs: &[f64], distances: &Distances) -> Mat<c64> {
+        let n = xs.len();
+        let at: Vec<_> = xs.iter().map(|&x| self.at(x)).collect();
+        let mut g = Mat::zeros(n, n);
+        let mut fill = |f: &dyn Fn(usize, usize) -> c64| {
+            for r in 0..n {
+                for c in 0..=r {
+                    g[(r, c)] = f(r, c);
+                    g[(c, r)] = g[(r, c)];
+                }
+            }
+        };
+        match self {
+            Self::Short(_) => fill(&|r, c| self.between(xs[r], xs[c], &at[r], &at[c])),
+            Self::Waves(w) => {
+                // Few distances are distinct, and what the ends send back is one product for each force.
+                let direct: Vec<_> = distances.distinct.iter().map(|&d| w.direct(d)).collect();
+                let reflected: Vec<_> = at.iter().map(|a| w.reflect(a)).collect();
+                fill(&|r, c| {
+                    let ends: c64 = at[r].iter().zip(&reflected[c]).map(|(a, b)| a * b).sum();
+                    direct[distances.index[r * (r + 1) / 2 + c]] + ends
+                });
+            }
+        }
+        g
+    }
+
     /// Receptance between `x` and `y`, m/N, given what both contribute.
     pub fn between(&self, x: f64, y: f64, at_x: &[c64], at_y: &[c64]) -> c64 {
         match self {
@@ -134,21 +162,163 @@ impl Reflected {
         self.ends.iter().flat_map(wave).collect()
     }
 
+    /// Receptance at distance `d`, the ends' waves at both points given, m/N.
+    fn between(&self, d: f64, at: &[c64], force: &[c64]) -> c64 {
+        let ends: c64 = at.iter().zip(self.reflect(force)).map(|(a, b)| a * b).sum();
+        self.direct(d) + ends
+    }
+
     /// Receptance of the beam without ends at distance `d`, m/N (paper, equation (4)).
-    pub fn direct(&self, d: f64) -> c64 {
+    fn direct(&self, d: f64) -> c64 {
         (0..2).map(|j| self.direct[j] * (self.exponents[j] * d).exp()).sum()
     }
 
     /// What the ends send back of a force whose waves at them are `force`: its product with the waves at the point
     /// of response is their share of the receptance, m/N.
-    pub fn reflect(&self, force: &[c64]) -> Vec<c64> {
+    fn reflect(&self, force: &[c64]) -> Vec<c64> {
         let n = force.len();
         (0..n).map(|i| (0..n).map(|j| self.reflection[(i, j)] * force[j]).sum()).collect()
     }
 }
 
-// MESSAGE TO THE WORKER ON LITERATURE AND PROPERTY TESTS: a concurrent edit of mine cut the end of this file
-// (Reflected::between, Composed, singular). Please restore yours; `Reflected::between` is now `direct(d)` plus
-// at . reflect(force) so that receptance.rs can tabulate distances (see its `bodies`): keep `direct` and `reflect`
-// and let receptance.rs use them in the Waves case and Composed's own `between` in the Short case. Then run the
-// core's tests. Remove this message.
+/// Distances between the points of a body: with equal spacing there are few distinct ones.
+#[derive(Debug, Clone)]
+pub struct Distances {
+    distinct: Vec<f64>,
+    /// For each pair (r, c) with c <= r, at r (r + 1) / 2 + c, its place among the distinct.
+    index: Vec<usize>,
+}
+
+impl Distances {
+    /// Of the points `xs`, m.
+    pub fn new(xs: &[f64]) -> Self {
+        let pairs = || (0..xs.len()).flat_map(|r| (0..=r).map(move |c| (xs[r] - xs[c]).abs()));
+        let mut distinct: Vec<f64> = pairs().collect();
+        distinct.sort_by(f64::total_cmp);
+        // Distances that differ by rounding of the coordinates are one.
+        distinct.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
+        let find = |d: f64| {
+            let after = distinct.partition_point(|v| *v < d);
+            let near = |i: usize| distinct.get(i).map_or(f64::INFINITY, |v| (v - d).abs());
+            if after > 0 && near(after - 1) < near(after) { after - 1 } else { after }
+        };
+        let index = pairs().map(find).collect();
+        Self { distinct, index }
+    }
+}
+
+fn singular(omega: f64) -> CoreError {
+    CoreError::Singular { frequency: omega / std::f64::consts::TAU, place: "the ends of a beam".into() }
+}
+
+/// The two solutions that meet the conditions of each end, of one beam at one frequency.
+///
+/// For a unit force at y the beam moves as a left solution before it and as a right one behind it.
+/// The form `u1 f2 - f1 u2` of two solutions is the same at every place, and vanishes for two of the
+/// same end, so `w(x) = -R(x) M^-1 L(y)`, x > y, with M the form of every left and right solution.
+#[derive(Debug, Clone)]
+pub struct Composed {
+    waves: Waves,
+    interval: [f64; 2],
+    ends: [End; 2],
+    /// -M^-1, right solutions by left ones.
+    coupling: M2,
+}
+
+impl Composed {
+    fn new(beam: &Beam, omega: f64) -> Result<Self, CoreError> {
+        let waves = Waves::new(beam, omega);
+        let across = Transfer::new(&waves, beam.interval[1] - beam.interval[0]);
+        // At the left end, where the left solutions have a unit of what that end leaves free.
+        let form = |free: usize, [u, f]: [[c64; 2]; 2]| match (beam.ends[0], free) {
+            (End::Free, i) => f[i],
+            (End::Pinned, 0) => f[1],
+            (End::Pinned, _) => -u[0],
+        };
+        let right = [0, 1].map(|j| {
+            let ([w, rotation], [force, moment]) = arrive(&across, beam.ends[1], j);
+            // Seen from the right the beam is mirrored: rotation and force change sign.
+            [[w, -rotation], [-force, moment]]
+        });
+        let m = [0, 1].map(|i| [form(i, right[0]), form(i, right[1])]);
+        let (inverse, _) = small::inverse(&m).ok_or_else(|| singular(omega))?;
+        let coupling = inverse.map(|row| row.map(|v| -v));
+        Ok(Self { waves, interval: beam.interval, ends: beam.ends, coupling })
+    }
+
+    /// Displacements at x of the two left and the two right solutions.
+    fn solutions(&self, x: f64) -> Vec<c64> {
+        let from = |end: usize| {
+            let transfer = Transfer::new(&self.waves, (x - self.interval[end]).abs());
+            [0, 1].map(|j| arrive(&transfer, self.ends[end], j).0[0])
+        };
+        [from(0), from(1)].concat()
+    }
+
+    fn between(&self, before: &[c64], behind: &[c64]) -> c64 {
+        (0..2).map(|i| behind[2 + i] * (self.coupling[i][0] * before[0] + self.coupling[i][1] * before[1])).sum()
+    }
+}
+
+/// Displacements and forces beyond a length that starts with unit `j` of what its end leaves free:
+/// displacement and rotation of a free end, rotation and force of a pinned one.
+fn arrive(t: &Transfer, end: End, j: usize) -> ([c64; 2], [c64; 2]) {
+    let column = |m: &M2, j: usize| [m[0][j], m[1][j]];
+    match (end, j) {
+        (End::Free, j) => (column(&t.a, j), column(&t.c, j)),
+        (End::Pinned, 0) => (column(&t.a, 1), column(&t.c, 1)),
+        (End::Pinned, _) => (column(&t.b, 0), column(&t.d, 0)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where both forms hold they agree, for either theory and all ends.
+    #[test]
+    fn forms_agree() {
+        let ends = [End::Free, End::Pinned];
+        for (shear, rotary) in [(None, 0.0), (Some(c64::new(2e9, 2e7)), 40.0)] {
+            for pair in [[0, 0], [0, 1], [1, 0], [1, 1]] {
+                let beam = Beam {
+                    bending: c64::new(3e7, 3e5),
+                    shear,
+                    mass: 600.0,
+                    rotary,
+                    interval: [1.0, 4.0],
+                    ends: pair.map(|i| ends[i]),
+                    modes: None,
+                };
+                let omega = 60.0;
+                let short = Green::Short(Composed::new(&beam, omega).unwrap());
+                let waves = Green::Waves(Reflected::new(&beam, omega).unwrap());
+                for (x, y) in [(1.0, 1.0), (1.3, 3.9), (3.9, 1.3), (2.2, 2.2), (4.0, 1.1)] {
+                    let [a, b] = [&short, &waves].map(|g| g.between(x, y, &g.at(x), &g.at(y)));
+                    assert!((a - b).norm() <= 1e-12 * b.norm() + 1e-20, "{pair:?} {x} {y}: {a} {b}");
+                }
+            }
+        }
+    }
+
+    /// A short free beam moves as a rigid body: G = -(1/m + 12 a b / (m l^2)) / omega^2.
+    #[test]
+    fn rigid_body_limit() {
+        let beam = Beam {
+            bending: c64::new(1.5e11, 3e9),
+            shear: None,
+            mass: 5e4,
+            rotary: 0.0,
+            interval: [0.0, 2.0],
+            ends: [End::Free; 2],
+            modes: None,
+        };
+        let omega = 1e-3;
+        let g = Green::new(&beam, omega).unwrap();
+        for (x, y) in [(0.0, 0.0), (0.2, 1.7), (1.0, 0.5)] {
+            let rigid = -(1.0 + 3.0 * (x - 1.0) * (y - 1.0)) / (1e5 * omega * omega);
+            let value = g.between(x, y, &g.at(x), &g.at(y));
+            assert!((value - rigid).norm() < 1e-13 * rigid.abs(), "{value} {rigid}");
+        }
+    }
+}

@@ -9,7 +9,7 @@ use crate::{
     c64,
     dense::solve_dense,
     error::CoreError,
-    green::Green,
+    green::{Distances, Green},
     line::{Body, Line, Point, SAME_PLACE},
     modes::Modes,
 };
@@ -35,31 +35,6 @@ struct Ends {
     b: Option<Place>,
     law: usize,
     scale: f64,
-}
-
-/// Distances between the points of a body: with equal spacing there are few distinct ones.
-#[derive(Debug, Clone)]
-struct Distances {
-    distinct: Vec<f64>,
-    /// For each pair (r, c) with c <= r, at r (r + 1) / 2 + c, its place among the distinct.
-    index: Vec<usize>,
-}
-
-impl Distances {
-    fn new(xs: &[f64]) -> Self {
-        let pairs = || (0..xs.len()).flat_map(|r| (0..=r).map(move |c| (xs[r] - xs[c]).abs()));
-        let mut distinct: Vec<f64> = pairs().collect();
-        distinct.sort_by(f64::total_cmp);
-        // Distances that differ by rounding of the coordinates are one.
-        distinct.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
-        let find = |d: f64| {
-            let after = distinct.partition_point(|v| *v < d);
-            let near = |i: usize| distinct.get(i).map_or(f64::INFINITY, |v| (v - d).abs());
-            if after > 0 && near(after - 1) < near(after) { after - 1 } else { after }
-        };
-        let index = pairs().map(find).collect();
-        Self { distinct, index }
-    }
 }
 
 impl Dense {
@@ -113,18 +88,7 @@ impl Dense {
                 return Ok(modes.receptance(omega));
             }
             let green = Green::new(beam, omega)?;
-            let direct: Vec<_> = self.distances[i].distinct.iter().map(|&d| green.direct(d)).collect();
-            let waves: Vec<_> = xs.iter().map(|&x| green.end_waves(x)).collect();
-            let reflected: Vec<_> = waves.iter().map(|w| green.reflect(w)).collect();
-            let mut g = Mat::zeros(n, n);
-            for r in 0..n {
-                for c in 0..=r {
-                    let ends: c64 = waves[r].iter().zip(&reflected[c]).map(|(a, b)| a * b).sum();
-                    g[(r, c)] = direct[self.distances[i].index[r * (r + 1) / 2 + c]] + ends;
-                    g[(c, r)] = g[(r, c)];
-                }
-            }
-            Ok(g)
+            Ok(green.between_all(xs, &self.distances[i]))
         };
         line.bodies.iter().enumerate().map(one).collect()
     }

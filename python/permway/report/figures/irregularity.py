@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from permway.laws.base import Reals
 from permway.model.irregularity import GermanLow, GermanSato, Sato
 from permway.report.figures.style import INK, PART, POWERS, TEMPERATURE, line, logarithmic, panels
 
@@ -18,7 +19,7 @@ def figure_10() -> Any:
     long, short = np.geomspace(2.0 * np.pi / 100.0, 2.0 * np.pi, 120), np.geomspace(2.0 * np.pi, 20.0 * np.pi, 60)
     whole = np.concatenate([long, short * (1.0 + 1e-6)])
     used = GermanSato(form="paper_eq28").wavenumber_density(whole)
-    curves = (
+    curves: tuple[tuple[Reals, Reals, str, str, dict[str, Any]], ...] = (
         (whole, used, "used by the paper", "#c9ced6", {"width": 8}),
         (
             long,

@@ -115,7 +115,7 @@ def _scene(f: Reals, t: Reals, z: Reals, title: str) -> Any:
                 hovertemplate="%{x:.0f} Hz, %{y:.0f} °C: %{z:.3g}<extra></extra>",
             )
         ),
-        height=440,
+        height=400,
     )
     axis = {"gridcolor": "#d5d9df", "backgroundcolor": "white", "showbackground": False, "tickfont": {"size": 11}}
     figure.update_layout(
@@ -125,7 +125,7 @@ def _scene(f: Reals, t: Reals, z: Reals, title: str) -> Any:
             # Cold at the back: the hill rises there and would hide the rest.
             "yaxis": {**axis, "title": {"text": "temperature, °C"}, "nticks": 6},
             "zaxis": {**axis, "title": {"text": title}, "nticks": 6},
-            "camera": {"eye": {"x": -1.55, "y": 1.75, "z": 0.8}, "center": {"x": 0, "y": 0, "z": -0.1}},
+            "camera": {"eye": {"x": -1.5, "y": 1.7, "z": 0.7}, "center": {"x": 0, "y": 0, "z": -0.16}},
             "aspectmode": "manual",
             "aspectratio": {"x": 1.0, "y": 1.0, "z": 0.75},
         },
