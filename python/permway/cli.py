@@ -64,11 +64,34 @@ def _progress(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
 
 
 def _say(result: dict[str, Any], as_json: bool) -> None:
+    """JSON on one line, or a line for each key; lists of records as columns."""
     if as_json:
         typer.echo(json.dumps(result, allow_nan=False))
-    else:
-        for key, value in result.items():
-            typer.echo(f"{key:<12} {value}")
+        return
+    width = max(len(key) for key in result)
+    for key, value in result.items():
+        first, *others = _lines(value)
+        typer.echo(f"{key:<{width}}  {first}".rstrip())
+        for line in others:
+            typer.echo(f"{'':<{width}}  {line}")
+
+
+def _lines(value: object) -> list[str]:
+    if isinstance(value, dict):
+        return [f"{key}: {_text(item)}" for key, item in value.items()]
+    if not isinstance(value, list):
+        return [_text(value)]
+    if not value or not all(isinstance(item, dict) for item in value):
+        return [_text(item) for item in value] or ["none"]
+    rows = [list(value[0]), *([_text(item.get(key, "")) for key in value[0]] for item in value)]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return ["  ".join(f"{cell:<{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows]
+
+
+def _text(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    return ", ".join(_text(item) for item in value) if isinstance(value, list) else str(value)
 
 
 @app.command()

@@ -31,6 +31,8 @@ REFERENCE = (ROOT / "docs" / "model-file.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```toml\n(.*?)^```", REFERENCE, flags=re.MULTILINE | re.DOTALL)
 
 SMALL = """
+temperature_C = 20.0
+
 [frequencies]
 values_Hz = [10.0, 100.0]
 

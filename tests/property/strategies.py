@@ -21,9 +21,13 @@ from permway.laws import FractionalKelvinVoigt, FractionalZener, Hysteretic, Kel
 from permway.model.bodies import Beam, Mass
 from permway.model.joints import GROUND, Joints
 from permway.model.line import Line
+from permway.model.presets import slab_track_viaduct_32m
 from permway.response.receptance import Place, receptance
 
 REACH_M = 30.0
+# The paper's pad at 20 and at -30 degC, as constants.
+SOFT_PAD = Hysteretic(stiffness=62.7e6, loss_factor=0.122)
+STIFF_PAD = Hysteretic(stiffness=190e6, loss_factor=0.647)
 
 
 def between(low, high):
@@ -177,6 +181,11 @@ def solvable(draw, **options):
     """A line, places on it and frequencies."""
     line = draw(lines(**options))
     return line, draw(places(line)), draw(frequencies())
+
+
+def paper_line(*, pad=SOFT_PAD, **options):
+    """The paper's line on pads that need no temperature."""
+    return slab_track_viaduct_32m(pad=pad, **options)
 
 
 def respond(line, places, frequency, *, formulation="chain"):

@@ -7,18 +7,18 @@ from hypothesis import strategies as st
 from permway.model.contact import GivenContact
 from permway.model.irregularity import DensityTable
 from permway.model.line import Line
-from permway.model.presets import slab_track_viaduct_32m
 from permway.model.vehicle_presets import VEHICLES
+from permway.response.pseudo import pseudo_excitation
 from permway.response.receptance import Place, receptance
 from permway.response.train import Train, train_response
-from strategies import decades, frequencies
+from strategies import decades, frequencies, paper_line
 
 FORMULATIONS = st.sampled_from(["chain", "receptance"])
 
 
 def lossless_line(girder):
     """The paper's line with loss in its joints alone, the rail with ends so that no wave leaves."""
-    line = slab_track_viaduct_32m(girder=girder)
+    line = paper_line(girder=girder)
     bodies = {name: body.model_copy(update={"loss_factor": 0.0}) for name, body in line.bodies.items()}
     bodies["rail"] = bodies["rail"].model_copy(update={"intervals_m": ((-7.3, 41.1),), "ends": ("free", "pinned")})
     return Line(bodies=bodies, joints=line.joints, laws=line.laws)
@@ -84,7 +84,7 @@ def test_power_of_the_irregularity_is_dissipated_in_suspensions_and_joints(train
 @given(trains(), FORMULATIONS, frequencies(), decades(1e-3, 1e3))
 def test_every_density_scales_with_the_irregularity(train, formulation, frequency, factor):
     """Amplitudes add, so densities grow as the irregularity's."""
-    line, sensors = slab_track_viaduct_32m(), [Place(body="girder", x_m=11.0)]
+    line, sensors = paper_line(), [Place(body="girder", x_m=11.0)]
     small, large = (
         train_response(
             line, train, irregularity(level), frequency, sensors=sensors, formulation=formulation, threads=1
@@ -103,13 +103,12 @@ def test_wheels_ride_the_profile_on_the_deflected_rail(train, formulation, frequ
 
     Downwards; the rail under the train is what all four forces make of it together.
     """
-    data = train_response(slab_track_viaduct_32m(), train, irregularity(1e-8), frequency, formulation=formulation)
+    data = train_response(paper_line(), train, irregularity(1e-8), frequency, formulation=formulation)
     force = data["wheel_rail_force"].values
     rail = np.einsum("fij,fj->fi", data["track_receptance"].values, force)
     wheel = -np.einsum("fij,fj->fi", data["wheel_receptance"].values, force)
-    lags = train.vehicle.lags_m() / train.speed_m_per_s
-    omega = 2 * np.pi * np.array(frequency)
-    profile = np.sqrt(data["irregularity_psd"].values)[:, None] * np.exp(-1j * omega[:, None] * lags)
+    density = data["irregularity_psd"].values
+    profile = pseudo_excitation(frequency, density, train.vehicle.lags_m(), train.speed_m_per_s)
     pressed = force * float(data["contact_receptance"])
     size = np.abs(wheel) + np.abs(rail) + np.abs(profile) + np.abs(pressed)
     assert (np.abs(wheel - rail - profile - pressed) <= 1e-12 * size).all()

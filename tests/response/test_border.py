@@ -19,24 +19,24 @@ from permway.model.bodies import Mass
 from permway.model.file import model_from_dict
 from permway.model.joints import Joints
 from permway.model.line import Line
-from permway.model.presets import slab_track_viaduct_32m
+from permway.model.presets import slab_track_viaduct_32m, wj7b_constant
 from permway.response.quantities import accelerance
 from permway.response.receptance import CONVENTION, Place, receptance
 from permway.response.solve import solve, write_dataset
 
-LINE = slab_track_viaduct_32m()
+LINE = slab_track_viaduct_32m(pad=wj7b_constant())
 MIDSPAN = [Place(body="rail", x_m=16.0), Place(body="girder", x_m=16.0)]
 BAND = np.linspace(1.0, 1000.0, 200)
 LONG = np.linspace(1.0, 1000.0, 200_000)
 
 ENDLESS_SWEEP = {
-    "chain": "line, f = slab_track_viaduct_32m(), np.linspace(1.0, 1000.0, 200_000)",
-    "receptance": "line, f = slab_track_viaduct_32m(spans=6), np.linspace(1.0, 1000.0, 2000)",
+    "chain": "line, f = slab_track_viaduct_32m(pad=wj7b_constant()), np.linspace(1.0, 1000.0, 200_000)",
+    "receptance": "line, f = slab_track_viaduct_32m(spans=6, pad=wj7b_constant()), np.linspace(1.0, 1000.0, 2000)",
 }
 INTERRUPTED = """
     import os, signal, threading, time
     import numpy as np
-    from permway.model.presets import slab_track_viaduct_32m
+    from permway.model.presets import slab_track_viaduct_32m, wj7b_constant
     from permway.response.receptance import Place, receptance
 
     {sweep}

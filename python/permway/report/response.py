@@ -99,7 +99,7 @@ def _modulus_and_phase(data: xr.Dataset, curves: Sequence[tuple[str, np.ndarray]
     for (name, value), (colour, style) in zip(curves, _looks(), strict=False):
         look = {"color": colour, "linestyle": style, "linewidth": 1.2}
         upper.plot(data["frequency"], np.abs(value), label=name, **look)
-        lower.plot(data["frequency"], _phase(value), **look)
+        lower.plot(*_phase(data["frequency"].values, value), **look)
     upper.set(yscale="log", ylabel="receptance, m/N")
     upper.set_title(title, fontsize=_FONT + 1, loc="left")
     lower.set(ylabel="phase, degrees", yticks=np.arange(-180, 181, 90), ylim=(-190, 190))
@@ -177,12 +177,14 @@ def _looks() -> Iterator[tuple[str, str]]:
     return ((colour, style) for style in cycle(_STYLES) for colour in _COLOURS)
 
 
-def _phase(value: np.ndarray) -> np.ndarray:
+def _phase(frequency: np.ndarray, value: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Frequency and degrees between -180 and 180."""
     degrees = np.degrees(np.angle(value))
     # Rounding must not make -180 a +180.
     degrees = np.where(degrees > 179.999, -180.0, degrees)
-    # A turn past 180 is no line across the panel.
-    return np.where(np.abs(np.diff(degrees, prepend=degrees[0])) > 180.0, np.nan, degrees)
+    # A turn past 180 is no line across the panel: the curve is lifted there.
+    turns = np.flatnonzero(np.abs(np.diff(degrees)) > 180.0) + 1
+    return np.insert(frequency, turns, np.nan), np.insert(degrees, turns, np.nan)
 
 
 def _file_names(labels: Sequence[str]) -> dict[str, str]:
