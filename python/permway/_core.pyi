@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 __version__: Final[str]
 
-class InvalidTables(ValueError): ...
+class TablesError(ValueError): ...
 
 def solve_line(
     *,

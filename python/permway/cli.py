@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 import sys
 import warnings
 from collections.abc import Callable, Iterator
@@ -49,7 +51,8 @@ Threads = Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; by 
 
 @contextmanager
 def _progress(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
-    """A bar on the terminal; nothing when piped."""
+    """A bar on the terminal; nothing when piped. Within it, and after, Ctrl-C unwinds what is under way."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     with Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -178,7 +181,6 @@ def reproduce(
 @app.command()
 def doctor(as_json: Json = False) -> None:
     """What machine and versions permway runs with."""
-    import os
     import platform
 
     import numpy
@@ -218,8 +220,15 @@ def _root(
     pass
 
 
+def _leave(_signal: int, _frame: object) -> None:
+    _tell("interrupted")
+    os._exit(130)
+
+
 def main() -> NoReturn:
     """Run the command line: 0 done, 2 bad input, 1 a model that cannot be solved, 130 interrupted."""
+    # Until work begins there is nothing to unwind, and libraries may swallow the exception while they load.
+    signal.signal(signal.SIGINT, _leave)
     warnings.showwarning = lambda message, *_, **__: _tell(f"note: {message}")
     try:
         app(standalone_mode=True)

@@ -92,7 +92,7 @@ def test_example_is_solved(model, tmp_path):
     output = tmp_path / "answer.nc"
     done = run("solve", model, "-o", output, "--threads", 1)
     assert (done.returncode, done.stderr) == (0, "")
-    said = dict(line.split(maxsplit=1) for line in done.stdout.splitlines())
+    said = dict(line.split(maxsplit=1) for line in done.stdout.splitlines() if not line.startswith(" "))
     assert said["dataset"] == str(output)
     with xr.open_dataset(output, engine="h5netcdf") as data:
         assert int(said["frequencies"]) == data.sizes["frequency"]

@@ -127,9 +127,7 @@ def test_sato_value_by_hand():
 
 def test_chinese_segments_meet_at_the_printed_limits():
     """The standard prints coefficients to five digits and limits to four: they meet within 0.5 %."""
-    for limit, (a, k), (b, m) in zip(
-        CHINESE_LIMITS_PER_M, CHINESE_SEGMENTS, CHINESE_SEGMENTS[1:], strict=False
-    ):
+    for limit, (a, k), (b, m) in zip(CHINESE_LIMITS_PER_M, CHINESE_SEGMENTS, CHINESE_SEGMENTS[1:], strict=False):
         assert a / limit**k == pytest.approx(b / limit**m, rel=0.005)
         edge = 2 * np.pi * limit * np.array([1 - 1e-9, 1 + 1e-9])
         below, above = ChineseBallastless().wavenumber_density(edge)
@@ -206,9 +204,7 @@ def test_scale_is_a_factor_and_density_is_positive(irregularity):
 
 
 @settings(max_examples=60, deadline=None)
-@given(
-    st.sampled_from(ALL), st.floats(1e-3, 1e3, allow_nan=False), st.floats(1.0, 149.0), st.floats(0.1, 1e3)
-)
+@given(st.sampled_from(ALL), st.floats(1e-3, 1e3, allow_nan=False), st.floats(1.0, 149.0), st.floats(0.1, 1e3))
 def test_range_is_named_never_passed_over(irregularity, wavenumber, speed, frequency):
     for call in (
         lambda: irregularity.wavenumber_density(wavenumber),

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, TypeAdapter, ValidationError
 
-from permway.laws.base import Law, input_error
+from permway.laws.base import Law
 from permway.laws.checks import LawCheck
 from permway.laws.combined import Parallel, Scaled, Series, StorageLossPair
 from permway.laws.elastic import Hysteretic, KelvinVoigt, Maxwell, Zener
@@ -22,6 +22,7 @@ from permway.laws.prony import Prony
 from permway.laws.shift import WLF, AnyShift, Arrhenius, Free, Shift
 from permway.laws.tabulated import Tabulated
 from permway.laws.tfdv import TFDV
+from permway.records import input_error
 
 AnyLaw = Annotated[
     Hysteretic
@@ -105,7 +106,7 @@ def law_from_dict(table: Mapping[str, Any], *, where: str = "law") -> AnyLaw:
     try:
         return _ADAPTER.validate_python(dict(table))
     except ValidationError as error:
-        raise input_error(error, place=where) from error
+        raise input_error(error, dict(table), where) from error
 
 
 def law_to_dict(law: Law) -> dict[str, Any]:

@@ -23,8 +23,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from permway.arrays import Reals
 from permway.errors import InputError
-from permway.laws.base import Law, Reals
+from permway.laws.base import Law
 
 _PER_DECADE = 40
 _DECADES_BELOW = 4.0

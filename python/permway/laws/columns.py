@@ -10,8 +10,8 @@ import math
 import re
 from dataclasses import dataclass
 
+from permway.arrays import ABSOLUTE_ZERO_C
 from permway.errors import InputError
-from permway.laws.base import ABSOLUTE_ZERO_C
 
 MODULUS_UNITS = {"pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9, "n_mm2": 1e6, "n_m2": 1.0}
 

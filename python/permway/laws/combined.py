@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from permway.arrays import Complexes, Reals
 from permway.errors import InputError
-from permway.laws.base import Complexes, Law, Number, Reals
+from permway.laws.base import Law
+from permway.records import Number
 
 if TYPE_CHECKING:
     from permway.laws import AnyLaw

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from permway.arrays import Complexes, Reals
 from permway.errors import InputError
-from permway.laws.base import Complexes, Reals
 from permway.laws.columns import MODULUS_UNITS, Column, recognise
 from permway.laws.textfile import Line, number, read_lines
 

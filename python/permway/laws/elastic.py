@@ -7,7 +7,9 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from permway.laws.base import Complexes, Law, Number, Reals
+from permway.arrays import Complexes, Reals
+from permway.laws.base import Law
+from permway.records import Number
 
 
 class Hysteretic(Law):

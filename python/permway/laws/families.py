@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from permway.arrays import Complexes, Reals
 from permway.errors import InputError
-from permway.laws.base import Complexes, Law, Reals
+from permway.laws.base import Law
 from permway.laws.elastic import Hysteretic, KelvinVoigt, Zener
 from permway.laws.fractional import FVMP, FractionalKelvinVoigt, FractionalZener, HavriliakNegami, Springpot
 from permway.laws.prony import Prony

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from permway.arrays import ABSOLUTE_ZERO_C, Reals
 from permway.errors import InputError
-from permway.laws.base import ABSOLUTE_ZERO_C, Law, Reals
+from permway.laws.base import Law
 from permway.laws.dma import DmaTable
 from permway.laws.families import Scales, family
 from permway.laws.intervals import Parameter, parameter_table

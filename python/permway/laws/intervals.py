@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from permway.laws.base import Reals
+from permway.arrays import Reals
 from permway.laws.search import Problem
 
 _CONFIDENCE = 0.90

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
-from permway.laws.base import Complexes, Law, Number, Reals
+from permway.arrays import Complexes, Reals
+from permway.laws.base import Law
+from permway.records import Number
 
 if TYPE_CHECKING:
     from permway.laws import AnyLaw

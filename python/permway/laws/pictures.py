@@ -10,8 +10,8 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MultipleLocator, NullFormatter
 
+from permway.arrays import Reals
 from permway.errors import InputError
-from permway.laws.base import Reals
 from permway.laws.identify import Identification
 from permway.laws.shift import Free
 from permway.laws.tfdv import TFDV

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from scipy import optimize
 
-from permway.laws.base import Reals
+from permway.arrays import Reals
 from permway.laws.dma import DmaTable
 from permway.laws.families import Family
 from permway.laws.shift_fit import ShiftFamily, shift_family

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 from pydantic import Field, model_validator
 from scipy.interpolate import PchipInterpolator
 
+from permway.arrays import ABSOLUTE_ZERO_C, Reals, check_temperature
 from permway.errors import InputError
-from permway.laws.base import ABSOLUTE_ZERO_C, FloatTuple, FrozenModel, Number, Reals, check_temperature
+from permway.records import FloatTuple, FrozenModel, Number
 
 GAS_CONSTANT = 8.31446261815324
 """J/(mol K), exact in the SI of 2019."""

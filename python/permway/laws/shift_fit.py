@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from permway.arrays import ABSOLUTE_ZERO_C, Reals
 from permway.errors import InputError
-from permway.laws.base import ABSOLUTE_ZERO_C, Reals
 from permway.laws.shift import GAS_CONSTANT, WLF, Arrhenius, Free, Shift
 
 SHIFTS = ("none", "wlf", "arrhenius", "free")

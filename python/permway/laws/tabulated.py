@@ -7,8 +7,10 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from permway.arrays import Complexes, Reals
 from permway.errors import InputError
-from permway.laws.base import Complexes, FloatTuple, Law, Reals
+from permway.laws.base import Law
+from permway.records import FloatTuple
 
 # A frequency that differs from the table's end by rounding only is still inside.
 _EDGE = 1e-9

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from pydantic import model_validator
 
-from permway.laws.base import ABSOLUTE_ZERO_C, Complexes, Law, Number, Reals
+from permway.arrays import ABSOLUTE_ZERO_C, Complexes, Reals
+from permway.laws.base import Law
 from permway.laws.shift import AnyShift
+from permway.records import Number
 
 if TYPE_CHECKING:
     from permway.laws import AnyLaw

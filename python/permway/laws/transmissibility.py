@@ -16,9 +16,11 @@ from numpy.typing import ArrayLike
 from pydantic import Field
 from scipy import optimize
 
+from permway.arrays import Complexes, Reals, check_frequency
 from permway.errors import InputError
-from permway.laws.base import Complexes, FrozenModel, Law, Number, Reals, check_frequency
+from permway.laws.base import Law
 from permway.laws.textfile import number, read_lines
+from permway.records import FrozenModel, Number
 
 _COLUMNS = ("freq_hz", "base_accel_ms2", "base_phase_rad", "mass_accel_ms2", "mass_phase_rad")
 

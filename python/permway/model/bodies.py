@@ -8,8 +8,8 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, model_validator
 
-from permway.laws.base import FrozenModel
 from permway.model.faults import fault
+from permway.records import FrozenModel
 
 End = Literal["free", "pinned"]
 

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, PositiveFloat
 
 from permway.errors import InputError
-from permway.laws.base import FrozenModel
+from permway.records import FrozenModel
 
 _CONTACT_CONSTANT: dict[str, tuple[float, float]] = {"conical": (4.57e-8, -0.149), "worn": (3.86e-8, -0.115)}
 """G = g R^e in m/N^(2/3) by wheel profile: (g, e), R in m."""

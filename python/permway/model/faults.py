@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import PydanticCustomError
 
 from permway.errors import InputError
-from permway.laws.base import FrozenModel, input_error
+from permway.records import FrozenModel, input_error
 
 
 def fault(what: str, *place: str | int, value: object = None) -> ValidationError:
@@ -41,8 +41,7 @@ def model_error(error: ValidationError, table: Mapping[str, Any], place: str) ->
         Name of the table itself; "" for the whole file.
     """
     first = error.errors(include_url=False)[0]
-    plain = input_error(error, place=place)
-    where = place_in(table, first["loc"], place)
+    plain = input_error(error, table, place)
     context = first.get("ctx", {})
     what, value = plain.what, plain.value
     match first["type"]:
@@ -60,26 +59,7 @@ def model_error(error: ValidationError, table: Mapping[str, Any], place: str) ->
             what = f"there is no type {context['tag']!r}; use one of {context['expected_tags']}"
         case "union_tag_not_found":
             what, value = "type is missing", None
-    return InputError(what, where=where, value=value, remedy=plain.remedy)
-
-
-def place_in(table: object, location: tuple[str | int, ...], place: str = "") -> str:
-    """Write pydantic's location as a place in the file, without the tags of unions: `line.joints[2].law`."""
-    for part in location:
-        if isinstance(part, int):
-            place, table = f"{place}[{part}]", _item(table, part)
-            continue
-        if isinstance(table, Mapping) and part not in table and part == table.get("type"):
-            continue
-        place, table = f"{place}.{part}" if place else part, _item(table, part)
-    return place or "the file"
-
-
-def _item(table: object, key: str | int) -> object:
-    try:
-        return table[key]  # type: ignore[index]
-    except (KeyError, IndexError, TypeError):
-        return None
+    return InputError(what, where=plain.where, value=value, remedy=plain.remedy)
 
 
 def refuse_coercion(given: object, built: object, place: str) -> None:

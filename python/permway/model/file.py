@@ -12,8 +12,9 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field, PositiveFloat, ValidationError, field_validator, model_validator
 
+from permway.arrays import Reals
 from permway.errors import InputError
-from permway.laws.base import FrozenModel, Law, Reals
+from permway.laws.base import Law
 from permway.laws.lawfile import load_law
 from permway.model.faults import fault, model_error, refuse_coercion
 from permway.model.irregularity import AnyIrregularity, Conversion
@@ -22,6 +23,7 @@ from permway.model.line import Line
 from permway.model.presets import LAWS, LINES
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_presets import VEHICLES
+from permway.records import FrozenModel
 from permway.response.receptance import Formulation, Place, check_places, check_sweep
 from permway.response.train import Train
 
@@ -301,7 +303,9 @@ def _law(law: object, where: str, folder: Path | None) -> object:
 def _law_file(table: dict[str, Any], where: str, folder: Path | None) -> Law:
     name = table.pop("file")
     if table:
-        raise InputError("does not go with a file", where=f"{where}.{next(iter(table))}", remedy="name the file alone")
+        raise InputError(
+            "does not go with a file", where=f"{where}.{next(iter(table))}", remedy="name the file alone"
+        )
     if not isinstance(name, str) or not name or "\0" in name:
         raise InputError("must be the name of a file", where=f"{where}.file", value=name)
     if folder is None:

@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, PositiveFloat, model_validator
 
-from permway.laws.base import Reals
+from permway.arrays import Reals
 from permway.model.irregularity_spectra import (
     EDGE,
     Conversion,

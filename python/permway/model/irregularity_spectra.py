@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import PositiveFloat
 
+from permway.arrays import Reals, check_frequency
 from permway.errors import InputError
-from permway.laws.base import FrozenModel, Reals, check_frequency
+from permway.records import FrozenModel
 
 Conversion = Literal["per_hertz", "wavenumber_density_called_per_hertz"]
 

@@ -8,9 +8,10 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, PositiveFloat, TypeAdapter, model_validator
 
-from permway.laws.base import FrozenModel, Reals
+from permway.arrays import Reals
 from permway.model.bodies import Interval, Metres
 from permway.model.faults import fault
+from permway.records import FrozenModel
 
 GROUND = "ground"
 MOST_STATIONS = 1_000_000

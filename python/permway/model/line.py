@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import model_validator
 
+from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.laws import AnyLaw, Hysteretic
-from permway.laws.base import Complexes, FrozenModel, Reals
 from permway.model.bodies import AnyBody, Beam, Mass
 from permway.model.faults import fault
 from permway.model.joints import GROUND, Ends, Joints, Spread
+from permway.records import FrozenModel
 
 Integers = np.ndarray[tuple[int], np.dtype[np.int64]]
 

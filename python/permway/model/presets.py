@@ -10,18 +10,18 @@ from pydantic import Field, ValidationError
 
 from permway.errors import InputError
 from permway.laws import FVMP, TFDV, WLF, AnyLaw, Hysteretic
-from permway.laws.base import FrozenModel, Number
 from permway.model.bodies import Beam, Interval
 from permway.model.faults import model_error
 from permway.model.joints import Ends, Joints
 from permway.model.line import Line
+from permway.records import FrozenModel, Number
 
 SPAN_M = 32.0
 SPACING_M = 0.625
 
 
 def wj7b() -> TFDV:
-    """Pad of the WJ-7B fastener over temperature and frequency, N/m: the paper's FVMP with a WLF shift, equation (27).
+    """Pad of the WJ-7B fastener over temperature and frequency: FVMP and WLF shift, equation (27).
 
     The paper prints no parameters that are one material, and no shift factors. These were identified by `permway
     reproduce` from tables 5 and 7 (convention "paper, free girder"; the law in its `tables.json`, to six digits).

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
+from permway.arrays import Reals
 from permway.errors import InputError
-from permway.laws.base import FloatTuple, Reals
 from permway.model.irregularity_spectra import Irregularity
+from permway.records import FloatTuple
 
 Interpolation = Literal["bands", "smooth"]
 

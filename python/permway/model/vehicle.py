@@ -9,8 +9,9 @@ import scipy.linalg
 from numpy.typing import ArrayLike
 from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
+from permway.arrays import Complexes, Reals, check_frequency
 from permway.errors import InputError
-from permway.laws.base import Complexes, FrozenModel, Reals, check_frequency
+from permway.records import FrozenModel
 
 STANDARD_GRAVITY = 9.80665
 

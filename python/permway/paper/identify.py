@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import Bounds, differential_evolution, least_squares
 
+from permway.arrays import Reals
 from permway.laws import (
     FVMP,
     TFDV,
@@ -26,7 +27,6 @@ from permway.laws import (
     Parallel,
     Springpot,
 )
-from permway.laws.base import Reals
 from permway.paper.conventions import FREQUENCY_HZ
 from permway.paper.pad_layer import PadLayer
 from permway.paper.printed import PRINTED, TEMPERATURES_C

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from permway.laws.base import Complexes, Reals
+from permway.arrays import Complexes, Reals
 from permway.model.joints import Joints
 from permway.model.line import Line
 from permway.model.presets import slab_track_viaduct_32m, wj7b_constant

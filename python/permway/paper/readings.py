@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from permway.laws.base import Complexes, Reals
+from permway.arrays import Complexes, Reals
 
 PEAK_BAND_HZ = (40.0, 130.0)
 """Where the paper's wheel-track peaks lie."""

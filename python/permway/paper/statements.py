@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from permway.arrays import Reals
 from permway.laws import AnyLaw
-from permway.laws.base import Reals
 from permway.paper.printed import (
     GLASS_TRANSITION_C,
     LOSS_FACTOR_PEAK,

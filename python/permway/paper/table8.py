@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from permway.laws.base import Complexes
+from permway.arrays import Complexes
 from permway.paper.conventions import CONTACT_N_PER_M, Convention, train
 from permway.paper.printed import PRINTED, TEMPERATURES_C
 from permway.response.pseudo import pseudo_excitation

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from permway.arrays import Reals
 from permway.errors import InputError
-from permway.laws.base import Reals
 
 
 def decay_rate(near: ArrayLike, far: ArrayLike, distance_m: float) -> Reals:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from permway.arrays import Reals
 from permway.errors import InputError
-from permway.laws.base import Reals
 from permway.model.line import JointTable, Line
 
 MOST_THREADS = 1024

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from permway.arrays import Complexes, Reals, check_frequency
 from permway.errors import InputError, SolveError
-from permway.laws.base import Complexes, Reals, check_frequency
 from permway.model.irregularity_spectra import check_speed
 
 WORST_CONDITION = 1e14

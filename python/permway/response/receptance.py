@@ -11,10 +11,11 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from permway import _core
+from permway.arrays import Reals
 from permway.errors import InputError, SolveError
-from permway.laws.base import FrozenModel, Reals
 from permway.model.bodies import Metres
 from permway.model.line import Line
+from permway.records import FrozenModel
 from permway.response.limits import check_answer, check_dense, check_elements, check_threads
 
 Formulation = Literal["chain", "receptance"]
@@ -107,6 +108,13 @@ def receptance(
     pairs = line.beams()
     points = {"forces": check_places(line, forces, "forces"), "sensors": check_places(line, sensors, "sensors")}
     check_answer(frequency.size, len(sensors) + (table.x.size if extensions else 0), len(forces))
+    if formulation == "chain" and any(beam.modes for beam, _ in pairs):
+        modal = next(segment.name for beam, segment in pairs if beam.modes)
+        raise InputError(
+            "modes are for the receptance formulation; the chain is exact",
+            where=f"line.bodies.{modal}.modes",
+            remedy='leave modes out, or choose formulation = "receptance"',
+        )
     if formulation == "receptance":
         check_dense(table)
     elif frequency.size:
@@ -135,7 +143,7 @@ def receptance(
             threads=threads or os.cpu_count() or 1,
             progress=progress,
         )
-    except _core.InvalidTables as error:
+    except _core.TablesError as error:
         raise InputError(str(error), where="line") from error
     if failures and on_error == "raise":
         more = f" (and {len(failures) - 1} more frequencies)" if len(failures) > 1 else ""

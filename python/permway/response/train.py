@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from pydantic import Field, field_validator
 
 from permway import _core
+from permway.arrays import Complexes, Reals
 from permway.errors import InputError, SolveError
-from permway.laws.base import Complexes, FrozenModel, Number, Reals
 from permway.model.bodies import Metres
 from permway.model.contact import ContactStiffness, GivenContact
 from permway.model.faults import fault
@@ -19,6 +19,7 @@ from permway.model.irregularity import AnyIrregularity, Conversion
 from permway.model.irregularity_spectra import check_speed
 from permway.model.line import Line
 from permway.model.vehicle import Vehicle
+from permway.records import FrozenModel, Number
 from permway.response.limits import check_answer
 from permway.response.pseudo import power_spectrum, pseudo_excitation, wheel_rail_forces
 from permway.response.receptance import (

@@ -5,7 +5,7 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use permway_core::line::{Beam, Body, End, Joint, Line, Point};
 use pyo3::{create_exception, exceptions::PyValueError, prelude::*};
 
-create_exception!(_core, InvalidTables, PyValueError, "Tables that do not fit together, or describe no line.");
+create_exception!(_core, TablesError, PyValueError, "Tables that do not fit together, or describe no line.");
 
 /// Columns of a table of beams, one row each.
 #[derive(FromPyObject)]
@@ -56,11 +56,11 @@ fn same_length(table: &str, lengths: &[usize]) -> PyResult<usize> {
     if lengths.iter().all(|l| *l == n) {
         return Ok(n);
     }
-    Err(InvalidTables::new_err(format!("{table}: the columns have different lengths {lengths:?}")))
+    Err(TablesError::new_err(format!("{table}: the columns have different lengths {lengths:?}")))
 }
 
 fn index(value: i64, what: &str) -> PyResult<usize> {
-    usize::try_from(value).map_err(|_| InvalidTables::new_err(format!("{what} {value} must not be negative")))
+    usize::try_from(value).map_err(|_| TablesError::new_err(format!("{what} {value} must not be negative")))
 }
 
 /// Bodies are the beams, then the masses.
@@ -77,10 +77,10 @@ pub fn line(
         [bending.len(), shear.len(), mass.len(), rotary.len(), interval.nrows(), pinned.nrows(), modes.len()];
     let n = same_length("beams", &lengths)?;
     if n > 0 && (interval.ncols() != 2 || pinned.ncols() != 2) {
-        return Err(InvalidTables::new_err("beams: interval and pinned have two columns"));
+        return Err(TablesError::new_err("beams: interval and pinned have two columns"));
     }
     if modes.iter().any(|m| *m < 0) {
-        return Err(InvalidTables::new_err("beams: a number of modes must not be negative"));
+        return Err(TablesError::new_err("beams: a number of modes must not be negative"));
     }
     let end = |p: bool| if p { End::Pinned } else { End::Free };
     let mut bodies = Vec::with_capacity(n);

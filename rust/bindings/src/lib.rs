@@ -14,7 +14,7 @@ mod _core {
     #[pymodule_init]
     fn init(m: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
         use pyo3::types::PyModuleMethods;
-        m.add("InvalidTables", m.py().get_type::<crate::convert::InvalidTables>())?;
+        m.add("TablesError", m.py().get_type::<crate::convert::TablesError>())?;
         m.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -1,6 +1,6 @@
 //! One sweep: the interpreter released, Ctrl-C and progress answered while it runs.
 
-use crate::convert::{self, Beams, InvalidTables, Joints, Points};
+use crate::convert::{self, Beams, Joints, Points, TablesError};
 use num_complex::Complex;
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use permway_core::{
@@ -36,7 +36,7 @@ const MOST_THREADS: usize = 1024;
 /// Returns receptance in m/N, shape (frequency, sensor, force); joint extension, shape (frequency,
 /// joint, force), or None; and the frequencies that failed as (index, kind, message), NaN in the
 /// arrays. `progress(done, total)` is called now and then, and at the end; an exception from it
-/// stops the sweep. Raises InvalidTables, a ValueError, for tables that do not fit together.
+/// stops the sweep. Raises TablesError, a ValueError, for tables that do not fit together.
 #[pyfunction]
 #[pyo3(signature = (*, formulation, frequencies, names, beams, masses, joints, laws, forces, sensors, extensions, threads, progress))]
 #[allow(clippy::too_many_arguments)]
@@ -59,11 +59,11 @@ pub fn solve_line<'py>(
         "chain" => Formulation::Chain,
         "receptance" => Formulation::Receptance,
         other => {
-            return Err(InvalidTables::new_err(format!("formulation {other:?}: use \"chain\" or \"receptance\"")));
+            return Err(TablesError::new_err(format!("formulation {other:?}: use \"chain\" or \"receptance\"")));
         }
     };
     if !(1..=MOST_THREADS).contains(&threads) {
-        return Err(InvalidTables::new_err(format!("threads {threads}: use 1 to {MOST_THREADS}")));
+        return Err(TablesError::new_err(format!("threads {threads}: use 1 to {MOST_THREADS}")));
     }
     let line = convert::line(names, &beams, &masses, &joints)?;
     let (forces, sensors) = (convert::points("forces", &forces)?, convert::points("sensors", &sensors)?);
@@ -71,7 +71,7 @@ pub fn solve_line<'py>(
     let n_laws = laws.as_array().ncols();
     let rows = laws.as_array().nrows();
     if rows != frequencies.len() {
-        return Err(InvalidTables::new_err(format!("laws: {rows} rows for {} frequencies", frequencies.len())));
+        return Err(TablesError::new_err(format!("laws: {rows} rows for {} frequencies", frequencies.len())));
     }
     let laws: Vec<_> = laws.as_array().iter().copied().collect();
     let request = Request {
@@ -135,7 +135,7 @@ fn watched(request: &Request<'_>, progress: Option<&Py<PyAny>>) -> PyResult<Answ
         match result {
             Ok(Ok(Ok(answer))) => Ok(answer),
             Ok(Ok(Err(CoreError::Cancelled))) => Err(PyKeyboardInterrupt::new_err("cancelled")),
-            Ok(Ok(Err(e))) => Err(InvalidTables::new_err(e.to_string())),
+            Ok(Ok(Err(e))) => Err(TablesError::new_err(e.to_string())),
             Ok(Err(_)) | Err(_) => {
                 Err(PyRuntimeError::new_err("the core failed unexpectedly; please report the model"))
             }

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from permway.laws.base import Complexes
+from permway.arrays import Complexes
 from permway.paper.printed import PRINTED, TEMPERATURES_C
 from permway.paper.tables import ONE_LAW
 from permway.report.figures.style import (

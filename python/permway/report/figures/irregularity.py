@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from permway.laws.base import Reals
+from permway.arrays import Reals
 from permway.model.irregularity import GermanLow, GermanSato, Sato
 from permway.report.figures.style import INK, PART, POWERS, TEMPERATURE, line, logarithmic, panels
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
+from permway.arrays import Reals
 from permway.laws import AnyLaw
-from permway.laws.base import Reals
 from permway.paper.printed import GLASS_TRANSITION_C, LOSS_FACTOR_PEAK, LOSS_MODULUS_PEAK_C
 from permway.paper.reproduce import table_1_pair
 from permway.report.figures.style import (

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from permway.laws.base import Reals
+from permway.arrays import Reals
 from permway.paper.conventions import PAPER, RIGHT
 from permway.paper.printed import PRINTED, TEMPERATURES_C
 from permway.paper.readings import Curves

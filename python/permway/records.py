@@ -1,0 +1,84 @@
+"""Frozen, validated records, whose faults are said with place, value and remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Strict, ValidationError
+
+from permway.errors import InputError
+
+
+def _as_python(value: object) -> object:
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+
+
+Number = Annotated[float, Strict(), BeforeValidator(_as_python)]
+"""A float that takes integers and numpy's numbers, but neither text nor a truth value."""
+
+FloatTuple = Annotated[tuple[Number, ...], BeforeValidator(_as_python)]
+"""A tuple of such numbers that also takes a numpy array."""
+
+
+class FrozenModel(BaseModel):
+    """A frozen record whose faults are reported as :class:`permway.errors.InputError`."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise input_error(error, data, type_name(type(self))) from error
+
+    # Pydantic then builds nested records itself, so that a fault inside one keeps its full path.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+
+def input_error(error: ValidationError, table: object, place: str) -> InputError:
+    """Turn pydantic's first complaint into an `InputError` with its place and value.
+
+    Parameters
+    ----------
+    error : ValidationError
+    table : object
+        What was validated, to tell its keys from the tags that pydantic adds for unions.
+    place : str
+        Name of the table itself; "" for the whole file.
+    """
+    first = error.errors(include_url=False)[0]
+    where = place_in(table, first["loc"], place)
+    others = error.error_count() - 1
+    remedy = f"{others} further fault(s) in the same table" if others else ""
+    what = first["msg"].removeprefix("Value error, ")
+    value = None if first["type"] in ("missing", "value_error", "union_tag_invalid") else first["input"]
+    return InputError(what[:1].lower() + what[1:], where=where, value=value, remedy=remedy)
+
+
+def type_name(model: type[BaseModel]) -> str:
+    """The `type` of a record in a file, or else its class's name."""
+    field = model.model_fields.get("type")
+    return str(field.default) if field is not None else model.__name__
+
+
+def place_in(table: object, location: tuple[str | int, ...], place: str = "") -> str:
+    """Write pydantic's location as a place in the file, without the tags of unions: `line.joints[2].law`."""
+    for part in location:
+        if isinstance(table, BaseModel):
+            table = table.model_dump(by_alias=True)
+        if isinstance(part, int):
+            place, table = f"{place}[{part}]", _item(table, part)
+            continue
+        if isinstance(table, Mapping) and part not in table and part == table.get("type"):
+            continue
+        place, table = f"{place}.{part}" if place else part, _item(table, part)
+    return place or "the file"
+
+
+def _item(table: object, key: str | int) -> object:
+    try:
+        return table[key]  # type: ignore[index]
+    except (KeyError, IndexError, TypeError):
+        return None
