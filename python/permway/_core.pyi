@@ -4,6 +4,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = ["TablesError", "__version__", "solve_line"]
+
 __version__: Final[str]
 
 class TablesError(ValueError): ...
