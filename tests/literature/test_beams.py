@@ -1,4 +1,4 @@
-"""Beams alone against closed forms: girder, free slab, infinite beam, static limits, modal sums, an oscillator.
+"""Beams alone against closed forms: girder, free slab, infinite beam, static limits, an oscillator.
 
 Sources: the project's reference values (girder and free-free beam); Graff, Wave Motion in Elastic Solids (1975),
 infinite beam; Timoshenko, Strength of Materials, static deflections; Hetenyi, Beams on Elastic Foundation (1946).
@@ -12,7 +12,6 @@ in time.
 
 import numpy as np
 import pytest
-from permway.errors import InputError
 from permway.laws import Hysteretic, KelvinVoigt
 from permway.model.bodies import Beam, Mass
 from permway.model.joints import GROUND, Joints, Spread
@@ -199,20 +198,3 @@ def test_two_mass_oscillator(formulation):
     size = first * second - soft**2
     closed = np.moveaxis(np.array([[second, soft], [soft, first]]) / size, 2, 0)
     assert np.abs(value / closed - 1).max() < 1e-12
-
-
-@pytest.mark.parametrize("ends", ["pinned", "free", ("pinned", "free")])
-def test_modal_sum_converges_to_the_closed_form(ends):
-    """What N modes leave out at a point is a sum over 1/n^4: it falls as N^-3."""
-    values = []
-    for modes in (None, 20, 40, 80, 160):
-        body = beam(3e10, 1e-3, 640.0, 8.0, loss_factor=0.1, ends=ends, modes=modes)
-        values.append(respond(alone(body), [120.0], 2.0, formulation="receptance")[0, 0])
-    errors = np.abs(np.array(values[1:]) / values[0] - 1.0)
-    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx(3.0, abs=0.15)
-
-
-def test_chain_refuses_modes():
-    body = beam(3e10, 1e-3, 640.0, 8.0, loss_factor=0.1, ends="free", modes=20)
-    with pytest.raises(InputError, match="modes are for the receptance formulation"):
-        respond(alone(body), [120.0], 2.0, formulation="chain")
