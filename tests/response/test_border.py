@@ -30,13 +30,15 @@ BAND = np.linspace(1.0, 1000.0, 200)
 LONG = np.linspace(1.0, 1000.0, 200_000)
 
 ENDLESS_SWEEP = {
-    "chain": "line, f = slab_track_viaduct_32m(pad=wj7b_constant()), np.linspace(1.0, 1000.0, 200_000)",
+    "chain": "line, f = slab_track_viaduct_32m(pad=wj7b_constant()), np.linspace(1.0, 1000.0, 1_000_000)",
     "receptance": "line, f = slab_track_viaduct_32m(spans=6, pad=wj7b_constant()), np.linspace(1.0, 1000.0, 2000)",
 }
 INTERRUPTED = """
     import os, signal, threading, time
     import numpy as np
     from permway.model.presets import slab_track_viaduct_32m, wj7b_constant
+    # A shell may start its children with the signal ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     from permway.response.receptance import Place, receptance
 
     {sweep}

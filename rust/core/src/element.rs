@@ -5,67 +5,104 @@
 //! series in the sum and product of lambda squared: no roots, and no cancellation however short
 //! the element, where the usual trigonometric dynamic stiffness loses all digits as (k l)^-4.
 
-use crate::{c64, small::M2, waves::Waves};
+use crate::{c64, field::Field, small::M2, waves::Waves};
 
 /// Longest element as a multiple of the steepest wave's length scale: digits lost grow as its exponential.
 pub const LONGEST: f64 = 4.0;
 
 /// `u' = a u + b f`, `f' = c u + d f`: displacement and rotation u, force and moment f.
 #[derive(Debug, Clone, Copy)]
-pub struct Transfer {
+pub struct Transfer<T = c64> {
     /// Displacements from displacements.
-    pub a: M2,
+    pub a: M2<T>,
     /// Displacements from forces: flexibility.
-    pub b: M2,
+    pub b: M2<T>,
     /// Forces from displacements: inertia.
-    pub c: M2,
+    pub c: M2<T>,
     /// Forces from forces.
-    pub d: M2,
+    pub d: M2<T>,
+}
+
+/// A beam's section at one frequency, or at several side by side.
+#[derive(Debug, Clone, Copy)]
+pub struct Section<T> {
+    /// Bending flexibility 1/B, 1/(N m2).
+    pub flexibility: T,
+    /// Shear compliance 1/S, 1/N.
+    pub shear_compliance: T,
+    /// `rho A omega^2`, N/m2.
+    pub mu: T,
+    /// `rho I omega^2`, N.
+    pub rotary: T,
+}
+
+/// Terms of the power series that an element needs, of `steepest` wave exponent times length.
+pub fn terms(steepest: f64) -> usize {
+    let mut size = 1.0;
+    for n in 1..64 {
+        let m = f64::from(2 * n);
+        size *= steepest * steepest / ((m - 1.0) * m);
+        // The terms of the two waves add up, n of them at order n.
+        if size * m < 1e-18 {
+            return n as usize;
+        }
+    }
+    64
 }
 
 /// Coefficients c0 to c3 for length `l`, `sum` and `product` of lambda squared.
-fn coefficients(sum: c64, product: c64, l: f64) -> [c64; 4] {
+#[inline(always)]
+fn coefficients<T: Field>(sum: T, product: T, l: f64, terms: usize) -> [T; 4] {
     let l2 = l * l;
     // Complete homogeneous polynomials h(n-1), h(n-2) of the two lambda squared, times l^(2n).
-    let (mut h1, mut h2) = (c64::new(l2, 0.0), c64::ZERO);
-    let (s, p) = (sum * l2, product * (l2 * l2));
-    let (mut even, mut odd) = ([c64::ZERO; 2], [c64::ZERO; 2]);
+    let (mut h1, mut h2) = (T::real(l2), T::real(0.0));
+    let (s, p) = (sum.scale(l2), product.scale(l2));
+    let (mut even, mut odd) = ([T::real(0.0); 2], [T::real(0.0); 2]);
     let mut factorial = 1.0;
-    let scale = s.norm().max(p.norm().sqrt()).max(1.0);
-    let mut size = 1.0;
-    for n in 1..40 {
-        let m = f64::from(2 * n);
+    for n in 1..=terms {
+        let m = 2.0 * n as f64;
         factorial *= (m - 1.0) * m;
-        even[0] += h1 / factorial;
-        odd[0] += h1 / (factorial * (m + 1.0));
-        even[1] += h2 / factorial;
-        odd[1] += h2 / (factorial * (m + 1.0));
-        size *= scale * 2.0 / ((m - 1.0) * m);
-        if size < 1e-18 {
-            break;
-        }
-        (h1, h2) = (s * h1 - product * l2 * h2, h1 * l2);
+        let (e, o) = (1.0 / factorial, 1.0 / (factorial * (m + 1.0)));
+        even[0] = even[0] + h1.scale(e);
+        odd[0] = odd[0] + h1.scale(o);
+        even[1] = even[1] + h2.scale(e);
+        odd[1] = odd[1] + h2.scale(o);
+        (h1, h2) = (s * h1 - p * h2, h1.scale(l2));
     }
-    let c2 = even[0];
-    let c3 = odd[0] * l;
-    let c0 = 1.0 - product * even[1];
-    let c1 = l * (1.0 - product * odd[1]);
-    [c0, c1, c2, c3]
+    let one = T::real(1.0);
+    [one - product * even[1], (one - product * odd[1]).scale(l), even[0], odd[0].scale(l)]
 }
 
-impl Transfer {
+impl Transfer<c64> {
     /// Transfer over length `l` in m.
     pub fn new(w: &Waves, l: f64) -> Self {
-        let (sum, product) = w.sum_and_product();
-        let [c0, c1, c2, c3] = coefficients(sum, product, l);
-        let (b, s, mu, j) = (w.bending.inv(), w.shear_compliance, w.mu, w.rotary);
+        let section = Section {
+            flexibility: w.bending.inv(),
+            shear_compliance: w.shear_compliance,
+            mu: c64::new(w.mu, 0.0),
+            rotary: c64::new(w.rotary, 0.0),
+        };
+        Self::over(&section, l, terms(w.steepest() * l))
+    }
+}
+
+impl<T: Field> Transfer<T> {
+    /// Transfer over length `l` in m, by so many terms of the series.
+    #[inline(always)]
+    pub fn over(section: &Section<T>, l: f64, terms: usize) -> Self {
+        let Section { flexibility: b, shear_compliance: s, mu, rotary: j } = *section;
         let (ms, jb) = (s * mu, b * j);
+        let sum = -(jb + ms);
+        let product = b * mu * (s * j - T::real(1.0));
+        let [c0, c1, c2, c3] = coefficients(sum, product, l, terms);
         let cross = c1 - c3 * (jb + ms);
+        let (c2b, c2mu) = (c2 * b, c2 * mu);
+        let c3bmu = c3 * b * mu;
         Self {
-            a: [[c0 - c2 * ms, cross], [c3 * b * mu, c0 - c2 * jb]],
-            b: [[c1 * s - c3 * (b + s * ms), c2 * b], [-c2 * b, (c1 - c3 * jb) * b]],
-            c: [[-(c1 - c3 * ms) * mu, -c2 * mu], [c2 * mu, -c1 * j + c3 * (jb * j + mu)]],
-            d: [[c0 - c2 * ms, -c3 * b * mu], [-cross, c0 - c2 * jb]],
+            a: [[c0 - c2 * ms, cross], [c3bmu, c0 - c2 * jb]],
+            b: [[c1 * s - c3 * (b + s * ms), c2b], [-c2b, (c1 - c3 * jb) * b]],
+            c: [[-(c1 - c3 * ms) * mu, -c2mu], [c2mu, c3 * (jb * j + mu) - c1 * j]],
+            d: [[c0 - c2 * ms, -c3bmu], [-cross, c0 - c2 * jb]],
         }
     }
 }

@@ -1,15 +1,13 @@
 //! Two-by-two complex matrices: the displacement and rotation of one beam at one place.
 
-use crate::c64;
+use crate::{c64, field::Field};
 
-/// A 2 x 2 complex matrix in row order.
-pub type M2 = [[c64; 2]; 2];
-
-/// The zero matrix.
-pub const ZERO: M2 = [[c64::ZERO; 2]; 2];
+/// A 2 x 2 matrix in row order.
+pub type M2<T = c64> = [[T; 2]; 2];
 
 /// `a b`.
-pub fn mul(a: &M2, b: &M2) -> M2 {
+#[inline(always)]
+pub fn mul<T: Field>(a: &M2<T>, b: &M2<T>) -> M2<T> {
     [
         [a[0][0] * b[0][0] + a[0][1] * b[1][0], a[0][0] * b[0][1] + a[0][1] * b[1][1]],
         [a[1][0] * b[0][0] + a[1][1] * b[1][0], a[1][0] * b[0][1] + a[1][1] * b[1][1]],
@@ -17,7 +15,8 @@ pub fn mul(a: &M2, b: &M2) -> M2 {
 }
 
 /// `a + b`.
-pub fn add(a: &M2, b: &M2) -> M2 {
+#[inline(always)]
+pub fn add<T: Field>(a: &M2<T>, b: &M2<T>) -> M2<T> {
     [[a[0][0] + b[0][0], a[0][1] + b[0][1]], [a[1][0] + b[1][0], a[1][1] + b[1][1]]]
 }
 

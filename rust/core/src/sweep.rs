@@ -5,13 +5,14 @@
 
 use crate::{
     c64,
-    chain::{self, Factor, Tape},
+    chain::{Engine, Group, Response, Tape},
     error::CoreError,
+    lanes::LANES,
     line::{Line, Point},
     receptance::Dense,
 };
 use std::sync::{
-    Mutex,
+    Mutex, PoisonError,
     atomic::{AtomicBool, AtomicUsize, Ordering},
 };
 
@@ -123,7 +124,7 @@ pub fn sweep(request: &Request<'_>, control: &Control) -> Result<Answer, CoreErr
     if control.cancel.load(Ordering::Relaxed) {
         return Err(CoreError::Cancelled);
     }
-    answer.failures = failures.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    answer.failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
     answer.failures.sort_by_key(|(i, _)| *i);
     Ok(answer)
 }
@@ -135,14 +136,39 @@ struct Jobs<'a> {
     joints: &'a mut [c64],
 }
 
+impl<'a> Jobs<'a> {
+    /// Hands out the next frequencies, at most `most`: the first one's index and the places of their answers.
+    fn take(&mut self, most: usize, total: usize, lengths: (usize, usize)) -> Option<Job<'a>> {
+        let (first, count) = (self.next, most.min(total - self.next));
+        if count == 0 {
+            return None;
+        }
+        self.next += count;
+        Some(Job {
+            first,
+            count,
+            sensors: split(&mut self.sensors, count * lengths.0),
+            joints: split(&mut self.joints, count * lengths.1),
+        })
+    }
+}
+
+/// Frequencies for one thread, and where their answers go.
+struct Job<'a> {
+    first: usize,
+    count: usize,
+    sensors: &'a mut [c64],
+    joints: &'a mut [c64],
+}
+
 /// Takes the first `n` items off a slice that is being handed out.
-fn take<'a>(slice: &mut &'a mut [c64], n: usize) -> &'a mut [c64] {
+fn split<'a>(slice: &mut &'a mut [c64], n: usize) -> &'a mut [c64] {
     let (head, tail) = std::mem::take(slice).split_at_mut(n);
     *slice = tail;
     head
 }
 
-/// One thread's share: takes the next frequency until none is left.
+/// One thread's share: takes the next frequencies until none is left.
 fn work(
     request: &Request<'_>,
     plan: &Plan,
@@ -151,55 +177,66 @@ fn work(
     failures: &Mutex<Vec<(usize, CoreError)>>,
     lengths: (usize, usize),
 ) {
-    let mut solver = Solver::new(request.line, plan);
+    let mut solver = Solver::new(request, plan);
+    let total = request.frequencies.len();
     while !control.cancel.load(Ordering::Relaxed) {
-        let (i, sensors, joints) = {
-            let mut jobs = jobs.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            let i = jobs.next;
-            if i >= request.frequencies.len() {
-                return;
-            }
-            jobs.next += 1;
-            let jobs = &mut *jobs;
-            (i, take(&mut jobs.sensors, lengths.0), take(&mut jobs.joints, lengths.1))
-        };
-        let laws = &request.laws[i * request.n_laws..(i + 1) * request.n_laws];
-        if let Err(error) = solver.run(request.frequencies[i], laws, request.forces.len(), sensors, joints) {
-            sensors.fill(NAN);
-            joints.fill(NAN);
-            failures.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((i, error));
+        let job = jobs.lock().unwrap_or_else(PoisonError::into_inner).take(solver.group(), total, lengths);
+        let Some(mut job) = job else { return };
+        let errors = solver.run(request, &mut job);
+        for (lane, error) in errors {
+            job.sensors[lane * lengths.0..(lane + 1) * lengths.0].fill(NAN);
+            job.joints[lane * lengths.1..(lane + 1) * lengths.1].fill(NAN);
+            failures.lock().unwrap_or_else(PoisonError::into_inner).push((job.first + lane, error));
         }
-        control.done.fetch_add(1, Ordering::Relaxed);
+        control.done.fetch_add(job.count, Ordering::Relaxed);
     }
 }
 
 /// A plan with the memory that one thread needs to run it.
 enum Solver<'a> {
-    Chain(&'a Line, &'a Tape, Factor),
-    Receptance(&'a Line, &'a Dense),
+    Chain(&'a Tape, Box<Engine>),
+    Receptance(&'a Dense),
 }
 
 impl<'a> Solver<'a> {
-    fn new(line: &'a Line, plan: &'a Plan) -> Self {
+    fn new(request: &Request<'_>, plan: &'a Plan) -> Self {
         match plan {
-            Plan::Chain(tape) => Self::Chain(line, tape, Factor::new(tape)),
-            Plan::Receptance(dense) => Self::Receptance(line, dense),
+            Plan::Chain(tape) => Self::Chain(tape, Box::new(Engine::new(tape, request.forces.len()))),
+            Plan::Receptance(dense) => Self::Receptance(dense),
         }
     }
 
-    fn run(
-        &mut self,
-        frequency: f64,
-        laws: &[c64],
-        forces: usize,
-        sensors: &mut [c64],
-        joints: &mut [c64],
-    ) -> Result<(), CoreError> {
+    /// Frequencies that it takes at once.
+    fn group(&self) -> usize {
         match self {
-            Self::Receptance(line, dense) => dense.respond(line, frequency, laws, sensors, joints),
-            Self::Chain(line, tape, factor) => {
-                factor.run(tape, line, frequency, laws)?;
-                chain::respond(tape, factor, forces, frequency, &mut chain::Response { sensors, joints })
+            Self::Chain(..) => LANES,
+            Self::Receptance(_) => 1,
+        }
+    }
+
+    /// Runs a job; returns the frequencies that failed, counted from the job's first.
+    fn run(&mut self, request: &Request<'_>, job: &mut Job<'_>) -> Vec<(usize, CoreError)> {
+        let (n, last) = (request.n_laws, job.first + job.count - 1);
+        let laws = &request.laws[job.first * n..(last + 1) * n];
+        match self {
+            Self::Receptance(dense) => {
+                let frequency = request.frequencies[job.first];
+                let result = dense.respond(request.line, frequency, laws, job.sensors, job.joints);
+                result.err().map(|e| (0, e)).into_iter().collect()
+            }
+            Self::Chain(tape, engine) => {
+                // Lanes that are left over repeat the last frequency.
+                let frequencies = std::array::from_fn(|i| request.frequencies[(job.first + i).min(last)]);
+                let group = Group { frequencies, laws, n_laws: n };
+                let mut out = Response {
+                    sensors: &mut *job.sensors,
+                    joints: &mut *job.joints,
+                    n_sensors: request.sensors.len(),
+                    n_forces: request.forces.len(),
+                    used: job.count,
+                };
+                let failed = engine.run(tape, request.line, &group, &mut out);
+                failed.iter().take(job.count).enumerate().filter_map(|(i, e)| Some((i, e.clone()?))).collect()
             }
         }
     }
@@ -285,6 +322,28 @@ mod tests {
             for (c, d) in chain.joints[part.clone()].iter().zip(&dense.joints[part]) {
                 assert!((c - d).norm() <= 1e-9 * size, "{f} Hz: {c} {d}");
             }
+        }
+    }
+
+    /// The code for this processor and the code for every processor do the same sums.
+    #[test]
+    fn portable_code_agrees() {
+        let line = line();
+        let points: Vec<Point> = [(0, -3.0), (1, 7.0), (2, 6.3)].map(|(body, x)| Point { body, x }).to_vec();
+        let tape = Tape::new(&line, &points, &points, 700.0).unwrap();
+        let laws: Vec<c64> = (0..LANES).flat_map(|_| [c64::new(6e7, 8e6), c64::new(2e9, 3e8)]).collect();
+        let group =
+            Group { frequencies: std::array::from_fn(|i| 100.0 * (i + 1) as f64 - 50.0), laws: &laws, n_laws: 2 };
+        let mut answers = Vec::new();
+        for mut engine in [Engine::new(&tape, 3), Engine::portable(&tape, 3)] {
+            let mut sensors = vec![c64::ZERO; LANES * 9];
+            let mut out =
+                Response { sensors: &mut sensors, joints: &mut [], n_sensors: 3, n_forces: 3, used: LANES };
+            assert!(engine.run(&tape, &line, &group, &mut out).iter().all(Option::is_none));
+            answers.push(sensors);
+        }
+        for (a, b) in answers[0].iter().zip(&answers[1]) {
+            assert!((a - b).norm() <= 1e-11 * b.norm(), "{a} {b}");
         }
     }
 

@@ -1,11 +1,13 @@
-//! The march of one frequency: impedance forward, records for the way back.
+//! The march of several frequencies side by side: impedance forward, records for the way back.
 
 use super::tape::{Op, Rows, Tape};
 use crate::{
     c64,
-    element::Transfer,
+    element::{Section, Transfer},
     error::CoreError,
-    line::{Body, Line},
+    field::Field,
+    lanes::{Fuse, LANES, Lanes},
+    line::{Beam, Body, Line},
     small::{self, M2},
     waves::Waves,
 };
@@ -15,226 +17,322 @@ const PINNED: f64 = 1e30;
 /// Share of a pivot's terms that must survive cancellation.
 const LEAST_SHARE: f64 = 1e-12;
 
-/// Factor of the system at one frequency. Memory is kept from one frequency to the next.
+/// Factor of the system at several frequencies. Memory is kept from one set of frequencies to the next.
 #[derive(Debug, Clone)]
-pub struct Factor {
+pub struct Factor<F> {
     /// Per operation: G^-1 (2 x 2, marches only), G^-1 B (2 x 2), and W (2 x others) in row order.
-    pub records: Vec<c64>,
-    z: Vec<c64>,
+    pub records: Vec<Lanes<F>>,
+    /// Why a lane cannot be solved.
+    pub failed: [Option<CoreError>; LANES],
+    z: Vec<Lanes<F>>,
     width: usize,
-    pieces: Vec<Transfer>,
+    pieces: Vec<Transfer<Lanes<F>>>,
+    laws: Vec<Lanes<F>>,
+    frequencies: [f64; LANES],
 }
 
-impl Factor {
+/// The frequencies, Hz, and the stiffness of each law at each of them, N/m: `laws[lane * n_laws + law]`.
+#[derive(Debug, Clone, Copy)]
+pub struct Group<'a> {
+    /// One frequency a lane.
+    pub frequencies: [f64; LANES],
+    /// At least one row; lanes beyond the last row repeat it.
+    pub laws: &'a [c64],
+    /// Numbers in a row.
+    pub n_laws: usize,
+}
+
+impl<F: Fuse> Factor<F> {
     /// Room for the factor of a tape.
     pub fn new(tape: &Tape) -> Self {
-        let z = vec![c64::ZERO; tape.width * tape.width];
-        Self { records: vec![c64::ZERO; tape.record_len], z, width: tape.width, pieces: Vec::new() }
+        Self {
+            records: vec![Lanes::ZERO; tape.record_len],
+            failed: [const { None }; LANES],
+            z: vec![Lanes::ZERO; tape.width * tape.width],
+            width: tape.width,
+            pieces: Vec::with_capacity(tape.pieces.len()),
+            laws: Vec::new(),
+            frequencies: [0.0; LANES],
+        }
     }
 
-    /// Marches the impedance along the line at `frequency` Hz; `laws` holds one complex stiffness per law.
-    ///
-    /// # Errors
-    /// `Singular`, `NonFinite` or `IllConditioned`, naming the body.
-    pub fn run(&mut self, tape: &Tape, line: &Line, frequency: f64, laws: &[c64]) -> Result<(), CoreError> {
-        let omega = std::f64::consts::TAU * frequency;
-        let at = At { frequency, line };
-        self.z.fill(c64::ZERO);
-        self.pieces.clear();
-        for p in &tape.pieces {
-            if let Body::Beam(b) = &line.bodies[p.body] {
-                self.pieces.push(Transfer::new(&Waves::new(b, omega), p.length));
-            }
-        }
+    /// Marches the impedance along the line. A lane that cannot be solved says so in `failed`; the others stand.
+    #[inline(always)]
+    pub fn run(&mut self, tape: &Tape, line: &Line, group: &Group<'_>) {
+        self.prepare(tape, line, group);
         for op in &tape.ops {
             match op {
                 Op::StartBeam { own, body, endless, pinned } => {
                     self.clear(*own);
-                    self.add_end(*own, &line.bodies[*body], omega, [*endless, *pinned], true, *body, &at)?;
+                    self.add_end(line, *own, *body, [*endless, *pinned], true);
                 }
                 Op::StartMass { own, body } => {
                     self.clear(*own);
                     if let Body::Mass(m) = line.bodies[*body] {
-                        self.z[own * self.width + own] = c64::new(-omega * omega * m, 0.0);
+                        for i in 0..LANES {
+                            let omega = std::f64::consts::TAU * self.frequencies[i];
+                            self.z[own * self.width + own].re[i] = -omega * omega * m;
+                        }
                     }
                 }
-                Op::March { rows, piece } => self.march(rows, *piece, &at)?,
-                Op::Join { joint, a, b, law, scale } => {
-                    let k = laws[*law] * *scale;
-                    if !k.is_finite() {
-                        return Err(at.not_finite(format!("stiffness of joint {joint}")));
-                    }
-                    let w = self.width;
-                    self.z[a * w + a] += k;
+                Op::March { rows, piece } => self.march(line, rows, *piece),
+                Op::Join { a, b, law, scale, .. } => {
+                    let k = self.laws[*law].scale(*scale);
+                    let (aa, w) = (a * self.width + a, self.width);
+                    self.z[aa] = self.z[aa] + k;
                     if let Some(b) = *b {
-                        self.z[b * w + b] += k;
-                        self.z[a * w + b] -= k;
-                        self.z[b * w + a] -= k;
+                        let ab = at(w, *a, b);
+                        self.z[b * w + b] = self.z[b * w + b] + k;
+                        self.z[ab] = self.z[ab] - k;
                     }
                 }
                 Op::EndBeam { rows, endless, pinned } => {
-                    let ends = [*endless, *pinned];
-                    self.add_end(rows.own, &line.bodies[rows.body], omega, ends, false, rows.body, &at)?;
+                    self.add_end(line, rows.own, rows.body, [*endless, *pinned], false);
                     let zbb = self.own(rows.own);
-                    let (inverse, share) = small::inverse(&zbb).ok_or_else(|| at.pivot(rows.body, &zbb))?;
-                    at.check(share, rows.body)?;
+                    let inverse = self.invert(line, rows.body, &zbb);
                     self.condense(rows, &inverse, 0);
                 }
-                Op::EndMass { rows } => {
-                    let z = self.z[rows.own * self.width + rows.own];
-                    if !z.is_finite() || z == c64::ZERO {
-                        return Err(at.pivot(rows.body, &[[z; 2]; 2]));
-                    }
-                    self.condense_mass(rows, z.inv());
-                }
+                Op::EndMass { rows } => self.end_mass(line, rows),
                 Op::Force { .. } | Op::Sense { .. } => {}
             }
         }
-        Ok(())
     }
 
-    fn clear(&mut self, own: usize) {
-        let w = self.width;
-        for r in [own, own + 1] {
-            self.z[r * w..(r + 1) * w].fill(c64::ZERO);
-            for i in 0..w {
-                self.z[i * w + r] = c64::ZERO;
+    #[inline(always)]
+    fn prepare(&mut self, tape: &Tape, line: &Line, group: &Group<'_>) {
+        self.failed = [const { None }; LANES];
+        self.frequencies = group.frequencies;
+        let rows = group.laws.len().checked_div(group.n_laws).unwrap_or(0);
+        self.laws.clear();
+        for law in 0..group.n_laws {
+            let values = Lanes::gather(|i| group.laws[i.min(rows - 1) * group.n_laws + law]);
+            self.check_law(tape, law, &values);
+            self.laws.push(values);
+        }
+        let omega2 = group.frequencies.map(|f| (std::f64::consts::TAU * f).powi(2));
+        self.pieces.clear();
+        for p in &tape.pieces {
+            if let Body::Beam(beam) = &line.bodies[p.body] {
+                self.pieces.push(Transfer::over(&section(beam, &omega2), p.length, p.terms));
             }
         }
     }
 
-    fn own(&self, r: usize) -> M2 {
+    /// Notes the lanes in which a law that some joint has is not finite.
+    fn check_law(&mut self, tape: &Tape, law: usize, values: &Lanes<F>) {
+        for lane in 0..LANES {
+            if !values.lane(lane).is_finite() {
+                let joint = tape.ops.iter().find_map(|op| match op {
+                    Op::Join { joint, law: l, .. } if *l == law => Some(*joint),
+                    _ => None,
+                });
+                if let Some(joint) = joint {
+                    self.not_finite(lane, &format!("stiffness of joint {joint}"));
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn clear(&mut self, own: usize) {
+        for r in [own, own + 1] {
+            for i in 0..self.width {
+                let place = at(self.width, r, i);
+                self.z[place] = Lanes::ZERO;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn own(&self, r: usize) -> M2<Lanes<F>> {
         let (z, w) = (&self.z, self.width);
-        [[z[r * w + r], z[r * w + r + 1]], [z[(r + 1) * w + r], z[(r + 1) * w + r + 1]]]
+        let cross = z[(r + 1) * w + r];
+        [[z[r * w + r], cross], [cross, z[(r + 1) * w + r + 1]]]
     }
 
-    fn set(&mut self, r: usize, m: &M2) {
-        for (i, row) in m.iter().enumerate() {
-            let at = (r + i) * self.width + r;
-            self.z[at..at + 2].copy_from_slice(row);
-        }
-    }
-
-    #[allow(clippy::too_many_arguments)]
-    fn add_end(
-        &mut self,
-        own: usize,
-        body: &Body,
-        omega: f64,
-        [endless, pinned]: [bool; 2],
-        left: bool,
-        index: usize,
-        at: &At<'_>,
-    ) -> Result<(), CoreError> {
-        let Body::Beam(beam) = body else { return Ok(()) };
+    /// What lies beyond an end of a beam: the beam itself without end, or a pin.
+    fn add_end(&mut self, line: &Line, own: usize, body: usize, [endless, pinned]: [bool; 2], left: bool) {
+        let Body::Beam(beam) = &line.bodies[body] else { return };
         let w = self.width;
-        if endless {
-            let zeros = [[c64::ZERO; 2]; 2];
-            let k = Waves::new(beam, omega).half_infinite(left).ok_or_else(|| at.pivot(index, &zeros))?;
-            let sum = small::add(&self.own(own), &k);
-            self.set(own, &sum);
-        } else if pinned {
-            self.z[own * w + own] += PINNED;
+        if pinned && !endless {
+            self.z[own * w + own] = self.z[own * w + own] + Lanes::real(PINNED);
         }
-        Ok(())
+        if !endless {
+            return;
+        }
+        for i in 0..LANES {
+            let omega = std::f64::consts::TAU * self.frequencies[i];
+            match Waves::new(beam, omega).half_infinite(left) {
+                Some(k) => {
+                    for (place, v) in [(own * w + own, k[0][0]), ((own + 1) * w + own, k[1][0])] {
+                        self.z[place].re[i] += v.re;
+                        self.z[place].im[i] += v.im;
+                    }
+                    let place = (own + 1) * w + own + 1;
+                    self.z[place].re[i] += k[1][1].re;
+                    self.z[place].im[i] += k[1][1].im;
+                }
+                None => self.fail(line, body, i, &[[c64::ZERO; 2]; 2]),
+            }
+        }
     }
 
     /// The beam advances: u' = A u + B f, f' = C u + D f with f = Z u (Pestel and Leckie 1963, ch. 3).
-    fn march(&mut self, rows: &Rows, piece: usize, at: &At<'_>) -> Result<(), CoreError> {
-        let t = self.pieces[piece];
+    #[inline(always)]
+    fn march(&mut self, line: &Line, rows: &Rows, piece: usize) {
         let (own, w) = (rows.own, self.width);
         let zbb = self.own(own);
-        let g = small::add(&t.a, &small::mul(&t.b, &zbb));
-        let (gi, share) = small::inverse(&g).ok_or_else(|| at.pivot(rows.body, &g))?;
-        at.check(share, rows.body)?;
-        let gb = small::mul(&gi, &t.b);
-        let r = rows.record;
+        let t = &self.pieces[piece];
+        let g = plus(&t.a, &t.b, &zbb);
+        let forces = plus(&t.c, &t.d, &zbb);
+        let b = t.b;
+        let gi = self.invert(line, rows.body, &g);
+        let gb = small::mul(&gi, &b);
         for k in 0..4 {
-            self.records[r + k] = gi[k / 2][k % 2];
+            self.records[rows.record + k] = gi[k / 2][k % 2];
         }
-        let zo: Vec<[c64; 2]> = self.condense(rows, &gb, 4);
-        let mut znew = small::mul(&small::add(&t.c, &small::mul(&t.d, &zbb)), &gi);
-        let mean = (znew[0][1] + znew[1][0]) * 0.5;
-        znew[0][1] = mean;
-        znew[1][0] = mean;
-        self.set(own, &znew);
+        self.condense(rows, &gb, 4);
+        let new = small::mul(&forces, &gi);
+        self.z[own * w + own] = new[0][0];
+        self.z[(own + 1) * w + own] = (new[0][1] + new[1][0]).scale(0.5);
+        self.z[(own + 1) * w + own + 1] = new[1][1];
         // Symplectic transfer: the coupling to the others only turns, Z'bo = G^-T Zbo.
-        for (&o, z) in rows.others.iter().zip(&zo) {
-            for (j, v) in [gi[0][0] * z[0] + gi[1][0] * z[1], gi[0][1] * z[0] + gi[1][1] * z[1]].iter().enumerate()
-            {
-                self.z[(own + j) * w + o] = *v;
-                self.z[o * w + own + j] = *v;
-            }
+        for &o in &rows.others {
+            let (first, second) = (at(w, own, o), at(w, own + 1, o));
+            let (z0, z1) = (self.z[first], self.z[second]);
+            self.z[first] = (gi[0][0] * z0).plus(gi[1][0], z1);
+            self.z[second] = (gi[0][1] * z0).plus(gi[1][1], z1);
         }
-        Ok(())
     }
 
-    /// Records `q` and W = q Zbo at `skip`, takes Zob W off the others, and returns Zbo as it was.
-    fn condense(&mut self, rows: &Rows, q: &M2, skip: usize) -> Vec<[c64; 2]> {
+    /// Records `q` and W = q Zbo at `skip`, and takes Zob W off the others.
+    #[inline(always)]
+    fn condense(&mut self, rows: &Rows, q: &M2<Lanes<F>>, skip: usize) {
         let (own, w, n) = (rows.own, self.width, rows.others.len());
         let r = rows.record + skip;
         for k in 0..4 {
             self.records[r + k] = q[k / 2][k % 2];
         }
-        let zo: Vec<[c64; 2]> =
-            rows.others.iter().map(|&o| [self.z[own * w + o], self.z[(own + 1) * w + o]]).collect();
-        for (k, z) in zo.iter().enumerate() {
-            self.records[r + 4 + k] = q[0][0] * z[0] + q[0][1] * z[1];
-            self.records[r + 4 + n + k] = q[1][0] * z[0] + q[1][1] * z[1];
+        let (first, second) = (r + 4, r + 4 + n);
+        for (k, &o) in rows.others.iter().enumerate() {
+            let (z0, z1) = (self.z[at(w, own, o)], self.z[at(w, own + 1, o)]);
+            self.records[first + k] = (q[0][0] * z0).plus(q[0][1], z1);
+            self.records[second + k] = (q[1][0] * z0).plus(q[1][1], z1);
         }
         for (i, &oi) in rows.others.iter().enumerate() {
-            for (k, &ok) in rows.others.iter().enumerate().take(i + 1) {
-                let d = zo[i][0] * self.records[r + 4 + k] + zo[i][1] * self.records[r + 4 + n + k];
-                self.z[oi * w + ok] -= d;
-                if i != k {
-                    self.z[ok * w + oi] = self.z[oi * w + ok];
-                }
+            let (z0, z1) = (self.z[at(w, own, oi)], self.z[at(w, own + 1, oi)]);
+            for (k, &ok) in rows.others[..=i].iter().enumerate() {
+                let place = at(w, oi, ok);
+                self.z[place] =
+                    self.z[place].minus(z0, self.records[first + k]).minus(z1, self.records[second + k]);
             }
         }
-        zo
     }
 
-    fn condense_mass(&mut self, rows: &Rows, q: c64) {
+    #[inline(always)]
+    fn end_mass(&mut self, line: &Line, rows: &Rows) {
         let (own, w) = (rows.own, self.width);
+        let z = self.z[own * w + own];
+        let size = z.norm_sqr();
+        for (i, size) in size.iter().enumerate() {
+            if !(*size > 0.0 && size.is_finite()) {
+                self.fail(line, rows.body, i, &[[z.lane(i), c64::ZERO], [c64::ZERO, c64::ONE]]);
+            }
+        }
+        let q = z.inverse();
         self.records[rows.record] = q;
         for (k, &o) in rows.others.iter().enumerate() {
-            self.records[rows.record + 1 + k] = q * self.z[own * w + o];
+            self.records[rows.record + 1 + k] = q * self.z[at(w, own, o)];
         }
-        for &oi in &rows.others {
-            for (k, &ok) in rows.others.iter().enumerate() {
-                let d = self.z[oi * w + own] * self.records[rows.record + 1 + k];
-                self.z[oi * w + ok] -= d;
+        for (i, &oi) in rows.others.iter().enumerate() {
+            let z0 = self.z[at(w, own, oi)];
+            for (k, &ok) in rows.others[..=i].iter().enumerate() {
+                let place = at(w, oi, ok);
+                self.z[place] = self.z[place].minus(z0, self.records[rows.record + 1 + k]);
             }
         }
     }
-}
 
-/// Where the march is, for messages.
-struct At<'a> {
-    frequency: f64,
-    line: &'a Line,
-}
-
-impl At<'_> {
-    fn pivot(&self, body: usize, m: &M2) -> CoreError {
-        let place = self.line.name(body);
-        if m.iter().flatten().all(|v| v.is_finite()) {
-            CoreError::Singular { frequency: self.frequency, place }
-        } else {
-            CoreError::NonFinite { frequency: self.frequency, place }
+    /// The inverse, every lane checked.
+    #[inline(always)]
+    fn invert(&mut self, line: &Line, body: usize, m: &M2<Lanes<F>>) -> M2<Lanes<F>> {
+        let (p, q) = (m[0][0] * m[1][1], m[0][1] * m[1][0]);
+        let det = p - q;
+        let (size, p2, q2) = (det.norm_sqr(), p.norm_sqr(), q.norm_sqr());
+        let mut fine = true;
+        for i in 0..LANES {
+            // Written so that NaN is not fine.
+            fine &= size[i] > LEAST_SHARE * LEAST_SHARE * (p2[i] + q2[i]) && size[i] < f64::INFINITY;
         }
+        if !fine {
+            for i in 0..LANES {
+                self.fail(
+                    line,
+                    body,
+                    i,
+                    &[[m[0][0].lane(i), m[0][1].lane(i)], [m[1][0].lane(i), m[1][1].lane(i)]],
+                );
+            }
+        }
+        let r = det.inverse();
+        [[m[1][1] * r, -(m[0][1] * r)], [-(m[1][0] * r), m[0][0] * r]]
     }
 
-    fn not_finite(&self, place: String) -> CoreError {
-        CoreError::NonFinite { frequency: self.frequency, place }
+    /// Notes that something about a lane is not finite.
+    #[cold]
+    pub fn not_finite(&mut self, lane: usize, what: &str) {
+        let frequency = self.frequencies[lane];
+        self.failed[lane] = Some(CoreError::NonFinite { frequency, place: what.into() });
     }
 
-    fn check(&self, share: f64, body: usize) -> Result<(), CoreError> {
-        if share < LEAST_SHARE {
-            let estimate = f64::EPSILON / share;
-            let place = self.line.name(body);
-            return Err(CoreError::IllConditioned { frequency: self.frequency, place, estimate });
+    /// Notes why a lane cannot be solved, if it cannot and nothing was noted before.
+    #[cold]
+    fn fail(&mut self, line: &Line, body: usize, lane: usize, pivot: &M2) {
+        if self.failed[lane].is_some() {
+            return;
         }
-        Ok(())
+        let (frequency, place) = (self.frequencies[lane], line.name(body));
+        self.failed[lane] = match small::inverse(pivot) {
+            _ if !pivot.iter().flatten().all(|v| v.is_finite()) => Some(CoreError::NonFinite { frequency, place }),
+            None => Some(CoreError::Singular { frequency, place }),
+            Some((_, share)) if share < LEAST_SHARE => {
+                Some(CoreError::IllConditioned { frequency, place, estimate: f64::EPSILON / share })
+            }
+            Some(_) => None,
+        };
+    }
+}
+
+/// Place of the entry (r, c) of a symmetric matrix kept in its lower triangle.
+#[inline(always)]
+fn at(width: usize, r: usize, c: usize) -> usize {
+    if r > c { r * width + c } else { c * width + r }
+}
+
+/// `a + b z`.
+#[inline(always)]
+fn plus<F: Fuse>(a: &M2<Lanes<F>>, b: &M2<Lanes<F>>, z: &M2<Lanes<F>>) -> M2<Lanes<F>> {
+    [
+        [
+            a[0][0].plus(b[0][0], z[0][0]).plus(b[0][1], z[1][0]),
+            a[0][1].plus(b[0][0], z[0][1]).plus(b[0][1], z[1][1]),
+        ],
+        [
+            a[1][0].plus(b[1][0], z[0][0]).plus(b[1][1], z[1][0]),
+            a[1][1].plus(b[1][0], z[0][1]).plus(b[1][1], z[1][1]),
+        ],
+    ]
+}
+
+/// A beam's section at squared angular frequencies.
+#[inline(always)]
+fn section<F: Fuse>(beam: &Beam, omega2: &[f64; LANES]) -> Section<Lanes<F>> {
+    let (flexibility, shear) = (beam.bending.inv(), beam.shear.map_or(c64::ZERO, |s| s.inv()));
+    let real = |scale: f64| Lanes::new(omega2.map(|o| o * scale), [0.0; LANES]);
+    Section {
+        flexibility: Lanes::new([flexibility.re; LANES], [flexibility.im; LANES]),
+        shear_compliance: Lanes::new([shear.re; LANES], [shear.im; LANES]),
+        mu: real(beam.mass),
+        rotary: real(beam.rotary),
     }
 }

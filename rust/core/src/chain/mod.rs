@@ -9,12 +9,15 @@
 //! is linear in the number of joints; nothing is truncated.
 //!
 //! [`tape`] compiles a line to a list of operations that all frequencies share, [`factor`] runs
-//! it forward once per frequency, [`solve`] runs loads forward and displacements backward.
+//! it forward for several frequencies side by side, [`solve`] runs loads forward and displacements
+//! backward, and [`engine`] chooses the code for the processor at hand.
 
+mod engine;
 mod factor;
 mod solve;
 mod tape;
 
-pub use factor::Factor;
-pub use solve::{Response, respond};
+pub use engine::Engine;
+pub use factor::Group;
+pub use solve::Response;
 pub use tape::Tape;

@@ -1,117 +1,196 @@
-//! Loads forward, displacements backward, over the factor of one frequency.
+//! Loads forward, displacements backward, over the factor of several frequencies.
 
 use super::{
     factor::Factor,
     tape::{Op, Rows, Tape},
 };
-use crate::{c64, error::CoreError};
+use crate::{
+    c64,
+    lanes::{Fuse, Lanes},
+};
 
-/// Where one frequency's answer goes; row-major, one column per force.
+/// Where the answers of the lanes go, one after the other; row-major, one column per force.
 #[derive(Debug)]
 pub struct Response<'a> {
-    /// Receptance, sensors x forces, m/N.
+    /// Receptance, lanes x sensors x forces, m/N.
     pub sensors: &'a mut [c64],
-    /// Extension of the joints (upper less lower body), joints x forces, m/N; may be empty.
+    /// Extension of the joints (upper less lower body), lanes x joints x forces, m/N; may be empty.
     pub joints: &'a mut [c64],
+    /// Number of sensors.
+    pub n_sensors: usize,
+    /// Number of forces.
+    pub n_forces: usize,
+    /// Lanes that are wanted.
+    pub used: usize,
 }
 
-/// Answers `forces` unit forces at once.
-///
-/// # Errors
-/// `NonFinite` if the answer is not finite.
-pub fn respond(
-    tape: &Tape,
-    factor: &Factor,
-    forces: usize,
-    frequency: f64,
-    out: &mut Response<'_>,
-) -> Result<(), CoreError> {
-    let mut s =
-        Sweep { f: forces, rec: &factor.records, front: vec![c64::ZERO; tape.width * forces], saved: vec![] };
-    for op in &tape.ops {
-        match op {
-            Op::StartBeam { own, .. } => s.front[own * forces..(own + 2) * forces].fill(c64::ZERO),
-            Op::StartMass { own, .. } => s.front[own * forces..(own + 1) * forces].fill(c64::ZERO),
-            // The forces at the front are Z u + g, and a load lessens what the right must supply.
-            Op::Force { row, index } => s.front[row * forces + index] -= 1.0,
-            Op::March { rows, .. } => s.forward(rows, 2, true),
-            Op::EndBeam { rows, .. } => s.forward(rows, 2, false),
-            Op::EndMass { rows } => s.forward(rows, 1, false),
-            Op::Join { .. } | Op::Sense { .. } => {}
-        }
+/// Loads and displacements at the front, kept from one set of frequencies to the next.
+#[derive(Debug, Clone)]
+pub struct Loads<F> {
+    front: Vec<Lanes<F>>,
+    saved: Vec<Lanes<F>>,
+}
+
+impl<F: Fuse> Loads<F> {
+    /// Room for so many forces.
+    pub fn new(tape: &Tape, forces: usize) -> Self {
+        Self { front: vec![Lanes::ZERO; tape.width * forces], saved: Vec::new() }
     }
-    s.front.fill(c64::ZERO);
-    for op in tape.ops.iter().rev() {
-        match op {
-            Op::March { rows, .. } => s.backward(rows, 2, true),
-            Op::EndBeam { rows, .. } => s.backward(rows, 2, false),
-            Op::EndMass { rows } => s.backward(rows, 1, false),
-            Op::Sense { row, index } => {
-                out.sensors[index * forces..(index + 1) * forces]
-                    .copy_from_slice(&s.front[row * forces..(row + 1) * forces]);
-            }
-            Op::Join { joint, a, b, .. } if !out.joints.is_empty() => {
-                for k in 0..forces {
-                    let below = b.map_or(c64::ZERO, |b| s.front[b * forces + k]);
-                    out.joints[joint * forces + k] = s.front[a * forces + k] - below;
+
+    /// Answers all forces at once.
+    #[inline(always)]
+    pub fn respond(&mut self, tape: &Tape, factor: &mut Factor<F>, out: &mut Response<'_>) {
+        let f = out.n_forces;
+        let wants_joints = !out.joints.is_empty();
+        self.front.fill(Lanes::ZERO);
+        self.saved.clear();
+        // Left of the first force nothing is loaded yet; left of the last thing read nothing is wanted.
+        for op in &tape.ops[tape.first_force..] {
+            match op {
+                Op::StartBeam { own, .. } => self.front[own * f..(own + 2) * f].fill(Lanes::ZERO),
+                Op::StartMass { own, .. } => self.front[own * f..(own + 1) * f].fill(Lanes::ZERO),
+                // The forces at the front are Z u + g, and a load lessens what the right must supply.
+                Op::Force { row, index } => {
+                    let load = &mut self.front[row * f + index];
+                    for v in &mut load.re {
+                        *v -= 1.0;
+                    }
                 }
+                Op::March { rows, .. } => self.forward::<true>(&factor.records, rows, f),
+                Op::EndBeam { rows, .. } => self.forward::<false>(&factor.records, rows, f),
+                Op::EndMass { rows } => self.forward_mass(&factor.records, rows, f),
+                Op::Join { .. } | Op::Sense { .. } => {}
             }
-            _ => {}
         }
+        self.front.fill(Lanes::ZERO);
+        let first_read = if wants_joints { 0 } else { tape.first_sensor };
+        for (k, op) in tape.ops.iter().enumerate().skip(first_read).rev() {
+            let loaded = k >= tape.first_force;
+            match op {
+                Op::March { rows, .. } => self.backward::<true>(&factor.records, rows, f, loaded),
+                Op::EndBeam { rows, .. } => self.backward::<false>(&factor.records, rows, f, loaded),
+                Op::EndMass { rows } => self.backward_mass(&factor.records, rows, f, loaded),
+                Op::Sense { row, index } => {
+                    let stride = out.n_sensors * f;
+                    for c in 0..f {
+                        scatter(&self.front[row * f + c], out.sensors, index * f + c, stride, out.used);
+                    }
+                }
+                Op::Join { joint, a, b, .. } if wants_joints => {
+                    let stride = tape.joints * f;
+                    for c in 0..f {
+                        let mut d = self.front[a * f + c];
+                        if let Some(b) = b {
+                            d = d - self.front[b * f + c];
+                        }
+                        scatter(&d, out.joints, joint * f + c, stride, out.used);
+                    }
+                }
+                _ => {}
+            }
+        }
+        finite(factor, out, tape.joints);
     }
-    let finite = out.sensors.iter().chain(out.joints.iter()).all(|v| v.is_finite());
-    if finite { Ok(()) } else { Err(CoreError::NonFinite { frequency, place: "the response".into() }) }
-}
 
-struct Sweep<'a> {
-    f: usize,
-    rec: &'a [c64],
-    front: Vec<c64>,
-    saved: Vec<c64>,
-}
-
-impl Sweep<'_> {
     /// g'o = go - W^T gb and g'b = G^-T gb; a body that ends keeps nothing.
-    fn forward(&mut self, rows: &Rows, size: usize, marches: bool) {
-        let (f, own, n) = (self.f, rows.own, rows.others.len());
-        let g = self.front[own * f..(own + size) * f].to_vec();
-        let w = rows.record + size * size * if marches { 2 } else { 1 };
-        for (k, &o) in rows.others.iter().enumerate() {
-            for c in 0..f {
-                let d: c64 = (0..size).map(|i| self.rec[w + i * n + k] * g[i * f + c]).sum();
-                self.front[o * f + c] -= d;
+    #[inline(always)]
+    fn forward<const MARCHES: bool>(&mut self, records: &[Lanes<F>], rows: &Rows, f: usize) {
+        let (own, n) = (rows.own, rows.others.len());
+        let gi = &records[rows.record..];
+        let w = &gi[if MARCHES { 8 } else { 4 }..];
+        for c in 0..f {
+            let (g0, g1) = (self.front[own * f + c], self.front[(own + 1) * f + c]);
+            for (k, &o) in rows.others.iter().enumerate() {
+                let at = o * f + c;
+                self.front[at] = self.front[at].minus(w[k], g0).minus(w[n + k], g1);
             }
-        }
-        if marches {
-            let gi = &self.rec[rows.record..rows.record + 4];
-            for c in 0..f {
-                self.front[own * f + c] = gi[0] * g[c] + gi[2] * g[f + c];
-                self.front[(own + 1) * f + c] = gi[1] * g[c] + gi[3] * g[f + c];
+            if MARCHES {
+                self.front[own * f + c] = (gi[0] * g0).plus(gi[2], g1);
+                self.front[(own + 1) * f + c] = (gi[1] * g0).plus(gi[3], g1);
             }
+            self.saved.push(g0);
+            self.saved.push(g1);
         }
-        self.saved.extend_from_slice(&g);
     }
 
     /// ub = G^-1 u'b - W uo - q gb.
-    fn backward(&mut self, rows: &Rows, size: usize, marches: bool) {
-        let (f, own, n) = (self.f, rows.own, rows.others.len());
-        let g = self.saved.split_off(self.saved.len() - size * f);
-        let q = rows.record + if marches { size * size } else { 0 };
-        let w = q + size * size;
-        let old = self.front[own * f..(own + size) * f].to_vec();
-        for i in 0..size {
-            for c in 0..f {
-                let mut u = c64::ZERO;
-                for j in 0..size {
-                    u -= self.rec[q + i * size + j] * g[j * f + c];
-                    if marches {
-                        u += self.rec[rows.record + i * size + j] * old[j * f + c];
-                    }
-                }
-                for (k, &o) in rows.others.iter().enumerate() {
-                    u -= self.rec[w + i * n + k] * self.front[o * f + c];
-                }
-                self.front[(own + i) * f + c] = u;
+    #[inline(always)]
+    fn backward<const MARCHES: bool>(&mut self, records: &[Lanes<F>], rows: &Rows, f: usize, loaded: bool) {
+        let (own, n) = (rows.own, rows.others.len());
+        let gi = &records[rows.record..];
+        let q = &gi[if MARCHES { 4 } else { 0 }..];
+        let w = &q[4..];
+        let saved = self.saved.len() - if loaded { 2 * f } else { 0 };
+        for c in 0..f {
+            let (mut u0, mut u1) = (Lanes::ZERO, Lanes::ZERO);
+            if MARCHES {
+                let (v0, v1) = (self.front[own * f + c], self.front[(own + 1) * f + c]);
+                u0 = (gi[0] * v0).plus(gi[1], v1);
+                u1 = (gi[2] * v0).plus(gi[3], v1);
+            }
+            if loaded {
+                let (g0, g1) = (self.saved[saved + 2 * c], self.saved[saved + 2 * c + 1]);
+                u0 = u0.minus(q[0], g0).minus(q[1], g1);
+                u1 = u1.minus(q[2], g0).minus(q[3], g1);
+            }
+            for (k, &o) in rows.others.iter().enumerate() {
+                let u = self.front[o * f + c];
+                u0 = u0.minus(w[k], u);
+                u1 = u1.minus(w[n + k], u);
+            }
+            self.front[own * f + c] = u0;
+            self.front[(own + 1) * f + c] = u1;
+        }
+        self.saved.truncate(saved);
+    }
+
+    #[inline(always)]
+    fn forward_mass(&mut self, records: &[Lanes<F>], rows: &Rows, f: usize) {
+        let w = &records[rows.record + 1..];
+        for c in 0..f {
+            let g = self.front[rows.own * f + c];
+            for (k, &o) in rows.others.iter().enumerate() {
+                let at = o * f + c;
+                self.front[at] = self.front[at].minus(w[k], g);
+            }
+            self.saved.push(g);
+        }
+    }
+
+    #[inline(always)]
+    fn backward_mass(&mut self, records: &[Lanes<F>], rows: &Rows, f: usize, loaded: bool) {
+        let (q, w) = (records[rows.record], &records[rows.record + 1..]);
+        let saved = self.saved.len() - if loaded { f } else { 0 };
+        for c in 0..f {
+            let mut u = Lanes::ZERO;
+            if loaded {
+                u = u.minus(q, self.saved[saved + c]);
+            }
+            for (k, &o) in rows.others.iter().enumerate() {
+                u = u.minus(w[k], self.front[o * f + c]);
+            }
+            self.front[rows.own * f + c] = u;
+        }
+        self.saved.truncate(saved);
+    }
+}
+
+/// Writes each lane's number into its own block.
+#[inline(always)]
+fn scatter<F: Fuse>(from: &Lanes<F>, to: &mut [c64], place: usize, stride: usize, used: usize) {
+    for i in 0..used {
+        to[i * stride + place] = from.lane(i);
+    }
+}
+
+/// Marks the lanes whose answers are not finite.
+fn finite<F: Fuse>(factor: &mut Factor<F>, out: &Response<'_>, joints: usize) {
+    let blocks = [(&*out.sensors, out.n_sensors * out.n_forces), (&*out.joints, joints * out.n_forces)];
+    for lane in 0..out.used {
+        for (values, size) in blocks {
+            let block = values.get(lane * size..(lane + 1) * size).unwrap_or(&[]);
+            if factor.failed[lane].is_none() && !block.iter().all(|v| v.is_finite()) {
+                factor.not_finite(lane, "the response");
             }
         }
     }

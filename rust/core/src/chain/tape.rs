@@ -1,7 +1,7 @@
 //! A line compiled to the operations of one march from left to right.
 
 use crate::{
-    element::LONGEST,
+    element::{LONGEST, terms},
     error::CoreError,
     line::{Beam, Body, End, Line, Point, SAME_PLACE},
     waves::Waves,
@@ -14,6 +14,8 @@ pub struct Piece {
     pub body: usize,
     /// Length in m.
     pub length: f64,
+    /// Terms of the series that it needs at the highest frequency.
+    pub terms: usize,
 }
 
 /// Degrees of freedom of one body in the front, and of the others beside it.
@@ -51,7 +53,7 @@ pub enum Op {
 }
 
 /// The operations, the distinct pieces, and the sizes they need.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Tape {
     /// Operations in order from left to right.
     pub ops: Vec<Op>,
@@ -63,6 +65,10 @@ pub struct Tape {
     pub record_len: usize,
     /// Number of joints of the line.
     pub joints: usize,
+    /// Index of the first operation that loads; the number of operations if none does.
+    pub first_force: usize,
+    /// Index of the first operation that reads; the number of operations if none does.
+    pub first_sensor: usize,
 }
 
 /// What happens at a place on a body; ordered as it must be done there.
@@ -114,11 +120,11 @@ impl Compiler<'_> {
         Rows { own: self.front.rows[body][0], others, record, body }
     }
 
-    fn piece(&mut self, body: usize, length: f64) -> usize {
+    fn piece(&mut self, body: usize, length: f64, steepest: f64) -> usize {
         // Lengths that differ by rounding of the coordinates are one piece.
         let same = |p: &Piece| p.body == body && (p.length - length).abs() < 1e-12;
         self.tape.pieces.iter().position(same).unwrap_or_else(|| {
-            self.tape.pieces.push(Piece { body, length });
+            self.tape.pieces.push(Piece { body, length, terms: terms(steepest * length) });
             self.tape.pieces.len() - 1
         })
     }
@@ -131,7 +137,7 @@ impl Compiler<'_> {
         }
         let steepest = Waves::new(beam, std::f64::consts::TAU * self.highest).steepest();
         let parts = (steepest * length / LONGEST).ceil().max(1.0);
-        let piece = self.piece(body, length / parts);
+        let piece = self.piece(body, length / parts, steepest);
         for _ in 0..parts as usize {
             let rows = self.record(body, 8);
             self.tape.ops.push(Op::March { rows, piece });
@@ -224,7 +230,7 @@ impl Tape {
                 last[body] = Some(k);
             }
         }
-        let tape = Tape { ops: vec![], pieces: vec![], width: 0, record_len: 0, joints: line.joints.len() };
+        let tape = Tape { joints: line.joints.len(), ..Tape::default() };
         let front = Front { rows: vec![vec![]; n], ..Front::default() };
         let mut c = Compiler { line, highest, front, place: vec![f64::NAN; n], tape };
         for (k, (x, event, bodies)) in events.iter().enumerate() {
@@ -242,7 +248,12 @@ impl Tape {
                 }
             }
         }
-        c.tape.width = c.front.next;
-        Ok(c.tape)
+        let mut tape = c.tape;
+        tape.width = c.front.next;
+        let first = |wanted: fn(&Op) -> bool| tape.ops.iter().position(wanted).unwrap_or(tape.ops.len());
+        let (force, sensor) =
+            (first(|op| matches!(op, Op::Force { .. })), first(|op| matches!(op, Op::Sense { .. })));
+        (tape.first_force, tape.first_sensor) = (force, sensor);
+        Ok(tape)
     }
 }
