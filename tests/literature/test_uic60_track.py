@@ -49,9 +49,10 @@ PINNED_PINNED = [  # bay m, Timoshenko Hz, Euler Hz
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize(("bay", "timoshenko", "euler"), PINNED_PINNED)
 def test_pinned_pinned_frequency_of_one_bay(bay, timoshenko, euler, formulation):
-    """One lossless bay between two pins resonates where the stiffness of its middle vanishes."""
+    """One bay between two pins resonates where the stiffness of its middle vanishes."""
     for theory, printed in (("timoshenko", timoshenko), ("euler", euler)):
-        rail = uic60(theory=theory).model_copy(update={"intervals_m": ((-bay / 2, bay / 2),), "ends": "pinned"})
+        # A trace of loss keeps the search off the resonance itself, where the line is singular.
+        rail = uic60(theory=theory, loss_factor=1e-6).model_copy(update={"intervals_m": ((-bay / 2, bay / 2),), "ends": "pinned"})
         line = Line(bodies={"rail": rail}, joints=(), laws={})
 
         def stiffness(frequency, line=line):

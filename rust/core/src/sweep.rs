@@ -108,7 +108,7 @@ pub fn sweep(request: &Request<'_>, control: &Control) -> Result<Answer, CoreErr
     let plan = match request.formulation {
         Formulation::Chain => {
             let highest = request.frequencies.iter().copied().fold(0.0, f64::max);
-            Plan::Chain(Tape::new(request.line, request.forces, request.sensors, highest)?)
+            Plan::Chain(Tape::new(request.line, request.forces, request.sensors, highest, request.joints))
         }
         Formulation::Receptance => Plan::Receptance(Dense::new(request.line, request.forces, request.sensors)),
     };
@@ -330,7 +330,7 @@ mod tests {
     fn portable_code_agrees() {
         let line = line();
         let points: Vec<Point> = [(0, -3.0), (1, 7.0), (2, 6.3)].map(|(body, x)| Point { body, x }).to_vec();
-        let tape = Tape::new(&line, &points, &points, 700.0).unwrap();
+        let tape = Tape::new(&line, &points, &points, 700.0, false);
         let laws: Vec<c64> = (0..LANES).flat_map(|_| [c64::new(6e7, 8e6), c64::new(2e9, 3e8)]).collect();
         let group =
             Group { frequencies: std::array::from_fn(|i| 100.0 * (i + 1) as f64 - 50.0), laws: &laws, n_laws: 2 };

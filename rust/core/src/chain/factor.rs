@@ -25,6 +25,7 @@ pub struct Factor<F> {
     /// Why a lane cannot be solved.
     pub failed: [Option<CoreError>; LANES],
     z: Vec<Lanes<F>>,
+    right: Vec<Lanes<F>>,
     width: usize,
     pieces: Vec<Transfer<Lanes<F>>>,
     laws: Vec<Lanes<F>>,
@@ -49,6 +50,7 @@ impl<F: Fuse> Factor<F> {
             records: vec![Lanes::ZERO; tape.record_len],
             failed: [const { None }; LANES],
             z: vec![Lanes::ZERO; tape.width * tape.width],
+            right: vec![Lanes::ZERO; tape.right.as_ref().map_or(0, |_| tape.width * tape.width)],
             width: tape.width,
             pieces: Vec::with_capacity(tape.pieces.len()),
             laws: Vec::new(),
@@ -59,16 +61,26 @@ impl<F: Fuse> Factor<F> {
     /// Marches the impedance along the line. A lane that cannot be solved says so in `failed`; the others stand.
     #[inline(always)]
     pub fn run(&mut self, tape: &Tape, line: &Line, group: &Group<'_>) {
-        self.prepare(tape, line, group);
+        self.prepare(tape, group);
+        if let Some(right) = &tape.right {
+            self.run_tape(right, line);
+            std::mem::swap(&mut self.z, &mut self.right);
+        }
+        self.run_tape(tape, line);
+    }
+
+    #[inline(always)]
+    fn run_tape(&mut self, tape: &Tape, line: &Line) {
+        self.transfers(tape, line);
         for op in &tape.ops {
             match op {
                 Op::StartBeam { own, body, endless, pinned } => {
                     self.clear(*own);
                     self.add_end(line, *own, *body, [*endless, *pinned], true);
                 }
-                Op::StartMass { own, body } => {
+                Op::StartMass { own, body, weightless } => {
                     self.clear(*own);
-                    if let Body::Mass(m) = line.bodies[*body] {
+                    if let (Body::Mass(m), false) = (line.bodies[*body], *weightless) {
                         for i in 0..LANES {
                             let omega = std::f64::consts::TAU * self.frequencies[i];
                             self.z[own * self.width + own].re[i] = -omega * omega * m;
@@ -93,13 +105,14 @@ impl<F: Fuse> Factor<F> {
                     self.condense(rows, &inverse, 0);
                 }
                 Op::EndMass { rows } => self.end_mass(line, rows),
+                Op::Meet { rows } => self.meet(rows),
                 Op::Force { .. } | Op::Sense { .. } => {}
             }
         }
     }
 
     #[inline(always)]
-    fn prepare(&mut self, tape: &Tape, line: &Line, group: &Group<'_>) {
+    fn prepare(&mut self, tape: &Tape, group: &Group<'_>) {
         self.failed = [const { None }; LANES];
         self.frequencies = group.frequencies;
         let rows = group.laws.len().checked_div(group.n_laws).unwrap_or(0);
@@ -109,7 +122,11 @@ impl<F: Fuse> Factor<F> {
             self.check_law(tape, law, &values);
             self.laws.push(values);
         }
-        let omega2 = group.frequencies.map(|f| (std::f64::consts::TAU * f).powi(2));
+    }
+
+    #[inline(always)]
+    fn transfers(&mut self, tape: &Tape, line: &Line) {
+        let omega2 = self.frequencies.map(|f| (std::f64::consts::TAU * f).powi(2));
         self.pieces.clear();
         for p in &tape.pieces {
             if let Body::Beam(beam) = &line.bodies[p.body] {
@@ -122,7 +139,8 @@ impl<F: Fuse> Factor<F> {
     fn check_law(&mut self, tape: &Tape, law: usize, values: &Lanes<F>) {
         for lane in 0..LANES {
             if !values.lane(lane).is_finite() {
-                let joint = tape.ops.iter().find_map(|op| match op {
+                let right = tape.right.iter().flat_map(|t| &t.ops);
+                let joint = tape.ops.iter().chain(right).find_map(|op| match op {
                     Op::Join { joint, law: l, .. } if *l == law => Some(*joint),
                     _ => None,
                 });
@@ -225,6 +243,18 @@ impl<F: Fuse> Factor<F> {
                 let place = at(w, oi, ok);
                 self.z[place] =
                     self.z[place].minus(z0, self.records[first + k]).minus(z1, self.records[second + k]);
+            }
+        }
+    }
+
+    /// Adds the impedance of all that lies to the right; in the mirror a rotation changes sign.
+    #[inline(always)]
+    fn meet(&mut self, rows: &[(usize, usize, bool)]) {
+        for (i, &(l, r, turns)) in rows.iter().enumerate() {
+            for &(lk, rk, turns_k) in &rows[..=i] {
+                let (place, from) = (at(self.width, l, lk), at(self.width, r, rk));
+                let z = self.right[from];
+                self.z[place] = if turns == turns_k { self.z[place] + z } else { self.z[place] - z };
             }
         }
     }

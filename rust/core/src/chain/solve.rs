@@ -59,7 +59,7 @@ impl<F: Fuse> Loads<F> {
                 Op::March { rows, .. } => self.forward::<true>(&factor.records, rows, f),
                 Op::EndBeam { rows, .. } => self.forward::<false>(&factor.records, rows, f),
                 Op::EndMass { rows } => self.forward_mass(&factor.records, rows, f),
-                Op::Join { .. } | Op::Sense { .. } => {}
+                Op::Join { .. } | Op::Sense { .. } | Op::Meet { .. } => {}
             }
         }
         self.front.fill(Lanes::ZERO);

@@ -2,7 +2,6 @@
 
 use crate::{
     element::{LONGEST, terms},
-    error::CoreError,
     line::{Beam, Body, End, Line, Point, SAME_PLACE},
     waves::Waves,
 };
@@ -36,8 +35,8 @@ pub struct Rows {
 pub enum Op {
     /// A beam enters: row, body, whether it comes from infinity, whether its end is pinned.
     StartBeam { own: usize, body: usize, endless: bool, pinned: bool },
-    /// A mass enters.
-    StartMass { own: usize, body: usize },
+    /// A mass enters; weightless where its other half, marched from the other side, brings the weight.
+    StartMass { own: usize, body: usize, weightless: bool },
     /// The beam advances by a piece.
     March { rows: Rows, piece: usize },
     /// A joint between two rows, or a row and the ground.
@@ -50,7 +49,13 @@ pub enum Op {
     EndBeam { rows: Rows, endless: bool, pinned: bool },
     /// A mass leaves.
     EndMass { rows: Rows },
+    /// All that lies to the right joins: rows of this front and of the one marched from the right, and whether
+    /// they are rotations, whose sign a mirror turns.
+    Meet { rows: Vec<(usize, usize, bool)> },
 }
+
+/// Record of an operation that nothing will read again.
+const SCRATCH: usize = usize::MAX;
 
 /// The operations, the distinct pieces, and the sizes they need.
 #[derive(Debug, Clone, Default)]
@@ -69,6 +74,8 @@ pub struct Tape {
     pub first_force: usize,
     /// Index of the first operation that reads; the number of operations if none does.
     pub first_sensor: usize,
+    /// What lies beyond the last force and sensor, marched from the right end leftwards.
+    pub right: Option<Box<Tape>>,
 }
 
 /// What happens at a place on a body; ordered as it must be done there.
@@ -109,14 +116,28 @@ struct Compiler<'a> {
     front: Front,
     place: Vec<f64>,
     tape: Tape,
+    /// Whether the march goes from the right end leftwards, places then being mirrored.
+    mirrored: bool,
+    /// Whether records will be read again.
+    keep: bool,
+    /// Length of the longest record that will not.
+    scratch: usize,
+    /// Bodies that reach both sides of the place where the two marches meet.
+    crossing: Vec<bool>,
 }
 
 impl Compiler<'_> {
     /// Room for `fixed` numbers and W, which has a row for each of the body's own.
     fn record(&mut self, body: usize, fixed: usize) -> Rows {
-        let record = self.tape.record_len;
         let others = self.front.others(body);
-        self.tape.record_len += fixed + self.front.rows[body].len() * others.len();
+        let size = fixed + self.front.rows[body].len() * others.len();
+        let mut record = SCRATCH;
+        if self.keep {
+            record = self.tape.record_len;
+            self.tape.record_len += size;
+        } else {
+            self.scratch = self.scratch.max(size);
+        }
         Rows { own: self.front.rows[body][0], others, record, body }
     }
 
@@ -150,23 +171,28 @@ impl Compiler<'_> {
         match &self.line.bodies[body] {
             Body::Mass(_) => {
                 let own = self.front.take(1, body);
-                self.tape.ops.push(Op::StartMass { own, body });
+                let weightless = self.mirrored && self.crossing[body];
+                self.tape.ops.push(Op::StartMass { own, body, weightless });
             }
             Body::Beam(b) => {
                 let own = self.front.take(2, body);
-                let endless = b.interval[0].is_infinite();
-                self.tape.ops.push(Op::StartBeam { own, body, endless, pinned: b.ends[0] == End::Pinned });
+                let end = usize::from(self.mirrored);
+                let endless = b.interval[end].is_infinite();
+                self.tape.ops.push(Op::StartBeam { own, body, endless, pinned: b.ends[end] == End::Pinned });
             }
         }
     }
 
     fn end(&mut self, body: usize) {
+        let last = usize::from(!self.mirrored);
+        // Where the two marches meet, the other one has brought what lies beyond.
+        let beyond = !self.crossing[body];
         let op = match &self.line.bodies[body] {
             Body::Mass(_) => Op::EndMass { rows: self.record(body, 1) },
             Body::Beam(b) => Op::EndBeam {
                 rows: self.record(body, 4),
-                endless: b.interval[1].is_infinite(),
-                pinned: b.ends[1] == End::Pinned,
+                endless: beyond && b.interval[last].is_infinite(),
+                pinned: beyond && b.ends[last] == End::Pinned,
             },
         };
         self.tape.ops.push(op);
@@ -177,6 +203,7 @@ impl Compiler<'_> {
 
     fn perform(&mut self, event: Event, forces: &[Point], sensors: &[Point]) {
         let row = |front: &Front, body: usize| front.rows[body][0];
+        self.keep |= matches!(event, Event::Force(_) | Event::Sense(_));
         let op = match event {
             Event::Touch => return,
             Event::Join(i) => {
@@ -191,8 +218,11 @@ impl Compiler<'_> {
     }
 }
 
-/// All events as (place, event, bodies touched), sorted from left to right.
-fn events(line: &Line, forces: &[Point], sensors: &[Point]) -> Vec<(f64, Event, [Option<usize>; 2])> {
+/// A place, what happens there, and the bodies it touches.
+type Happening = (f64, Event, [Option<usize>; 2]);
+
+/// All that happens, sorted from left to right.
+fn events(line: &Line, forces: &[Point], sensors: &[Point]) -> Vec<Happening> {
     let mut all = Vec::new();
     for (i, body) in line.bodies.iter().enumerate() {
         if let Body::Beam(Beam { interval, .. }) = body {
@@ -215,45 +245,115 @@ fn events(line: &Line, forces: &[Point], sensors: &[Point]) -> Vec<(f64, Event, 
     all
 }
 
-impl Tape {
-    /// Compiles a checked line for frequencies up to `highest` Hz.
-    ///
-    /// # Errors
-    /// `Invalid` if a force or sensor sits on a mass that nothing joins.
-    pub fn new(line: &Line, forces: &[Point], sensors: &[Point], highest: f64) -> Result<Self, CoreError> {
-        let events = events(line, forces, sensors);
+impl<'a> Compiler<'a> {
+    fn new(line: &'a Line, highest: f64, crossing: Vec<bool>, mirrored: bool, keep: bool) -> Self {
         let n = line.bodies.len();
-        // First and last event of each body.
-        let mut last = vec![None; n];
+        let tape = Tape { joints: line.joints.len(), ..Tape::default() };
+        let front = Front { rows: vec![vec![]; n], ..Front::default() };
+        Self { line, highest, front, place: vec![f64::NAN; n], tape, mirrored, keep, scratch: 0, crossing }
+    }
+
+    /// Marches over what happens, in order; bodies end after their last event, unless they cross.
+    fn march(&mut self, events: &[Happening], forces: &[Point], sensors: &[Point]) {
+        let mut last = vec![None; self.line.bodies.len()];
         for (k, e) in events.iter().enumerate() {
             for body in e.2.into_iter().flatten() {
                 last[body] = Some(k);
             }
         }
-        let tape = Tape { joints: line.joints.len(), ..Tape::default() };
-        let front = Front { rows: vec![vec![]; n], ..Front::default() };
-        let mut c = Compiler { line, highest, front, place: vec![f64::NAN; n], tape };
         for (k, (x, event, bodies)) in events.iter().enumerate() {
             for body in bodies.iter().flatten().copied() {
-                if c.front.rows[body].is_empty() {
-                    c.start(body, *x);
+                if self.front.rows[body].is_empty() {
+                    self.start(body, *x);
                 } else {
-                    c.advance(body, *x);
+                    self.advance(body, *x);
                 }
             }
-            c.perform(*event, forces, sensors);
+            self.perform(*event, forces, sensors);
             for body in bodies.iter().flatten().copied() {
-                if last[body] == Some(k) {
-                    c.end(body);
+                if last[body] == Some(k) && !self.crossing[body] {
+                    self.end(body);
                 }
             }
         }
-        let mut tape = c.tape;
-        tape.width = c.front.next;
+    }
+
+    /// Brings the crossing bodies to where the two marches meet.
+    fn gather(&mut self, x: f64) {
+        for body in 0..self.crossing.len() {
+            if self.crossing[body] {
+                self.advance(body, x);
+            }
+        }
+    }
+
+    /// The tape, its records behind the scratch that others share.
+    fn finish(self) -> Tape {
+        let mut tape = self.tape;
+        tape.width = self.front.next;
+        tape.record_len += self.scratch;
+        for op in &mut tape.ops {
+            if let Op::March { rows, .. } | Op::EndBeam { rows, .. } | Op::EndMass { rows } = op {
+                rows.record = if rows.record == SCRATCH { 0 } else { rows.record + self.scratch };
+            }
+        }
         let first = |wanted: fn(&Op) -> bool| tape.ops.iter().position(wanted).unwrap_or(tape.ops.len());
-        let (force, sensor) =
-            (first(|op| matches!(op, Op::Force { .. })), first(|op| matches!(op, Op::Sense { .. })));
+        let force = first(|op| matches!(op, Op::Force { .. }));
+        let sensor = first(|op| matches!(op, Op::Sense { .. }));
         (tape.first_force, tape.first_sensor) = (force, sensor);
-        Ok(tape)
+        tape
+    }
+}
+
+impl Tape {
+    /// Compiles a checked line for frequencies up to `highest` Hz; `joints` if their extensions are wanted.
+    ///
+    /// What lies right of the last force and sensor is marched from the other side: nothing of it, nor of what lies
+    /// left of the first, has to be kept for the way back.
+    pub fn new(line: &Line, forces: &[Point], sensors: &[Point], highest: f64, joints: bool) -> Self {
+        let events = events(line, forces, sensors);
+        let n = line.bodies.len();
+        let read = events.iter().filter(|e| matches!(e.1, Event::Force(_) | Event::Sense(_))).map(|e| e.0);
+        let meeting = if joints { f64::INFINITY } else { read.fold(f64::NEG_INFINITY, f64::max) };
+        let meeting = if meeting == f64::NEG_INFINITY { f64::INFINITY } else { meeting };
+        let split = events.partition_point(|e| e.0 <= meeting);
+        let (before, beyond) = events.split_at(split);
+        let touched = |part: &[Happening]| {
+            let mut seen = vec![false; n];
+            part.iter().flat_map(|e| e.2.into_iter().flatten()).for_each(|body| seen[body] = true);
+            seen
+        };
+        let crossing: Vec<bool> = touched(before).into_iter().zip(touched(beyond)).map(|(a, b)| a && b).collect();
+        let mut c = Compiler::new(line, highest, crossing.clone(), false, joints);
+        c.march(before, forces, sensors);
+        if beyond.is_empty() {
+            return c.finish();
+        }
+        let mut right = Compiler::new(line, highest, crossing, true, false);
+        let mut mirrored: Vec<Happening> = beyond.iter().map(|(x, event, bodies)| (-x, *event, *bodies)).collect();
+        mirrored
+            .sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.partial_cmp(&b.1).unwrap_or(std::cmp::Ordering::Equal)));
+        right.march(&mirrored, forces, sensors);
+        right.gather(-meeting);
+        c.gather(meeting);
+        let mut rows = Vec::new();
+        for body in 0..n {
+            if c.crossing[body] {
+                let pair = c.front.rows[body].iter().zip(&right.front.rows[body]);
+                rows.extend(pair.enumerate().map(|(i, (l, r))| (*l, *r, i == 1)));
+            }
+        }
+        c.tape.ops.push(Op::Meet { rows });
+        for body in 0..n {
+            if c.crossing[body] {
+                c.end(body);
+            }
+        }
+        let mut tape = c.finish();
+        let right = right.finish();
+        tape.width = tape.width.max(right.width);
+        tape.record_len = tape.record_len.max(right.record_len);
+        tape.right = Some(Box::new(right));
+        tape
     }
 }
