@@ -8,6 +8,10 @@
 //! (flexibility in series, stiffness in parallel) so that short elements lose no digits. The cost
 //! is linear in the number of joints; nothing is truncated.
 //!
+//! What lies right of the last force and sensor is marched from the right end leftwards, and the
+//! two fronts meet there: only between the first and the last force or sensor is anything kept for
+//! the way back.
+//!
 //! [`tape`] compiles a line to a list of operations that all frequencies share, [`factor`] runs
 //! it forward for several frequencies side by side, [`solve`] runs loads forward and displacements
 //! backward, and [`engine`] chooses the code for the processor at hand.
