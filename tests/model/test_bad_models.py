@@ -15,6 +15,59 @@ from permway.model.file import Frequencies, Model, model_from_dict, read_model
 from permway.model.irregularity import RangeWarning
 from permway.response.solve import solve
 
+LAYOUT = """\
+[line.bodies.slab]
+type = "beam"
+youngs_modulus_Pa = 3.6e10
+second_moment_m4 = 1.7e-3
+density_kg_per_m3 = 2500.0
+area_m2 = 0.5
+intervals_m = [[0.0, 5.0], [5.0, 10.0], [10.1, 15.0]]
+
+[line.bodies.plate]
+type = "mass"
+mass_kg = 20.0
+at = [{ from_m = 20.0, to_m = 23.0, spacing_m = 0.6 }, { from_m = 30.0, to_m = 33.0, spacing_m = 0.6 }]
+
+[line.bodies.cap]
+type = "mass"
+mass_kg = 4.0e4
+at = { of = "slab", inset_m = 0.5, within_m = 1.2 }
+
+[[line.joints]]
+between = ["slab", "slab"]
+law = "bearing"
+at = "meetings"
+
+[[line.joints]]
+between = ["slab", "cap"]
+law = "bearing"
+at = { of = "slab", inset_m = 0.5, within_m = 1.2 }
+changes = [
+    { from_m = 0.0, to_m = 6.0, factor = 0.5 },
+    { from_m = 5.0, to_m = 15.0, factor_from = 1.0, factor_to = 0.2 },
+]
+
+[[line.joints]]
+between = ["rail", "plate"]
+law = "pad"
+at = { of = "plate" }
+scatter = { seed = 3, relative_std = 0.2 }
+
+[[line.joints]]
+between = ["cap", "ground"]
+law = "bearing"
+at = { of = "cap" }
+
+[[line.joints]]
+between = ["plate", "ground"]
+law = "ballast"
+at = [20.0, 20.6, 21.2, 21.8, 22.4, 23.0, 30.0, 30.6, 31.2, 31.8, 32.4, 33.0]
+stiffness_is = "per_metre"
+layer_m = [19.0, 34.0]
+
+"""
+
 GOOD = """\
 format = 1
 title = "A sleeper before a bridge of two spans"
@@ -127,6 +180,8 @@ PAD_AT = "at = { from_m = 0.5, to_m = 63.5, spacing_m = 0.6 }"
 VALUES = "values_Hz = [10.0, 50.0, 200.0]"
 SPANS = "intervals_m = [[0.0, 32.0], [32.0, 64.0]]"
 TABLE = tomllib.loads(GOOD)
+ROWS = GOOD.replace("[[line.joints]]", LAYOUT + "[[line.joints]]", 1)
+ROWS_TABLE = tomllib.loads(ROWS)
 PRESET = '[line]\npreset = "slab_track_viaduct_32m"\n'
 SHORT = PRESET + "[line.options]\n"
 
@@ -336,22 +391,115 @@ EDITS = [
 ]  # fmt: skip
 
 
-def edited(old: str, new: str) -> str:
-    assert old in GOOD, f"the good file does not contain {old!r}"
-    return GOOD.replace(old, new, 1)
+CAP_AT = 'at = { of = "slab", inset_m = 0.5, within_m = 1.2 }'
+PLATE_AT = (
+    "at = [{ from_m = 20.0, to_m = 23.0, spacing_m = 0.6 }, { from_m = 30.0, to_m = 33.0, spacing_m = 0.6 }]"
+)
+BED = 'stiffness_is = "per_metre"\nlayer_m = [19.0, 34.0]'
+BED_AT = "at = [20.0, 20.6, 21.2, 21.8, 22.4, 23.0, 30.0, 30.6, 31.2, 31.8, 32.4, 33.0]"
+GRADED = "    { from_m = 5.0, to_m = 15.0, factor_from = 1.0, factor_to = 0.2 },\n"
+LOST = "{ from_m = 0.0, to_m = 6.0, factor = 0.5 }"
+
+# The same of the file with rows of masses, piers, dowels, changes and scatter.
+LAYOUT_EDITS = [
+    # Rows of masses
+    ("row at a number", PLATE_AT, "at = 20.0",
+     "line.bodies.plate.at", ["list of stations", "{of = a row}", "20.0"]),
+    ("row at nothing", PLATE_AT, "at = []", "line.bodies.plate.at", ["at least one station"]),
+    ("row at meetings", PLATE_AT, 'at = "meetings"', "line.bodies.plate.at", ["list of stations", "'meetings'"]),
+    ("row in words", PLATE_AT, 'at = [20.0, "21"]', "line.bodies.plate.at[1]", ["must be a number", "'21'"]),
+    ("second spread reversed", "from_m = 30.0, to_m = 33.0", "from_m = 33.0, to_m = 30.0",
+     "line.bodies.plate.at[1].to_m", ["30 lies left of from_m = 33"]),
+    ("key of a spread", "spacing_m = 0.6 }]", "spacing = 0.6 }]",
+     "line.bodies.plate.at[1].spacing_m", ["missing", "1 further"]),
+    ("spreads overlap", "from_m = 30.0, to_m = 33.0", "from_m = 23.0, to_m = 26.0",
+     "line.bodies.plate.at", ["two masses of the row stand at 23 m", "once"]),
+    ("row off its layer", "from_m = 30.0, to_m = 33.0", "from_m = 30.1, to_m = 33.1",
+     "line.joints[4].at[6]", ["off the plate, which stands at 20, 20.6", "got 30.0"]),
+    ("mass that nothing holds", "mass_kg = 150.0", "mass_kg = 150.0\nat = [-5.0, -4.4]",
+     "line.bodies.sleeper.at", ["nothing holds sleeper[2] at -4.4 m", "leave the mass out"]),
+    ("ends of nothing", CAP_AT, 'at = { of = "pier" }', "line.bodies.cap.at.of", ["no body 'pier'", "'slab'"]),
+    ("ends of an endless beam", CAP_AT, 'at = { of = "rail" }', "line.bodies.cap.at.of", ["rail has no ends"]),
+    ("at its own places", CAP_AT, 'at = { of = "cap" }', "line.bodies.cap.at.of", ["where it stands itself"]),
+    ("places of a single mass", CAP_AT, 'at = { of = "sleeper" }', "line.bodies.cap.at.of", ["give it at"]),
+    ("inset of masses", 'at = { of = "plate" }', 'at = { of = "plate", inset_m = 0.1 }',
+     "line.joints[2].at.inset_m", ["row of masses"]),
+    ("reach below zero", "within_m = 1.2 }\n\n[[", "within_m = -1.2 }\n\n[[",
+     "line.bodies.cap.at.within_m", ["greater than or equal to 0", "-1.2"]),
+    ("cap out of reach", "within_m = 1.2 }\nchanges", "within_m = 0.1 }\nchanges",
+     "line.joints[1].at[1]", ["no cap stands within 0.1 m", "nearest stands at 5 m", "within_m"]),
+    ("sensor beside a mass", 'body = "girder"\nx_m = 48.0', 'body = "plate"\nx_m = 20.3',
+     "sensors[1]", ["off the plate, which stands at", "got 20.3"]),
+    # Dowels
+    ("dowels of two bodies", 'between = ["slab", "slab"]', 'between = ["slab", "girder"]',
+     "line.joints[0].between", ["ties the beams of one row"]),
+    ("a row tied without meetings", 'at = "meetings"', "at = [5.0]",
+     "line.joints[0].between", ["both bodies are 'slab'", "meetings"]),
+    ("another word", 'at = "meetings"', 'at = "meeting"', "line.joints[0].at", ["list of stations", "'meeting'"]),
+    ("slabs apart", "[[0.0, 5.0], [5.0, 10.0], [10.1, 15.0]]", "[[0.0, 4.9], [5.0, 10.0], [10.1, 15.0]]",
+     "line.joints[0].at", ["no two beams of slab meet", "start where the other stops"]),
+    ("dowels of nothing", 'between = ["slab", "slab"]', 'between = ["slob", "slob"]',
+     "line.joints[0].between[0]", ["no such body", "'slob'"]),
+    ("dowels of masses", 'between = ["slab", "slab"]', 'between = ["plate", "plate"]',
+     "line.joints[0].at", ["no two beams of plate meet"]),
+    ("dowels per metre", 'at = "meetings"', 'at = "meetings"\nstiffness_is = "per_metre"',
+     "line.joints[0].stiffness_is", ["stations along the layer"]),
+    # Layers by length
+    ("kind of stiffness", BED, 'stiffness_is = "per_meter"',
+     "line.joints[4].stiffness_is", ["'each', 'total' or 'per_metre'"]),
+    ("bed too short", BED, 'stiffness_is = "per_metre"\nlayer_m = [20.5, 34.0]',
+     "line.joints[4].layer_m", ["does not hold all stations"]),
+    ("one station per metre", BED_AT + "\n" + BED, 'at = [20.0]\nstiffness_is = "per_metre"',
+     "line.joints[4].at", ["stands for no length", "layer_m"]),
+    ("bounds of two stretches", BED_AT, PLATE_AT, "line.joints[4].layer_m", ["bounds one stretch"]),
+    # Changes and scatter
+    ("change of nothing", LOST, "{ from_m = 5.6, to_m = 9.0, factor = 0.5 }",
+     "line.joints[1].changes[0]", ["holds no joint", "(5.6, 9.0)", "from 0.5 to 14.5 m"]),
+    ("change reversed", LOST, "{ from_m = 6.0, to_m = 0.0, factor = 0.5 }",
+     "line.joints[1].changes[0].to_m", ["0 lies left of from_m = 6"]),
+    ("change without a factor", LOST, "{ from_m = 0.0, to_m = 6.0 }",
+     "line.joints[1].changes[0].factor", ["give factor, or factor_from and factor_to"]),
+    ("change of two kinds", LOST, "{ from_m = 0.0, to_m = 6.0, factor = 0.5, factor_to = 0.1 }",
+     "line.joints[1].changes[0].factor", ["give factor, or"]),
+    ("half graded", "factor_from = 1.0, factor_to = 0.2", "factor_from = 1.0",
+     "line.joints[1].changes[1].factor", ["factor_from and factor_to"]),
+    ("graded at a point", "from_m = 5.0, to_m = 15.0, factor_from", "from_m = 5.5, to_m = 5.5, factor_from",
+     "line.joints[1].changes[1].to_m", ["needs a length"]),
+    ("negative factor", LOST, "{ from_m = 0.0, to_m = 6.0, factor = -0.5 }",
+     "line.joints[1].changes[0].factor", ["greater than or equal to 0"]),
+    ("changes as a table", "changes = [\n    " + LOST + ",\n" + GRADED + "]", "changes = " + LOST,
+     "line.joints[1].changes", ["must be a list"]),
+    ("key of a change", "factor = 0.5", "faktor = 0.5", "line.joints[1].changes[0]", ["'factor'"]),
+    ("scatter in percent", "relative_std = 0.2", "relative_std = 20.0",
+     "line.joints[2].scatter.relative_std", ["less than or equal to 10", "20.0"]),
+    ("seed in words", "seed = 3", 'seed = "three"', "line.joints[2].scatter.seed", ["integer", "'three'"]),
+    ("seed forgotten", "seed = 3, ", "", "line.joints[2].scatter.seed", ["missing"]),
+    ("negative seed", "seed = 3", "seed = -3", "line.joints[2].scatter.seed", ["greater than or equal to 0"]),
+]  # fmt: skip
 
 
-def test_good_file_is_good(tmp_path):
+def edited(old: str, new: str, good: str = GOOD) -> str:
+    assert old in good, f"the good file does not contain {old!r}"
+    return good.replace(old, new, 1)
+
+
+@pytest.mark.parametrize("good", [GOOD, ROWS], ids=["plain", "rows"])
+def test_good_file_is_good(good, tmp_path):
     path = tmp_path / "model.toml"
-    path.write_text(GOOD, encoding="utf-8")
+    path.write_text(good, encoding="utf-8")
     data = solve(read_model(path), threads=1)
     assert all(np.isfinite(v.values).all() for v in data.data_vars.values())
 
 
-@pytest.mark.parametrize(("old", "new", "place", "words"), [e[1:] for e in EDITS], ids=[e[0] for e in EDITS])
-def test_wrong_model_file(old, new, place, words, tmp_path):
+WRONG = [(GOOD, *e[1:]) for e in EDITS] + [(ROWS, *e[1:]) for e in LAYOUT_EDITS]
+
+
+@pytest.mark.parametrize(
+    ("good", "old", "new", "place", "words"), WRONG, ids=[e[0] for e in (*EDITS, *LAYOUT_EDITS)]
+)
+def test_wrong_model_file(good, old, new, place, words, tmp_path):
     path = tmp_path / "model.toml"
-    path.write_text(edited(old, new), encoding="utf-8")
+    path.write_text(edited(old, new, good), encoding="utf-8")
     with pytest.raises(InputError) as caught:
         read_model(path)
     text = str(caught.value)
@@ -487,7 +635,7 @@ def parent(table, place):
 @st.composite
 def mutated(draw):
     """A good model with one to three places deleted, replaced, swapped, or numbers made larger or smaller."""
-    table = copy.deepcopy(draw(st.sampled_from([TABLE, PRESETS])))
+    table = copy.deepcopy(draw(st.sampled_from([TABLE, ROWS_TABLE, PRESETS])))
     for _ in range(draw(st.integers(1, 3))):
         place = draw(st.sampled_from(list(places(table)) or [None]))
         if place is None:

@@ -9,20 +9,12 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from permway.model.faults import fault
+from permway.model.stations import Interval as Interval
+from permway.model.stations import MassesAt
+from permway.model.stations import Metres as Metres
 from permway.records import FrozenModel
 
 End = Literal["free", "pinned"]
-
-FARTHEST_M = 1e6
-"""Coordinates beyond this are taken for a slip of units."""
-
-Metres = Annotated[float, Field(ge=-FARTHEST_M, le=FARTHEST_M)]
-
-
-def _pair(value: object) -> object:
-    if isinstance(value, Sequence) and not isinstance(value, str) and len(value) != 2:
-        raise fault("must be two places [from, to]", value=value)
-    return value
 
 
 def _ends(value: object) -> object:
@@ -31,10 +23,6 @@ def _ends(value: object) -> object:
     if not known or (value is given and len(given) != 2):  # type: ignore[arg-type]
         raise fault('must be "free" or "pinned", or one of them for each end', value=value)
     return value
-
-
-Interval = Annotated[tuple[Metres, Metres], BeforeValidator(_pair)]
-"""From and to, m."""
 
 
 class Beam(FrozenModel):
@@ -133,10 +121,20 @@ class Beam(FrozenModel):
 
 
 class Mass(FrozenModel):
-    """A point mass (sleeper, baseplate, pier cap), placed by the joints that hold it."""
+    """A point mass (sleeper, baseplate, pier cap, resonator), or a row of equal ones.
+
+    Parameters
+    ----------
+    mass_kg : float
+        Of each.
+    at : sequence of float, Spread, sequence of Spread, or Ends, optional
+        Where the masses of a row stand: "sleeper[1]" is the first. Left out, there is one mass, and the joints
+        that hold it place it.
+    """
 
     type: Literal["mass"] = "mass"
     mass_kg: PositiveFloat
+    at: MassesAt | None = None
 
 
 AnyBody = Annotated[Beam | Mass, Field(discriminator="type")]

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,38 +13,14 @@ from permway.errors import InputError
 from permway.laws import AnyLaw, Hysteretic
 from permway.model.bodies import AnyBody, Beam, Mass
 from permway.model.faults import fault
-from permway.model.joints import GROUND, Ends, Joints, Spread
+from permway.model.joint_table import JointTable as JointTable
+from permway.model.joint_table import joint_table
+from permway.model.joints import GROUND, Ends, Joints
+from permway.model.segments import Segment as Segment
+from permway.model.segments import check_ends, check_rows, find, segments_of
 from permway.records import FrozenModel
 
-Integers = np.ndarray[tuple[int], np.dtype[np.int64]]
-
-_TOUCH_M = 1e-9
 _NAME = re.compile(r"^[A-Za-z][A-Za-z0-9_-]*$")
-
-
-@dataclass(frozen=True)
-class Segment:
-    """One beam or mass of the core: a body's name, or "girder[2]" for the second of a row."""
-
-    name: str
-    body: str
-    start: float
-    stop: float
-
-
-@dataclass(frozen=True)
-class JointTable:
-    """The joints of a line one by one, in the order of the model's layers, then along x.
-
-    Arrays of shape (J,): layer's index, x in m, upper and lower segment (-1 for the ground), law, scale.
-    """
-
-    layer: Integers
-    x: Reals
-    upper: Integers
-    lower: Integers
-    law: Integers
-    scale: Reals
 
 
 class Line(FrozenModel):
@@ -84,33 +58,13 @@ class Line(FrozenModel):
                 what = f"there is no law {layer.law!r}; there are {sorted(self.laws)}"
                 raise fault(what, "joints", index, "law")
             if isinstance(layer.at, Ends):
-                self._check_ends(index, layer.at)
+                check_ends(self.bodies, layer.at, "joints", index, "at")
+        check_rows(self.bodies)
         return self
-
-    def _check_ends(self, index: int, ends: Ends) -> None:
-        if ends.of not in self.bodies:
-            what = f"there is no body {ends.of!r}; there are {sorted(self.bodies)}"
-            raise fault(what, "joints", index, "at", "of")
-        body = self.bodies[ends.of]
-        if isinstance(body, Mass) or body.intervals_m is None:
-            raise fault(f"{ends.of} has no ends: give it intervals_m", "joints", index, "at", "of")
-        shortest = min(stop - start for start, stop in body.intervals_m)
-        if not ends.inset_m < 0.5 * shortest:
-            what = f"does not lie in from the ends of {ends.of}, which is {shortest:g} m long"
-            raise fault(what, "joints", index, "at", "inset_m", value=ends.inset_m)
 
     def segments(self) -> list[Segment]:
         """Beams one by one, then masses: the bodies of the core."""
-        beams, masses = [], []
-        for name, body in self.bodies.items():
-            if isinstance(body, Mass):
-                masses.append(Segment(name, name, -np.inf, np.inf))
-                continue
-            intervals = body.intervals_m or ((-np.inf, np.inf),)
-            for index, (start, stop) in enumerate(intervals):
-                label = name if len(intervals) == 1 else f"{name}[{index + 1}]"
-                beams.append(Segment(label, name, start, stop))
-        return beams + masses
+        return segments_of(self.bodies)
 
     def locate(self, body: str, x_m: float, *, where: str) -> int:
         """Index of the segment of `body` at `x_m`.
@@ -120,7 +74,7 @@ class Line(FrozenModel):
         InputError
             If there is no such body, if x lies off it, or if two beams of a row meet there.
         """
-        place = _find(self.segments(), body, np.array([x_m], dtype=np.float64), lambda _: where)
+        place = find(self.segments(), body, np.array([x_m], dtype=np.float64), lambda _: where)
         return int(place[0])
 
     def joint_table(self) -> JointTable:
@@ -129,45 +83,9 @@ class Line(FrozenModel):
         Raises
         ------
         InputError
-            If a joint lies off one of its bodies.
+            If a joint lies off one of its bodies, or nothing holds a mass of a row.
         """
-        laws, segments = list(self.laws), self.segments()
-        columns: list[tuple[Reals, Integers, Integers, Reals]] = []
-        for index, layer in enumerate(self.joints):
-            if isinstance(layer.at, Ends):
-                columns.append(_at_ends(segments, index, layer, layer.at))
-                continue
-            given = layer.at.stations() if isinstance(layer.at, Spread) else np.asarray(layer.at, dtype=np.float64)
-            stations = np.sort(given)
-            near = np.flatnonzero(np.diff(stations) < _TOUCH_M)
-            if near.size:
-                raise InputError(
-                    "two joints of the layer share a station",
-                    where=f"joints[{index}].at",
-                    value=float(stations[near[0]]),
-                    remedy="name each station once; for two joints at one place write two layers",
-                )
-            upper, lower = (_side(segments, body, stations, index) for body in layer.between)
-            columns.append((stations, upper, lower, layer.weights(stations)))
-        sizes = [len(x) for x, _, _, _ in columns]
-        table = JointTable(
-            layer=np.repeat(np.arange(len(sizes)), sizes),
-            x=np.concatenate([c[0] for c in columns] or [np.zeros(0)]),
-            upper=np.concatenate([c[1] for c in columns] or [np.zeros(0, dtype=np.int64)]),
-            lower=np.concatenate([c[2] for c in columns] or [np.zeros(0, dtype=np.int64)]),
-            law=np.repeat(np.array([laws.index(layer.law) for layer in self.joints], dtype=np.int64), sizes),
-            scale=np.concatenate([c[3] for c in columns] or [np.zeros(0)]),
-        )
-        itself = np.flatnonzero(table.upper == table.lower)
-        if itself.size:
-            layer_index = int(table.layer[itself[0]])
-            raise InputError(
-                f"ties {segments[table.upper[itself[0]]].name} to itself",
-                where=f"joints[{layer_index}].between",
-                value=self.joints[layer_index].between,
-                remedy="name two bodies",
-            )
-        return table
+        return joint_table(self.bodies, self.joints, list(self.laws), self.segments())
 
     def stiffness(self, frequency_Hz: ArrayLike, temperature_C: float | None = None) -> Complexes:
         """Complex stiffness of every law.
@@ -214,7 +132,8 @@ class Line(FrozenModel):
 
     def masses_kg(self) -> Reals:
         """Point masses in the core's order, kg."""
-        return np.array([b.mass_kg for b in self.bodies.values() if isinstance(b, Mass)], dtype=np.float64)
+        bodies = [self.bodies[segment.body] for segment in self.segments()]
+        return np.array([body.mass_kg for body in bodies if isinstance(body, Mass)], dtype=np.float64)
 
 
 def _check_stiffness(name: str, values: Complexes, frequency: Reals) -> None:
@@ -235,59 +154,3 @@ def _check_stiffness(name: str, values: Complexes, frequency: Reals) -> None:
             value=complex(values[bad[0]]),
             remedy="under exp(+i omega t) a loss is positive",
         )
-
-
-def _find(segments: Sequence[Segment], body: str, x_m: Reals, where: Callable[[int], str]) -> Integers:
-    """Index of the segment of a body at each of the places; refused as :meth:`Line.locate` says."""
-    named = np.array([i for i, s in enumerate(segments) if body in (s.name, s.body)], dtype=np.int64)
-    if not named.size:
-        names = list(dict.fromkeys(s.body for s in segments))
-        row = f'; of a row, "{names[0]}[2]" is the second' if "[" in body else ""
-        raise InputError("there is no such body", where=where(0), value=body, remedy=f"use one of {names}{row}")
-    bad = np.flatnonzero(~np.isfinite(x_m))
-    if bad.size:
-        raise InputError(
-            "the place must be finite", where=where(int(bad[0])), value=float(x_m[bad[0]]), remedy="give x in m"
-        )
-    starts, stops = (np.array([getattr(segments[i], end) for i in named]) for end in ("start", "stop"))
-    # The beams of a row stand from left to right, so at most two of them reach a place.
-    last = np.searchsorted(starts - _TOUCH_M, x_m, side="right") - 1
-    bad = np.flatnonzero((last < 0) | (x_m > stops[last] + _TOUCH_M))
-    if bad.size:
-        spans = ", ".join(f"{a:g} to {b:g} m" for a, b in zip(starts[:4], stops[:4], strict=True))
-        raise InputError(
-            f"off the {body}, which runs {spans}" + (", ..." if named.size > 4 else ""),
-            where=where(int(bad[0])),
-            value=float(x_m[bad[0]]),
-            remedy="move it onto the body",
-        )
-    bad = np.flatnonzero((last > 0) & (x_m <= stops[last - 1] + _TOUCH_M))
-    if bad.size:
-        second = last[bad[0]]
-        names = [segments[i].name for i in named[second - 1 : second + 1]]
-        raise InputError(
-            f"two beams meet there: {names}",
-            where=where(int(bad[0])),
-            value=float(x_m[bad[0]]),
-            remedy="name the one that is meant",
-        )
-    return named[last]
-
-
-def _side(segments: Sequence[Segment], body: str, stations: Reals, index: int) -> Integers:
-    if body == GROUND:
-        return np.full(stations.shape, -1, dtype=np.int64)
-    return _find(segments, body, stations, lambda number: f"joints[{index}].at[{number}]")
-
-
-def _at_ends(
-    segments: Sequence[Segment], index: int, layer: Joints, ends: Ends
-) -> tuple[Reals, Integers, Integers, Reals]:
-    """Stations, upper and lower segments and scales of a layer at the ends of a body."""
-    own = np.array([i for i, s in enumerate(segments) if s.body == ends.of], dtype=np.int64)
-    x = np.array([(segments[i].start + ends.inset_m, segments[i].stop - ends.inset_m) for i in own]).reshape(-1)
-    # Each end belongs to its own beam, even where two beams of a row meet.
-    upper, lower = (
-        np.repeat(own, 2) if body == ends.of else _side(segments, body, x, index) for body in layer.between
-    )
-    return x, upper, lower, np.full(x.shape, layer.scale)

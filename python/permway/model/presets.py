@@ -1,4 +1,4 @@
-"""Lines of the literature by name."""
+"""Lines by name, and the paper's own line."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ from collections.abc import Callable
 from typing import Any, Literal
 
 import numpy as np
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from permway.errors import InputError
 from permway.laws import FVMP, TFDV, WLF, AnyLaw, Hysteretic
-from permway.model.bodies import Beam, Interval
-from permway.model.faults import model_error
 from permway.model.joints import Ends, Joints
 from permway.model.line import Line
+from permway.model.line_parts import chn60, chosen, concrete_row
+from permway.model.lines_ballasted import ballasted_b91_60e1
+from permway.model.lines_crts import crts_ii_viaduct_32m, crts_iii_viaduct_32m
+from permway.model.lines_zeng2014 import zeng2014_nine_spans
 from permway.records import FrozenModel, Number
 
 SPAN_M = 32.0
@@ -82,6 +84,8 @@ class SlabTrackViaduct(FrozenModel):
         Number of equal spans in a row; slab and base plate go on over all of them.
     fasteners : int
         Fasteners on a span.
+    fastener_spacing_m : float
+        Distance between them, m.
     layer_springs : int, optional
         Springs of the mortar and of the sliding layer on a span; by default at the fasteners.
     modes : int, optional
@@ -128,10 +132,10 @@ class SlabTrackViaduct(FrozenModel):
         whole = (0.0, SPAN_M * self.spans)
         return Line(
             bodies={
-                "rail": _rail(rails),
-                "slab": _deck(3.6e10, 1.7e-3, 2500.0, 0.51, share, (whole,), self.modes),
-                "base": _deck(3.0e10, 7.3125e-3, 2500.0, 0.975, share, (whole,), self.modes),
-                "girder": _deck(
+                "rail": chn60(rails),
+                "slab": concrete_row(3.6e10, 1.7e-3, 2500.0, 0.51, share, (whole,), self.modes),
+                "base": concrete_row(3.0e10, 7.3125e-3, 2500.0, 0.975, share, (whole,), self.modes),
+                "girder": concrete_row(
                     3.6e10,
                     11.056,
                     2650.0,
@@ -157,54 +161,18 @@ class SlabTrackViaduct(FrozenModel):
         )
 
 
-def _rail(rails: float) -> Beam:
-    return Beam(
-        theory="timoshenko",
-        youngs_modulus_Pa=2.1e11,
-        second_moment_m4=3.217e-5,
-        density_kg_per_m3=7850.0,
-        area_m2=7.745e-3,
-        shear_modulus_Pa=7.7e10,
-        shear_coefficient=0.4,
-        loss_factor=0.01,
-        share=rails,
-    )
-
-
-def _deck(
-    modulus: float,
-    inertia: float,
-    density: float,
-    area: float,
-    share: float,
-    intervals: tuple[Interval, ...],
-    modes: int | None,
-    *,
-    pinned: bool = False,
-) -> Beam:
-    return Beam(
-        youngs_modulus_Pa=modulus,
-        second_moment_m4=inertia,
-        density_kg_per_m3=density,
-        area_m2=area,
-        loss_factor=0.1,
-        intervals_m=intervals,
-        ends="pinned" if pinned else "free",
-        modes=modes,
-        share=share,
-    )
-
-
 def slab_track_viaduct_32m(**options: Any) -> Line:
     """The paper's line; options as in :class:`SlabTrackViaduct`."""
-    try:
-        chosen = SlabTrackViaduct.model_validate(options)
-    except ValidationError as error:
-        raise model_error(error, options, "") from error
-    return chosen.line()
+    return chosen(SlabTrackViaduct, options).line()
 
 
-LINES: dict[str, Callable[..., Line]] = {"slab_track_viaduct_32m": slab_track_viaduct_32m}
+LINES: dict[str, Callable[..., Line]] = {
+    "ballasted_b91_60e1": ballasted_b91_60e1,
+    "crts_ii_viaduct_32m": crts_ii_viaduct_32m,
+    "crts_iii_viaduct_32m": crts_iii_viaduct_32m,
+    "slab_track_viaduct_32m": slab_track_viaduct_32m,
+    "zeng2014_nine_spans": zeng2014_nine_spans,
+}
 """Lines by the name that a model file uses."""
 
 LAWS: dict[str, Callable[..., TFDV | Hysteretic]] = {"wj7b": wj7b, "wj7b_constant": wj7b_constant}

@@ -18,6 +18,9 @@ MOST_DENSE_JOINTS = 5000
 MOST_ELEMENTS = 1_000_000
 """Elements of the chain formulation, over all beams."""
 
+MOST_BODIES = 100_000
+"""Beams and masses of the chain formulation, each counted: compiling the march grows as their square."""
+
 _ELEMENT = 4.0
 """Longest element of the core as a multiple of the steepest wave's length scale."""
 
@@ -59,8 +62,17 @@ def check_dense(table: JointTable) -> None:
 
 
 def check_elements(line: Line, table: JointTable, places_m: Reals, highest_Hz: float) -> None:
-    """Refuse a beam that the highest frequency would cut into too many elements."""
-    finite = [x for s in line.segments() for x in (s.start, s.stop) if np.isfinite(x)]
+    """Refuse too many bodies, and a beam that the highest frequency would cut into too many elements."""
+    segments = line.segments()
+    if len(segments) > MOST_BODIES:
+        most = max(line.bodies, key=lambda name: sum(s.body == name for s in segments))
+        raise InputError(
+            f"the chain formulation takes at most {MOST_BODIES} beams and masses",
+            where=f"line.bodies.{most}",
+            value=len(segments),
+            remedy="take a shorter line, or a wider spacing",
+        )
+    finite = [x for s in segments for x in (s.start, s.stop) if np.isfinite(x)]
     x = np.concatenate([table.x, places_m, np.array(finite, dtype=np.float64)])
     if not x.size:
         return
