@@ -179,6 +179,41 @@ def reproduce(
 
 
 @app.command()
+def sweep(
+    study: Annotated[Path, typer.Argument(help="Study file (TOML).")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Folder for a file per case; by default beside the study."),
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a Dask scheduler; by default this machine computes.")
+    ] = None,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Discard results that lie in the folder.")] = False,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """Many models: a file per case, resumed where it stopped; status 1 if cases failed."""
+    from permway.study.file import read_study
+    from permway.study.run import run_study
+
+    described = read_study(study)
+    with _progress("sweeping", as_json) as progress:
+        done = run_study(
+            described,
+            output or study.with_suffix(".cases"),
+            scheduler=scheduler,
+            threads=threads,
+            fresh=fresh,
+            progress=progress,
+        )
+    failed = [{"case": case, "error": error} for case, error in sorted(done.failed.items())]
+    shown = {"folder": str(done.folder), "cases": done.cases, "computed": done.computed}
+    _say({**shown, "already_there": done.already_there, "failed": failed}, as_json)
+    if failed:
+        raise typer.Exit(1)
+
+
+@app.command()
 def doctor(as_json: Json = False) -> None:
     """What machine and versions permway runs with."""
     import platform

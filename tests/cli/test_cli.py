@@ -183,7 +183,7 @@ def test_wrong_usage_is_status_2(arguments):
     assert "Traceback" not in done.stderr
 
 
-@pytest.mark.parametrize("command", [None, "solve", "fit-pad", "reproduce", "doctor"])
+@pytest.mark.parametrize("command", [None, "solve", "fit-pad", "reproduce", "sweep", "doctor"])
 def test_help(command):
     done = run(*([command] if command else []), "--help")
     assert (done.returncode, done.stderr) == (0, "")

@@ -52,7 +52,9 @@ def test_pinned_pinned_frequency_of_one_bay(bay, timoshenko, euler, formulation)
     """One bay between two pins resonates where the stiffness of its middle vanishes."""
     for theory, printed in (("timoshenko", timoshenko), ("euler", euler)):
         # A trace of loss keeps the search off the resonance itself, where the line is singular.
-        rail = uic60(theory=theory, loss_factor=1e-6).model_copy(update={"intervals_m": ((-bay / 2, bay / 2),), "ends": "pinned"})
+        rail = uic60(theory=theory, loss_factor=1e-6).model_copy(
+            update={"intervals_m": ((-bay / 2, bay / 2),), "ends": "pinned"}
+        )
         line = Line(bodies={"rail": rail}, joints=(), laws={})
 
         def stiffness(frequency, line=line):

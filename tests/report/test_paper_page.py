@@ -127,6 +127,6 @@ def test_an_unwritable_folder_is_refused_before_the_work(tmp_path: Path, monkeyp
         raise PermissionError(13, "Permission denied")
 
     # Not by mode bits: the super-user may write everywhere.
-    monkeypatch.setattr("permway.report.files.tempfile.TemporaryFile", refuse)
+    monkeypatch.setattr("permway.files.tempfile.TemporaryFile", refuse)
     with pytest.raises(InputError, match="cannot be written: Permission denied"):
         paper.write_report(tmp_path / "out")

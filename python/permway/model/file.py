@@ -227,7 +227,8 @@ def model_from_dict(table: Mapping[str, Any], *, folder: Path | None = None) -> 
     InputError
         With the place in the table.
     """
-    filled = dict(table)
+    # A model written as JSON says null where a file says nothing.
+    filled = {key: value for key, value in table.items() if value is not None}
     if "line" in filled:
         filled["line"] = _line(_table(filled["line"], "line"), folder)
     if "train" in filled:

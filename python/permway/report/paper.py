@@ -7,8 +7,8 @@ import time
 from pathlib import Path
 from typing import Any
 
+from permway.files import prepare_folder, write_text
 from permway.paper.reproduce import Reproduction, reproduce
-from permway.report.files import prepare_folder, write_text
 from permway.report.tables import count
 from permway.response.receptance import Progress
 

@@ -13,7 +13,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from permway.report.files import prepare_folder, write_bytes
+from permway.files import prepare_folder, write_bytes
 from permway.response.decay import decay_rate
 
 _WIDTH_IN = 6.3
