@@ -6,6 +6,7 @@ under a name that says so.
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import Annotated, Literal
 
 import numpy as np
@@ -98,8 +99,9 @@ class _German(Irregularity):
             )
         return self
 
+    @abstractmethod
     def _amplitude(self) -> float:
-        raise NotImplementedError
+        """A_v, m rad."""
 
     def _second_corner(self) -> float | None:
         return _GERMAN_C if self.form == "right" else self.w_s_rad_per_m

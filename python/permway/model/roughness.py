@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import Literal
 
 import numpy as np
@@ -67,9 +68,9 @@ class _OneThirdOctaves(_Tabulated):
 
     interpolation: Interpolation = "bands"
 
+    @abstractmethod
     def _levels(self) -> tuple[Reals, Reals]:
         """Wavelengths (m, nominal) and levels (dB re 1 um)."""
-        raise NotImplementedError
 
     def _bands(self) -> tuple[NDArray[np.int64], Reals]:
         """Band numbers n (wavelength 10^(n/10) m), ascending, and densities in m^2/(rad/m)."""
