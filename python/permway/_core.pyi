@@ -24,4 +24,11 @@ def solve_line(
     extensions: bool,
     threads: int,
     progress: Callable[[int, int], object] | None,
-) -> tuple[NDArray[np.complex128], NDArray[np.complex128] | None, list[tuple[int, str, str]]]: ...
+    derived: Mapping[str, Any] | None = None,
+) -> tuple[
+    NDArray[np.complex128],
+    NDArray[np.complex128] | None,
+    NDArray[np.complex128] | None,
+    NDArray[np.complex128] | None,
+    list[tuple[int, str, str]],
+]: ...

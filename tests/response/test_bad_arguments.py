@@ -187,7 +187,7 @@ def tables(**changes):
 
 
 def test_tables_are_good():
-    values, extension, failures = _core.solve_line(**tables())
+    values, extension, _, _, failures = _core.solve_line(**tables())
     assert values.shape == (2, 2, 1)
     assert extension.shape == (2, 2, 1)
     assert failures == []
@@ -278,7 +278,7 @@ def test_unknown_formulation():
 def test_a_law_not_finite_spoils_its_frequency_only(bad, formulation):
     laws = tables()["laws"].copy()
     laws[0, 1] = bad
-    values, _, failures = _core.solve_line(**tables(formulation=formulation, laws=laws))
+    values, _, _, _, failures = _core.solve_line(**tables(formulation=formulation, laws=laws))
     assert [(index, kind) for index, kind, _ in failures] == [(0, "not finite")]
     assert "10 Hz: stiffness of joint 1" in failures[0][2]
     assert np.isnan(values[0]).all()
@@ -288,7 +288,7 @@ def test_a_law_not_finite_spoils_its_frequency_only(bad, formulation):
 @pytest.mark.parametrize("formulation", ["chain", "receptance"])
 def test_a_negative_stiffness_is_solved_by_the_core(formulation):
     """The core judges no law; the model does."""
-    values, _, failures = _core.solve_line(**tables(formulation=formulation, laws=-tables()["laws"]))
+    values, _, _, _, failures = _core.solve_line(**tables(formulation=formulation, laws=-tables()["laws"]))
     assert failures == []
     assert np.isfinite(values).all()
 

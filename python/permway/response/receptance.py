@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Sequence
-from typing import Literal, get_args
+from collections.abc import Sequence
+from typing import get_args
 
 import numpy as np
 import xarray as xr
@@ -12,14 +11,14 @@ from numpy.typing import ArrayLike
 
 from permway import _core
 from permway.arrays import Reals
-from permway.errors import InputError, SolveError
+from permway.errors import InputError
 from permway.model.bodies import Metres
+from permway.model.joint_table import JointTable
 from permway.model.line import Line
 from permway.records import FrozenModel
-from permway.response.limits import check_answer, check_dense, check_elements, check_threads
-
-Formulation = Literal["chain", "receptance"]
-Progress = Callable[[int, int], object]
+from permway.response.core import Formulation as Formulation
+from permway.response.core import OnError, run
+from permway.response.core import Progress as Progress
 
 CONVENTION = "exp(+i omega t), displacement and force positive down"
 
@@ -58,7 +57,7 @@ def receptance(
     extensions: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
-    on_error: Literal["raise", "mark"] = "raise",
+    on_error: OnError = "raise",
 ) -> xr.Dataset:
     """Displacement at sensors per unit force, frequency by frequency.
 
@@ -98,78 +97,43 @@ def receptance(
     frequency = check_sweep(frequency_Hz)
     for where, chosen, choices in (
         ("formulation", formulation, get_args(Formulation)),
-        ("on_error", on_error, ("raise", "mark")),
+        ("on_error", on_error, get_args(OnError)),
     ):
         if chosen not in choices:
             raise InputError("unknown", where=where, value=chosen, remedy=f"use one of {list(choices)}")
-    check_threads(threads)
-    segments = line.segments()
-    table = line.joint_table()
-    pairs = line.beams()
     points = {"forces": check_places(line, forces, "forces"), "sensors": check_places(line, sensors, "sensors")}
-    check_answer(frequency.size, len(sensors) + (table.x.size if extensions else 0), len(forces))
-    if formulation == "chain" and any(beam.modes for beam, _ in pairs):
-        modal = next(segment.name for beam, segment in pairs if beam.modes)
-        raise InputError(
-            "modes are for the receptance formulation; the chain is exact",
-            where=f"line.bodies.{modal}.modes",
-            remedy='leave modes out, or choose formulation = "receptance"',
-        )
-    if formulation == "receptance":
-        check_dense(table)
-    elif frequency.size:
-        check_elements(line, table, np.concatenate([p["x"] for p in points.values()]), float(frequency[-1]))
-
-    try:
-        values, joints, failures = _core.solve_line(
-            formulation=formulation,
-            frequencies=frequency,
-            names=[s.name for s in segments],
-            beams={
-                "bending": np.array([b.bending_Nm2 for b, _ in pairs], dtype=np.complex128),
-                "shear": np.array([b.shear_N for b, _ in pairs], dtype=np.complex128),
-                "mass": np.array([b.mass_kg_per_m for b, _ in pairs], dtype=np.float64),
-                "rotary": np.array([b.rotary_kg_m for b, _ in pairs], dtype=np.float64),
-                "interval": np.array([(s.start, s.stop) for _, s in pairs], dtype=np.float64).reshape(-1, 2),
-                "pinned": np.array([b.pinned for b, _ in pairs], dtype=np.bool_).reshape(-1, 2),
-                "modes": np.array([b.modes or 0 for b, _ in pairs], dtype=np.int64),
-            },
-            masses=line.masses_kg(),
-            joints={name: getattr(table, name) for name in ("x", "upper", "lower", "law", "scale")},
-            laws=line.stiffness(frequency, temperature_C),
-            forces=points["forces"],
-            sensors=points["sensors"],
-            extensions=extensions,
-            threads=threads or os.cpu_count() or 1,
-            progress=progress,
-        )
-    except _core.TablesError as error:
-        raise InputError(str(error), where="line") from error
-    if failures and on_error == "raise":
-        more = f" (and {len(failures) - 1} more frequencies)" if len(failures) > 1 else ""
-        raise SolveError(failures[0][2] + more)
+    solved = run(
+        line,
+        frequency,
+        points,
+        temperature_C=temperature_C,
+        formulation=formulation,
+        extensions=extensions,
+        threads=threads,
+        progress=progress,
+        on_error=on_error,
+    )
     data = xr.Dataset(
-        {"receptance": (("frequency", "sensor", "force"), values)},
+        {"receptance": (("frequency", "sensor", "force"), solved.receptance)},
         coords={
             "frequency": frequency_coordinate(frequency),
-            **_place_coordinates("sensor", sensors),
-            **_place_coordinates("force", forces),
+            **place_coordinates("sensor", sensors),
+            **place_coordinates("force", forces),
         },
         attrs={
             "convention": CONVENTION,
             "formulation": formulation,
             "permway_version": _core.__version__,
-            "failures": "; ".join(text for _, _, text in failures),
+            "failures": "; ".join(solved.failures),
         },
     )
     data["receptance"].attrs = {"long_name": "receptance", "units": "m/N"}
     if temperature_C is not None:
         data.attrs["temperature_C"] = temperature_C
-    if joints is not None:
-        data["extension"] = (("frequency", "joint", "force"), joints)
+    if solved.extension is not None:
+        data["extension"] = (("frequency", "joint", "force"), solved.extension)
         data["extension"].attrs = {"long_name": "joint extension, upper less lower", "units": "m/N"}
-        data.coords["joint_x"] = ("joint", table.x, {"units": "m"})
-        data.coords["joint_law"] = ("joint", [list(line.laws)[i] for i in table.law])
+        data = data.assign_coords(joint_coordinates(line, solved.joints))
     return data
 
 
@@ -232,7 +196,16 @@ def frequency_coordinate(frequency: Reals) -> tuple[str, Reals, dict[str, str]]:
     return ("frequency", frequency, {"long_name": "frequency", "units": "Hz"})
 
 
-def _place_coordinates(kind: str, places: Sequence[Place]) -> dict[str, object]:
+def joint_coordinates(line: Line, table: JointTable) -> dict[str, object]:
+    """Where the joints are, and of which law."""
+    return {
+        "joint_x": ("joint", table.x, {"units": "m"}),
+        "joint_law": ("joint", [list(line.laws)[i] for i in table.law]),
+    }
+
+
+def place_coordinates(kind: str, places: Sequence[Place]) -> dict[str, object]:
+    """Labels, bodies and x of forces or sensors."""
     return {
         kind: [p.label for p in places],
         f"{kind}_body": (kind, [p.body for p in places]),

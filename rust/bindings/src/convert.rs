@@ -2,7 +2,10 @@
 
 use num_complex::Complex;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
-use permway_core::line::{Beam, Body, End, Joint, Line, Point};
+use permway_core::{
+    line::{Beam, Body, End, Joint, Line, Point},
+    sensitivity::Sensitivity,
+};
 use pyo3::{create_exception, exceptions::PyValueError, prelude::*};
 
 create_exception!(_core, TablesError, PyValueError, "Tables that do not fit together, or describe no line.");
@@ -48,6 +51,67 @@ pub struct Points<'py> {
     body: PyReadonlyArray1<'py, i64>,
     #[pyo3(item("x"))]
     x: PyReadonlyArray1<'py, f64>,
+}
+
+/// What is to be derived: columns over the joints, then indices of forces.
+#[derive(FromPyObject)]
+pub struct Derived<'py> {
+    #[pyo3(item("groups"))]
+    groups: PyReadonlyArray1<'py, i64>,
+    #[pyo3(item("weights"))]
+    weights: PyReadonlyArray1<'py, f64>,
+    #[pyo3(item("n_groups"))]
+    n_groups: usize,
+    #[pyo3(item("bodies"))]
+    bodies: bool,
+    #[pyo3(item("sensors"))]
+    sensors: PyReadonlyArray1<'py, i64>,
+    #[pyo3(item("forces"))]
+    forces: PyReadonlyArray1<'py, i64>,
+    #[pyo3(item("own"))]
+    own: bool,
+}
+
+/// The same, owned.
+pub struct Wanted {
+    groups: Vec<Option<usize>>,
+    weights: Vec<f64>,
+    n_groups: usize,
+    bodies: bool,
+    sensors: Vec<usize>,
+    forces: Vec<usize>,
+    own: bool,
+}
+
+impl Wanted {
+    /// As the core wants it.
+    pub fn sensitivity(&self) -> Sensitivity<'_> {
+        Sensitivity {
+            groups: &self.groups,
+            weights: &self.weights,
+            n_groups: self.n_groups,
+            bodies: self.bodies,
+            sensors: &self.sensors,
+            forces: &self.forces,
+            own: self.own,
+        }
+    }
+}
+
+/// What is to be derived; a negative group stands for none.
+pub fn derived(table: &Derived<'_>) -> PyResult<Wanted> {
+    let places = |column: &PyReadonlyArray1<'_, i64>, what| {
+        column.as_array().iter().map(|i| index(*i, what)).collect::<PyResult<Vec<_>>>()
+    };
+    Ok(Wanted {
+        groups: table.groups.as_array().iter().map(|g| usize::try_from(*g).ok()).collect(),
+        weights: table.weights.as_array().to_vec(),
+        n_groups: table.n_groups,
+        bodies: table.bodies,
+        sensors: places(&table.sensors, "derived: sensor")?,
+        forces: places(&table.forces, "derived: force")?,
+        own: table.own,
+    })
 }
 
 /// Checks that the columns of a table have one length.

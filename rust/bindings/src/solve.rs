@@ -1,11 +1,12 @@
 //! One sweep: the interpreter released, Ctrl-C and progress answered while it runs.
 
-use crate::convert::{self, Beams, Joints, Points, TablesError};
+use crate::convert::{self, Beams, Derived, Joints, Points, TablesError};
 use num_complex::Complex;
-use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray2, PyArray3, PyArray4, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use permway_core::{
     error::CoreError,
-    sweep::{Answer, Control, Formulation, Request, sweep},
+    sensitivity::Sensitivity,
+    sweep::{Control, Formulation, Request, sweep_into},
 };
 use pyo3::{
     exceptions::{PyKeyboardInterrupt, PyRuntimeError},
@@ -16,10 +17,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Receptance, joint extension (or None), and failures as (index, kind, message).
+/// Receptance, joint extension, derivatives, own flexibility of the joints (each None unless asked for), and failures
+/// as (index, kind, message).
 type Solved<'py> = (
     Bound<'py, PyArray3<Complex<f64>>>,
     Option<Bound<'py, PyArray3<Complex<f64>>>>,
+    Option<Bound<'py, PyArray4<Complex<f64>>>>,
+    Option<Bound<'py, PyArray2<Complex<f64>>>>,
     Vec<(usize, &'static str, String)>,
 );
 
@@ -34,11 +38,13 @@ const MOST_THREADS: usize = 1024;
 /// Bodies are the beams, then the masses; a lower body of -1 is the ground, a shear stiffness of 0
 /// an Euler-Bernoulli beam, 0 modes the closed form. `laws` has shape (frequency, law), N/m.
 /// Returns receptance in m/N, shape (frequency, sensor, force); joint extension, shape (frequency,
-/// joint, force), or None; and the frequencies that failed as (index, kind, message), NaN in the
+/// joint, force), or None; on request (`derived`) derivatives of the receptance between forces, shape (frequency,
+/// parameter, sensor, force), and each joint's extension by a unit tension in itself, shape (frequency, joint); and the
+/// frequencies that failed as (index, kind, message), NaN in the
 /// arrays. `progress(done, total)` is called now and then, and at the end; an exception from it
 /// stops the sweep. Raises TablesError, a ValueError, for tables that do not fit together.
 #[pyfunction]
-#[pyo3(signature = (*, formulation, frequencies, names, beams, masses, joints, laws, forces, sensors, extensions, threads, progress))]
+#[pyo3(signature = (*, formulation, frequencies, names, beams, masses, joints, laws, forces, sensors, extensions, threads, progress, derived=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn solve_line<'py>(
     py: Python<'py>,
@@ -54,6 +60,7 @@ pub fn solve_line<'py>(
     extensions: bool,
     threads: usize,
     progress: Option<Bound<'py, PyAny>>,
+    derived: Option<Derived<'py>>,
 ) -> PyResult<Solved<'py>> {
     let formulation = match formulation {
         "chain" => Formulation::Chain,
@@ -85,27 +92,47 @@ pub fn solve_line<'py>(
         joints: extensions,
         threads,
     };
+    let derived = derived.as_ref().map(convert::derived).transpose()?;
+    let wanted = derived.as_ref().map(convert::Wanted::sensitivity);
     let progress = progress.map(Bound::unbind);
-    let answer = py.detach(|| watched(&request, progress.as_ref()))?;
+    let (n, f, joints) = (frequencies.len(), forces.len(), line.joints.len());
+    let (parameters, rows, columns) =
+        wanted.as_ref().map_or((0, 0, 0), |w| (w.parameters(&line), w.sensors.len(), w.forces.len()));
+    let own = wanted.as_ref().is_some_and(|w| w.own);
+    // Pages that numpy has of the system are zero already, and are touched by the threads that fill them.
+    let values = PyArray3::zeros(py, [n, sensors.len(), f], false);
+    let extension = PyArray3::zeros(py, [n, if extensions { joints } else { 0 }, f], false);
+    let derivatives = PyArray4::zeros(py, [n, parameters, rows, columns], false);
+    let flexibility = PyArray2::zeros(py, [n, if own { joints } else { 0 }], false);
+    let failures = {
+        let (mut a, mut b, mut c, mut d) =
+            (values.readwrite(), extension.readwrite(), derivatives.readwrite(), flexibility.readwrite());
+        let memory = [a.as_slice_mut()?, b.as_slice_mut()?, c.as_slice_mut()?, d.as_slice_mut()?];
+        py.detach(|| watched(&request, wanted.as_ref(), memory, progress.as_ref()))?
+    };
     if let Some(progress) = &progress {
-        progress.call1(py, (frequencies.len(), frequencies.len()))?;
+        progress.call1(py, (n, n))?;
     }
-    let shape = |rows: usize| [frequencies.len(), rows, forces.len()];
-    let failures = answer.failures.iter().map(|(i, e)| (*i, kind(e), e.to_string())).collect();
-    let array = |v: Vec<Complex<f64>>, rows| PyArray1::from_vec(py, v).reshape(shape(rows));
-    let joints = if extensions { Some(array(answer.joints, line.joints.len())?) } else { None };
-    Ok((array(answer.sensors, sensors.len())?, joints, failures))
+    let failures = failures.iter().map(|(i, e)| (*i, kind(e), e.to_string())).collect();
+    let derivatives = wanted.is_some().then_some(derivatives);
+    Ok((values, extensions.then_some(extension), derivatives, own.then_some(flexibility), failures))
 }
 
 /// Runs the sweep beside a watch that answers signals and reports progress.
-fn watched(request: &Request<'_>, progress: Option<&Py<PyAny>>) -> PyResult<Answer> {
+fn watched(
+    request: &Request<'_>,
+    derived: Option<&Sensitivity<'_>>,
+    memory: [&mut [Complex<f64>]; 4],
+    progress: Option<&Py<PyAny>>,
+) -> PyResult<Vec<(usize, CoreError)>> {
     let control = Control::default();
     std::thread::scope(|scope| {
         let watcher = std::thread::current();
         let worker = {
             let control = &control;
             scope.spawn(move || {
-                let answer = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| sweep(request, control)));
+                let run = || sweep_into(request, derived, control, memory);
+                let answer = std::panic::catch_unwind(std::panic::AssertUnwindSafe(run));
                 control.ended.store(true, Ordering::Release);
                 watcher.unpark();
                 answer

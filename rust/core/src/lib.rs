@@ -9,7 +9,9 @@
 
 pub mod chain;
 pub mod dense;
+pub mod dual;
 pub mod element;
+pub mod energy;
 pub mod error;
 pub mod field;
 pub mod green;
@@ -17,6 +19,7 @@ pub mod lanes;
 pub mod line;
 pub mod modes;
 pub mod receptance;
+pub mod sensitivity;
 pub mod small;
 pub mod sweep;
 pub mod waves;

@@ -5,11 +5,12 @@
 
 use crate::{
     c64,
-    chain::{Engine, Group, Response, Tape},
+    chain::{self, Engine, Group, Response, Tape, Wanted},
     error::CoreError,
     lanes::LANES,
     line::{Line, Point},
     receptance::Dense,
+    sensitivity::Sensitivity,
 };
 use std::sync::{
     Mutex, PoisonError,
@@ -55,6 +56,10 @@ pub struct Answer {
     pub sensors: Vec<c64>,
     /// Joint extension, frequency x joint x force, m/N; empty unless asked for.
     pub joints: Vec<c64>,
+    /// Derivatives, frequency x parameter x sensor x force; empty unless asked for.
+    pub derivatives: Vec<c64>,
+    /// Extension of each joint by a unit tension in itself, frequency x joint, m/N; empty unless asked for.
+    pub own: Vec<c64>,
     /// Frequencies that failed, by index; their responses are NaN.
     pub failures: Vec<(usize, CoreError)>,
 }
@@ -100,65 +105,121 @@ impl Request<'_> {
 /// # Errors
 /// `Invalid` before anything is computed, `Cancelled` if asked to stop.
 pub fn sweep(request: &Request<'_>, control: &Control) -> Result<Answer, CoreError> {
+    sweep_with(request, None, control)
+}
+
+/// Runs a sweep that gives derivatives beside the response; they need the chain.
+///
+/// # Errors
+/// As [`sweep`].
+pub fn sweep_with(
+    request: &Request<'_>,
+    derived: Option<&Sensitivity<'_>>,
+    control: &Control,
+) -> Result<Answer, CoreError> {
     request.check()?;
-    let (s, j, f) = (request.sensors.len(), request.line.joints.len(), request.forces.len());
     let n = request.frequencies.len();
-    let (s_len, j_len) = (s * f, if request.joints { j * f } else { 0 });
-    let mut answer = Answer { sensors: vec![NAN; n * s_len], joints: vec![NAN; n * j_len], failures: Vec::new() };
+    let mut answers = lengths(request, derived).map(|length| vec![c64::ZERO; n * length]);
+    let failures = sweep_into(request, derived, control, answers.each_mut().map(Vec::as_mut_slice))?;
+    let [sensors, joints, derivatives, own] = answers;
+    Ok(Answer { sensors, joints, derivatives, own, failures })
+}
+
+/// Numbers per frequency in the answers: sensors, joints, derivatives, own extensions.
+pub fn lengths(request: &Request<'_>, derived: Option<&Sensitivity<'_>>) -> [usize; 4] {
+    let (s, j, f) = (request.sensors.len(), request.line.joints.len(), request.forces.len());
+    let derivatives = derived.map_or(0, |d| d.len(request.line));
+    let own = if derived.is_some_and(|d| d.own) { j } else { 0 };
+    [s * f, if request.joints { j * f } else { 0 }, derivatives, own]
+}
+
+/// Runs a sweep into given memory, a row of [`lengths`] for each frequency; returns what failed.
+///
+/// # Errors
+/// As [`sweep`]; the memory then holds nothing of meaning.
+pub fn sweep_into(
+    request: &Request<'_>,
+    derived: Option<&Sensitivity<'_>>,
+    control: &Control,
+    answers: [&mut [c64]; 4],
+) -> Result<Vec<(usize, CoreError)>, CoreError> {
+    request.check()?;
+    let (line, n) = (request.line, request.frequencies.len());
+    if let Some(wanted) = derived {
+        wanted.check(line, request.forces.len())?;
+        if request.formulation == Formulation::Receptance {
+            return Err(CoreError::Invalid("derivatives are given by the chain formulation only".into()));
+        }
+    }
+    let lengths = lengths(request, derived);
+    if answers.iter().zip(lengths).any(|(memory, length)| memory.len() != n * length) {
+        return Err(CoreError::Invalid(format!("memory for {n} frequencies of {lengths:?} numbers is needed")));
+    }
     let plan = match request.formulation {
         Formulation::Chain => {
             let highest = request.frequencies.iter().copied().fold(0.0, f64::max);
-            Plan::Chain(Tape::new(request.line, request.forces, request.sensors, highest, request.joints))
+            let wanted = match derived {
+                Some(d) if d.bodies => Wanted::States,
+                Some(_) => Wanted::Everywhere,
+                None if request.joints => Wanted::Everywhere,
+                None => Wanted::Sensors,
+            };
+            Plan::Chain(Tape::new(line, request.forces, request.sensors, highest, wanted))
         }
-        Formulation::Receptance => Plan::Receptance(Dense::new(request.line, request.forces, request.sensors)),
+        Formulation::Receptance => Plan::Receptance(Dense::new(line, request.forces, request.sensors)),
     };
     let failures = Mutex::new(Vec::new());
-    let jobs = Mutex::new(Jobs { next: 0, sensors: &mut answer.sensors, joints: &mut answer.joints });
+    let task = Task { request, derived, plan: &plan, lengths };
+    let jobs = Mutex::new(Jobs { next: 0, answers });
     std::thread::scope(|scope| {
         for _ in 1..request.threads.min(n) {
-            scope.spawn(|| work(request, &plan, control, &jobs, &failures, (s_len, j_len)));
+            scope.spawn(|| work(&task, control, &jobs, &failures));
         }
-        work(request, &plan, control, &jobs, &failures, (s_len, j_len));
+        work(&task, control, &jobs, &failures);
     });
     control.ended.store(true, Ordering::Release);
     if control.cancel.load(Ordering::Relaxed) {
         return Err(CoreError::Cancelled);
     }
-    answer.failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
-    answer.failures.sort_by_key(|(i, _)| *i);
-    Ok(answer)
+    let mut failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
+    failures.sort_by_key(|(i, _)| *i);
+    Ok(failures)
+}
+
+/// What all threads work at, and how many numbers a frequency has in each of the answers.
+struct Task<'a> {
+    request: &'a Request<'a>,
+    derived: Option<&'a Sensitivity<'a>>,
+    plan: &'a Plan,
+    lengths: [usize; 4],
 }
 
 /// What is left to do: the next frequency and the places where answers go.
 struct Jobs<'a> {
     next: usize,
-    sensors: &'a mut [c64],
-    joints: &'a mut [c64],
+    answers: [&'a mut [c64]; 4],
 }
 
 impl<'a> Jobs<'a> {
     /// Hands out the next frequencies, at most `most`: the first one's index and the places of their answers.
-    fn take(&mut self, most: usize, total: usize, lengths: (usize, usize)) -> Option<Job<'a>> {
+    fn take(&mut self, most: usize, total: usize, lengths: &[usize; 4]) -> Option<Job<'a>> {
         let (first, count) = (self.next, most.min(total - self.next));
         if count == 0 {
             return None;
         }
         self.next += count;
-        Some(Job {
-            first,
-            count,
-            sensors: split(&mut self.sensors, count * lengths.0),
-            joints: split(&mut self.joints, count * lengths.1),
-        })
+        let mut lengths = lengths.iter();
+        let answers =
+            self.answers.each_mut().map(|slice| split(slice, count * lengths.next().copied().unwrap_or(0)));
+        Some(Job { first, count, answers })
     }
 }
 
-/// Frequencies for one thread, and where their answers go.
+/// Frequencies for one thread, and where their answers go: sensors, joints, derivatives, own flexibilities.
 struct Job<'a> {
     first: usize,
     count: usize,
-    sensors: &'a mut [c64],
-    joints: &'a mut [c64],
+    answers: [&'a mut [c64]; 4],
 }
 
 /// Takes the first `n` items off a slice that is being handed out.
@@ -169,23 +230,17 @@ fn split<'a>(slice: &mut &'a mut [c64], n: usize) -> &'a mut [c64] {
 }
 
 /// One thread's share: takes the next frequencies until none is left.
-fn work(
-    request: &Request<'_>,
-    plan: &Plan,
-    control: &Control,
-    jobs: &Mutex<Jobs<'_>>,
-    failures: &Mutex<Vec<(usize, CoreError)>>,
-    lengths: (usize, usize),
-) {
-    let mut solver = Solver::new(request, plan);
-    let total = request.frequencies.len();
+fn work(task: &Task<'_>, control: &Control, jobs: &Mutex<Jobs<'_>>, failures: &Mutex<Vec<(usize, CoreError)>>) {
+    let mut solver = Solver::new(task);
+    let total = task.request.frequencies.len();
     while !control.cancel.load(Ordering::Relaxed) {
-        let job = jobs.lock().unwrap_or_else(PoisonError::into_inner).take(solver.group(), total, lengths);
+        let job = jobs.lock().unwrap_or_else(PoisonError::into_inner).take(solver.group(), total, &task.lengths);
         let Some(mut job) = job else { return };
-        let errors = solver.run(request, &mut job);
+        let errors = solver.run(task, &mut job);
         for (lane, error) in errors {
-            job.sensors[lane * lengths.0..(lane + 1) * lengths.0].fill(NAN);
-            job.joints[lane * lengths.1..(lane + 1) * lengths.1].fill(NAN);
+            for (values, length) in job.answers.iter_mut().zip(task.lengths) {
+                values[lane * length..(lane + 1) * length].fill(NAN);
+            }
             failures.lock().unwrap_or_else(PoisonError::into_inner).push((job.first + lane, error));
         }
         control.done.fetch_add(job.count, Ordering::Relaxed);
@@ -199,9 +254,12 @@ enum Solver<'a> {
 }
 
 impl<'a> Solver<'a> {
-    fn new(request: &Request<'_>, plan: &'a Plan) -> Self {
-        match plan {
-            Plan::Chain(tape) => Self::Chain(tape, Box::new(Engine::new(tape, request.forces.len()))),
+    fn new(task: &Task<'a>) -> Self {
+        match task.plan {
+            Plan::Chain(tape) => {
+                let derived = task.derived.map(|d| (d, task.request.line));
+                Self::Chain(tape, Box::new(Engine::new(tape, task.request.forces.len(), derived)))
+            }
             Plan::Receptance(dense) => Self::Receptance(dense),
         }
     }
@@ -215,13 +273,15 @@ impl<'a> Solver<'a> {
     }
 
     /// Runs a job; returns the frequencies that failed, counted from the job's first.
-    fn run(&mut self, request: &Request<'_>, job: &mut Job<'_>) -> Vec<(usize, CoreError)> {
+    fn run(&mut self, task: &Task<'_>, job: &mut Job<'_>) -> Vec<(usize, CoreError)> {
+        let request = task.request;
         let (n, last) = (request.n_laws, job.first + job.count - 1);
         let laws = &request.laws[job.first * n..(last + 1) * n];
+        let [sensors, joints, derivatives, own] = &mut job.answers;
         match self {
             Self::Receptance(dense) => {
                 let frequency = request.frequencies[job.first];
-                let result = dense.respond(request.line, frequency, laws, job.sensors, job.joints);
+                let result = dense.respond(request.line, frequency, laws, sensors, joints);
                 result.err().map(|e| (0, e)).into_iter().collect()
             }
             Self::Chain(tape, engine) => {
@@ -229,183 +289,18 @@ impl<'a> Solver<'a> {
                 let frequencies = std::array::from_fn(|i| request.frequencies[(job.first + i).min(last)]);
                 let group = Group { frequencies, laws, n_laws: n };
                 let mut out = Response {
-                    sensors: &mut *job.sensors,
-                    joints: &mut *job.joints,
+                    sensors,
+                    joints,
+                    derivatives,
+                    own,
                     n_sensors: request.sensors.len(),
                     n_forces: request.forces.len(),
                     used: job.count,
                 };
-                let failed = engine.run(tape, request.line, &group, &mut out);
+                let chain = chain::Job { tape, line: request.line, group: &group, derived: task.derived };
+                let failed = engine.run(&chain, &mut out);
                 failed.iter().take(job.count).enumerate().filter_map(|(i, e)| Some((i, e.clone()?))).collect()
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::line::{Beam, Body, End, Joint};
-
-    fn beam(bending: f64, shear: Option<f64>, mass: f64, interval: [f64; 2], end: End) -> Body {
-        let loss = c64::new(1.0, 0.02);
-        Body::Beam(Beam {
-            bending: loss * bending,
-            shear: shear.map(|s| loss * s),
-            mass,
-            rotary: if shear.is_some() { 0.25 } else { 0.0 },
-            interval,
-            ends: [end; 2],
-            modes: None,
-        })
-    }
-
-    /// Rail, slab and girder with unevenly placed joints, and a mass between two of them.
-    fn line() -> Line {
-        let endless = [f64::NEG_INFINITY, f64::INFINITY];
-        let bodies = vec![
-            beam(6.7e6, Some(2.4e8), 60.8, endless, End::Free),
-            beam(3e7, None, 640.0, [-0.2, 12.3], End::Free),
-            beam(2e11, None, 12000.0, [-1.0, 13.0], End::Pinned),
-            Body::Mass(130.0),
-        ];
-        let mut joints = Vec::new();
-        for i in 0..20 {
-            let x = 0.625 * f64::from(i);
-            joints.push(Joint { x, a: 0, b: Some(1), law: 0, scale: 1.0 });
-            joints.push(Joint { x: x + 0.001, a: 1, b: Some(2), law: 1, scale: 1.0 });
-        }
-        joints.push(Joint { x: -3.0, a: 0, b: Some(3), law: 0, scale: 0.5 });
-        joints.push(Joint { x: -3.0, a: 3, b: None, law: 0, scale: 0.7 });
-        joints.push(Joint { x: 5.0, a: 2, b: None, law: 0, scale: 30.0 });
-        Line { bodies, joints, names: ["rail", "slab", "girder", "block"].map(String::from).to_vec() }
-    }
-
-    fn run(line: &Line, frequencies: &[f64], formulation: Formulation, threads: usize) -> Answer {
-        let laws: Vec<c64> =
-            frequencies.iter().flat_map(|f| [c64::new(6e7, 8e6 + f * 1e4), c64::new(2e9, 3e8)]).collect();
-        let points: Vec<Point> = [(0, -3.0), (0, 4.1), (1, 7.0), (2, 6.3), (0, 40.0), (3, -3.0)]
-            .map(|(body, x)| Point { body, x })
-            .to_vec();
-        let request = Request {
-            line,
-            frequencies,
-            laws: &laws,
-            n_laws: 2,
-            forces: &points,
-            sensors: &points,
-            formulation,
-            joints: true,
-            threads,
-        };
-        sweep(&request, &Control::default()).unwrap()
-    }
-
-    #[test]
-    fn formulations_agree() {
-        let frequencies = [1.0, 7.3, 55.0, 200.0, 1000.0, 3000.0];
-        let (chain, dense) = (
-            run(&line(), &frequencies, Formulation::Chain, 2),
-            run(&line(), &frequencies, Formulation::Receptance, 1),
-        );
-        assert!(chain.failures.is_empty() && dense.failures.is_empty(), "{:?}", chain.failures);
-        for (i, f) in frequencies.iter().enumerate() {
-            let part = i * 36..(i + 1) * 36;
-            let (c, d) = (&chain.sensors[part.clone()], &dense.sensors[part]);
-            for (k, (c, v)) in c.iter().zip(d).enumerate() {
-                // A transfer is measured by the direct receptances at its two ends.
-                let scale = (d[k / 6 * 7].norm() * d[k % 6 * 7].norm()).sqrt();
-                assert!((c - v).norm() <= 1e-11 * scale, "{f} Hz: {c} {v}");
-            }
-            let size = dense.joints.iter().map(|v| v.norm()).fold(0.0, f64::max);
-            let part = i * chain.joints.len() / 6..(i + 1) * chain.joints.len() / 6;
-            for (c, d) in chain.joints[part.clone()].iter().zip(&dense.joints[part]) {
-                assert!((c - d).norm() <= 1e-9 * size, "{f} Hz: {c} {d}");
-            }
-        }
-    }
-
-    /// The code for this processor and the code for every processor do the same sums.
-    #[test]
-    fn portable_code_agrees() {
-        let line = line();
-        let points: Vec<Point> = [(0, -3.0), (1, 7.0), (2, 6.3)].map(|(body, x)| Point { body, x }).to_vec();
-        let tape = Tape::new(&line, &points, &points, 700.0, false);
-        let laws: Vec<c64> = (0..LANES).flat_map(|_| [c64::new(6e7, 8e6), c64::new(2e9, 3e8)]).collect();
-        let group =
-            Group { frequencies: std::array::from_fn(|i| 100.0 * (i + 1) as f64 - 50.0), laws: &laws, n_laws: 2 };
-        let mut answers = Vec::new();
-        for mut engine in [Engine::new(&tape, 3), Engine::portable(&tape, 3)] {
-            let mut sensors = vec![c64::ZERO; LANES * 9];
-            let mut out =
-                Response { sensors: &mut sensors, joints: &mut [], n_sensors: 3, n_forces: 3, used: LANES };
-            assert!(engine.run(&tape, &line, &group, &mut out).iter().all(Option::is_none));
-            answers.push(sensors);
-        }
-        for (a, b) in answers[0].iter().zip(&answers[1]) {
-            assert!((a - b).norm() <= 1e-11 * b.norm(), "{a} {b}");
-        }
-    }
-
-    #[test]
-    fn threads_change_nothing() {
-        let frequencies: Vec<f64> = (1..60).map(|i| f64::from(i) * 7.0).collect();
-        let (one, many) =
-            (run(&line(), &frequencies, Formulation::Chain, 1), run(&line(), &frequencies, Formulation::Chain, 4));
-        assert_eq!(one.sensors, many.sensors);
-        assert!(run(&line(), &[], Formulation::Chain, 4).sensors.is_empty());
-    }
-
-    /// A mass that nothing holds is solved by its inertia; one held at resonance without loss is singular.
-    #[test]
-    fn singular_frequency_is_reported_and_the_sweep_survives() {
-        let (mass, omega) = (1.0, std::f64::consts::TAU);
-        let joint = Joint { x: 0.0, a: 0, b: None, law: 0, scale: 1.0 };
-        let line = Line { bodies: vec![Body::Mass(mass)], joints: vec![joint], names: vec!["block".into()] };
-        let point = [Point { body: 0, x: 0.0 }];
-        let k = omega * omega;
-        let laws = [c64::new(k, 0.0); 2];
-        for formulation in [Formulation::Chain, Formulation::Receptance] {
-            let request = Request {
-                line: &line,
-                frequencies: &[1.0, 0.5],
-                laws: &laws,
-                n_laws: 1,
-                forces: &point,
-                sensors: &point,
-                formulation,
-                joints: false,
-                threads: 1,
-            };
-            let answer = sweep(&request, &Control::default()).unwrap();
-            let [(0, error)] = &answer.failures[..] else {
-                panic!("{formulation:?} {:?} {:?}", answer.failures, answer.sensors)
-            };
-            let at = match error {
-                CoreError::Singular { frequency, .. } | CoreError::IllConditioned { frequency, .. } => *frequency,
-                other => panic!("{other}"),
-            };
-            assert_eq!(at, 1.0);
-            assert!((answer.sensors[1] - 1.0 / (0.75 * k)).norm() < 1e-15);
-        }
-    }
-
-    #[test]
-    fn cancelled_sweep_returns_no_answer() {
-        let control = Control::default();
-        control.cancel.store(true, Ordering::Relaxed);
-        let line = line();
-        let request = Request {
-            line: &line,
-            frequencies: &[1.0],
-            laws: &[c64::ONE; 2],
-            n_laws: 2,
-            forces: &[],
-            sensors: &[],
-            formulation: Formulation::Chain,
-            joints: false,
-            threads: 1,
-        };
-        assert_eq!(sweep(&request, &control).unwrap_err(), CoreError::Cancelled);
     }
 }

@@ -2,6 +2,8 @@
 
 use super::{
     factor::{Factor, Group},
+    gradient::Sums,
+    own::Flexibility,
     solve::{Loads, Response},
     tape::Tape,
 };
@@ -9,7 +11,21 @@ use crate::{
     error::CoreError,
     lanes::{Fuse, Fused, LANES, Plain},
     line::Line,
+    sensitivity::Sensitivity,
 };
+
+/// What is solved.
+#[derive(Debug, Clone, Copy)]
+pub struct Job<'a> {
+    /// The line compiled.
+    pub tape: &'a Tape,
+    /// The line itself.
+    pub line: &'a Line,
+    /// The frequencies, and the laws at them.
+    pub group: &'a Group<'a>,
+    /// Derivatives wanted beside the response; the same as the engine was made for.
+    pub derived: Option<&'a Sensitivity<'a>>,
+}
 
 /// Memory of one thread for one line, and the code that works on it.
 #[derive(Debug, Clone)]
@@ -38,35 +54,55 @@ type PortableFuse = Plain;
 struct Work<F> {
     factor: Factor<F>,
     loads: Loads<F>,
+    sums: Option<Sums<F>>,
+    own: Option<Flexibility<F>>,
 }
 
 impl<F: Fuse> Work<F> {
-    fn new(tape: &Tape, forces: usize) -> Self {
-        Self { factor: Factor::new(tape), loads: Loads::new(tape, forces) }
+    fn new(tape: &Tape, forces: usize, derived: Option<(&Sensitivity<'_>, &Line)>) -> Self {
+        Self {
+            factor: Factor::new(tape),
+            loads: Loads::new(tape, forces),
+            sums: derived.filter(|(s, line)| !s.is_empty(line)).map(|(s, l)| Sums::new(s, l, tape, forces)),
+            own: derived.filter(|(s, _)| s.own).map(|_| Flexibility::new(tape)),
+        }
     }
 
     #[inline(always)]
-    fn run(&mut self, tape: &Tape, line: &Line, group: &Group<'_>, out: &mut Response<'_>) {
+    fn run(&mut self, job: &Job<'_>, out: &mut Response<'_>) {
+        let Job { tape, line, group, derived } = *job;
         self.factor.run(tape, line, group);
-        self.loads.respond(tape, &mut self.factor, out);
+        match (&mut self.sums, derived) {
+            (Some(sums), Some(wanted)) => {
+                let derivatives = (std::mem::take(&mut out.derivatives), out.used);
+                let mut gradient = sums.begin(wanted, line, tape, &self.factor, derivatives);
+                self.loads.respond(tape, &mut self.factor, out, &mut gradient);
+                out.derivatives = gradient.write();
+            }
+            _ => self.loads.respond(tape, &mut self.factor, out, &mut ()),
+        }
+        if let Some(own) = &mut self.own {
+            own.run(tape, &self.factor, out.own, out.used);
+        }
+        self.loads.finite(&mut self.factor, out);
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma")]
-fn run_avx512(w: &mut Work<Fused>, tape: &Tape, line: &Line, group: &Group<'_>, out: &mut Response<'_>) {
-    w.run(tape, line, group, out);
+fn run_avx512(w: &mut Work<Fused>, job: &Job<'_>, out: &mut Response<'_>) {
+    w.run(job, out);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn run_avx2(w: &mut Work<Fused>, tape: &Tape, line: &Line, group: &Group<'_>, out: &mut Response<'_>) {
-    w.run(tape, line, group, out);
+fn run_avx2(w: &mut Work<Fused>, job: &Job<'_>, out: &mut Response<'_>) {
+    w.run(job, out);
 }
 
 impl Engine {
-    /// Room for a tape and so many forces.
-    pub fn new(tape: &Tape, forces: usize) -> Self {
+    /// Room for a tape, so many forces, and what is derived.
+    pub fn new(tape: &Tape, forces: usize, derived: Option<(&Sensitivity<'_>, &Line)>) -> Self {
         #[cfg(target_arch = "x86_64")]
         {
             let fused = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
@@ -74,35 +110,29 @@ impl Engine {
                 && is_x86_feature_detected!("avx512vl")
                 && is_x86_feature_detected!("avx512dq");
             if fused && wide {
-                return Self(Kind::Avx512(Work::new(tape, forces)));
+                return Self(Kind::Avx512(Work::new(tape, forces, derived)));
             }
             if fused {
-                return Self(Kind::Avx2(Work::new(tape, forces)));
+                return Self(Kind::Avx2(Work::new(tape, forces, derived)));
             }
         }
-        Self::portable(tape, forces)
+        Self::portable(tape, forces, derived)
     }
 
     /// The code that every processor of the architecture runs.
-    pub fn portable(tape: &Tape, forces: usize) -> Self {
-        Self(Kind::Portable(Work::new(tape, forces)))
+    pub fn portable(tape: &Tape, forces: usize, derived: Option<(&Sensitivity<'_>, &Line)>) -> Self {
+        Self(Kind::Portable(Work::new(tape, forces, derived)))
     }
 
     /// Answers a group of frequencies; returns why lanes failed, whose answers are of no meaning.
-    pub fn run(
-        &mut self,
-        tape: &Tape,
-        line: &Line,
-        group: &Group<'_>,
-        out: &mut Response<'_>,
-    ) -> &[Option<CoreError>; LANES] {
+    pub fn run(&mut self, job: &Job<'_>, out: &mut Response<'_>) -> &[Option<CoreError>; LANES] {
         match &mut self.0 {
             #[cfg(target_arch = "x86_64")]
             Kind::Avx512(w) => {
                 // SAFETY: `new` chose this kind after it found the features on this processor.
                 #[allow(unsafe_code)]
                 unsafe {
-                    run_avx512(w, tape, line, group, out);
+                    run_avx512(w, job, out);
                 }
                 &w.factor.failed
             }
@@ -111,12 +141,12 @@ impl Engine {
                 // SAFETY: as above.
                 #[allow(unsafe_code)]
                 unsafe {
-                    run_avx2(w, tape, line, group, out);
+                    run_avx2(w, job, out);
                 }
                 &w.factor.failed
             }
             Kind::Portable(w) => {
-                w.run(tape, line, group, out);
+                w.run(job, out);
                 &w.factor.failed
             }
         }

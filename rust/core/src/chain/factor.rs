@@ -26,10 +26,12 @@ pub struct Factor<F> {
     pub failed: [Option<CoreError>; LANES],
     z: Vec<Lanes<F>>,
     right: Vec<Lanes<F>>,
-    width: usize,
+    /// Rows of the front at its widest.
+    pub width: usize,
     pieces: Vec<Transfer<Lanes<F>>>,
     laws: Vec<Lanes<F>>,
-    frequencies: [f64; LANES],
+    /// The frequencies at hand, Hz.
+    pub frequencies: [f64; LANES],
 }
 
 /// The frequencies, Hz, and the stiffness of each law at each of them, N/m: `laws[lane * n_laws + law]`.
@@ -87,7 +89,12 @@ impl<F: Fuse> Factor<F> {
                         }
                     }
                 }
-                Op::March { rows, piece } => self.march(line, rows, *piece),
+                Op::March { rows, piece } => {
+                    if tape.states {
+                        self.keep_impedance(rows);
+                    }
+                    self.march(line, rows, *piece);
+                }
                 Op::Join { a, b, law, scale, .. } => {
                     let k = self.laws[*law].scale(*scale);
                     let (aa, w) = (a * self.width + a, self.width);
@@ -192,6 +199,19 @@ impl<F: Fuse> Factor<F> {
                 }
                 None => self.fail(line, body, i, &[[c64::ZERO; 2]; 2]),
             }
+        }
+    }
+
+    /// Records the impedance at the front as far as it concerns the beam.
+    #[inline(always)]
+    fn keep_impedance(&mut self, rows: &Rows) {
+        let (own, w, n) = (rows.own, self.width, rows.others.len());
+        let zbb = self.own(own);
+        let r = rows.record + 8 + 2 * n;
+        (self.records[r], self.records[r + 1], self.records[r + 2]) = (zbb[0][0], zbb[1][0], zbb[1][1]);
+        for (k, &o) in rows.others.iter().enumerate() {
+            self.records[r + 3 + k] = self.z[at(w, own, o)];
+            self.records[r + 3 + n + k] = self.z[at(w, own + 1, o)];
         }
     }
 
@@ -335,7 +355,7 @@ impl<F: Fuse> Factor<F> {
 
 /// Place of the entry (r, c) of a symmetric matrix kept in its lower triangle.
 #[inline(always)]
-fn at(width: usize, r: usize, c: usize) -> usize {
+pub fn at(width: usize, r: usize, c: usize) -> usize {
     if r > c { r * width + c } else { c * width + r }
 }
 
@@ -356,7 +376,7 @@ fn plus<F: Fuse>(a: &M2<Lanes<F>>, b: &M2<Lanes<F>>, z: &M2<Lanes<F>>) -> M2<Lan
 
 /// A beam's section at squared angular frequencies.
 #[inline(always)]
-fn section<F: Fuse>(beam: &Beam, omega2: &[f64; LANES]) -> Section<Lanes<F>> {
+pub fn section<F: Fuse>(beam: &Beam, omega2: &[f64; LANES]) -> Section<Lanes<F>> {
     let (flexibility, shear) = (beam.bending.inv(), beam.shear.map_or(c64::ZERO, |s| s.inv()));
     let real = |scale: f64| Lanes::new(omega2.map(|o| o * scale), [0.0; LANES]);
     Section {

@@ -14,14 +14,16 @@
 //!
 //! [`tape`] compiles a line to a list of operations that all frequencies share, [`factor`] runs
 //! it forward for several frequencies side by side, [`solve`] runs loads forward and displacements
-//! backward, and [`engine`] chooses the code for the processor at hand.
+//! backward; [`gradient`] sums derivatives on that way back, and [`own`] finds each joint's own flexibility. [`engine`] chooses the code for the processor at hand.
 
 mod engine;
 mod factor;
+mod gradient;
+mod own;
 mod solve;
 mod tape;
 
-pub use engine::Engine;
+pub use engine::{Engine, Job};
 pub use factor::Group;
 pub use solve::Response;
-pub use tape::Tape;
+pub use tape::{Tape, Wanted};

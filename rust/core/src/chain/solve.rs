@@ -16,12 +16,58 @@ pub struct Response<'a> {
     pub sensors: &'a mut [c64],
     /// Extension of the joints (upper less lower body), lanes x joints x forces, m/N; may be empty.
     pub joints: &'a mut [c64],
+    /// Derivatives, lanes x parameters x sensors x forces; may be empty.
+    pub derivatives: &'a mut [c64],
+    /// Extension of each joint by a unit tension in itself, lanes x joints; may be empty.
+    pub own: &'a mut [c64],
     /// Number of sensors.
     pub n_sensors: usize,
     /// Number of forces.
     pub n_forces: usize,
     /// Lanes that are wanted.
     pub used: usize,
+}
+
+/// What else is read on the way back: told every displacement, one column per force.
+pub trait Watch<F: Fuse> {
+    /// Whether anything is: then the way back goes through the whole line.
+    const READS: bool;
+    /// A joint between two rows of the front, or a row and the ground.
+    fn joint(&mut self, joint: usize, front: &[Lanes<F>], a: usize, b: Option<usize>, columns: usize);
+    /// A length of beam: the front at its start, and the loads there, a pair per column (none if nothing is loaded).
+    fn length(&mut self, at: &Length<'_, F>, columns: usize);
+    /// The end of a beam that runs on to infinity, on the left or on the right.
+    fn endless(&mut self, body: usize, left: bool, ends: &[Lanes<F>], columns: usize);
+    /// A mass.
+    fn mass(&mut self, body: usize, displacement: &[Lanes<F>], columns: usize);
+}
+
+/// The start of a length of beam on the way back.
+#[derive(Debug)]
+pub struct Length<'a, F> {
+    /// Which distinct piece.
+    pub piece: usize,
+    /// Its rows.
+    pub rows: &'a Rows,
+    /// The front.
+    pub front: &'a [Lanes<F>],
+    /// Impedance at the front: own rows (three numbers), then coupling to the others (2 x others).
+    pub impedance: &'a [Lanes<F>],
+    /// Loads at the front.
+    pub loads: &'a [Lanes<F>],
+}
+
+/// Nothing more.
+impl<F: Fuse> Watch<F> for () {
+    const READS: bool = false;
+    #[inline(always)]
+    fn joint(&mut self, _: usize, _: &[Lanes<F>], _: usize, _: Option<usize>, _: usize) {}
+    #[inline(always)]
+    fn length(&mut self, _: &Length<'_, F>, _: usize) {}
+    #[inline(always)]
+    fn endless(&mut self, _: usize, _: bool, _: &[Lanes<F>], _: usize) {}
+    #[inline(always)]
+    fn mass(&mut self, _: usize, _: &[Lanes<F>], _: usize) {}
 }
 
 /// Loads and displacements at the front, kept from one set of frequencies to the next.
@@ -39,7 +85,13 @@ impl<F: Fuse> Loads<F> {
 
     /// Answers all forces at once.
     #[inline(always)]
-    pub fn respond(&mut self, tape: &Tape, factor: &mut Factor<F>, out: &mut Response<'_>) {
+    pub fn respond<W: Watch<F>>(
+        &mut self,
+        tape: &Tape,
+        factor: &mut Factor<F>,
+        out: &mut Response<'_>,
+        watch: &mut W,
+    ) {
         let f = out.n_forces;
         let wants_joints = !out.joints.is_empty();
         self.front.fill(Lanes::ZERO);
@@ -63,20 +115,45 @@ impl<F: Fuse> Loads<F> {
             }
         }
         self.front.fill(Lanes::ZERO);
-        let first_read = if wants_joints { 0 } else { tape.first_sensor };
+        let first_read = if wants_joints || W::READS { 0 } else { tape.first_sensor };
         for (k, op) in tape.ops.iter().enumerate().skip(first_read).rev() {
             let loaded = k >= tape.first_force;
             match op {
-                Op::March { rows, .. } => self.backward::<true>(&factor.records, rows, f, loaded),
-                Op::EndBeam { rows, .. } => self.backward::<false>(&factor.records, rows, f, loaded),
-                Op::EndMass { rows } => self.backward_mass(&factor.records, rows, f, loaded),
+                Op::March { rows, piece } => {
+                    let saved = self.backward::<true>(&factor.records, rows, f, loaded);
+                    if W::READS && tape.states {
+                        let at = rows.record + 8 + 2 * rows.others.len();
+                        let impedance = &factor.records[at..at + 3 + 2 * rows.others.len()];
+                        let (front, loads) = (&self.front[..], &self.saved[saved..]);
+                        watch.length(&Length { piece: *piece, rows, front, impedance, loads }, f);
+                    }
+                    self.saved.truncate(saved);
+                }
+                Op::EndBeam { rows, endless, .. } => {
+                    let saved = self.backward::<false>(&factor.records, rows, f, loaded);
+                    self.saved.truncate(saved);
+                    if *endless {
+                        watch.endless(rows.body, false, &self.front[rows.own * f..(rows.own + 2) * f], f);
+                    }
+                }
+                Op::StartBeam { own, body, endless: true, .. } => {
+                    watch.endless(*body, true, &self.front[own * f..(own + 2) * f], f);
+                }
+                Op::EndMass { rows } => {
+                    self.backward_mass(&factor.records, rows, f, loaded);
+                    watch.mass(rows.body, &self.front[rows.own * f..(rows.own + 1) * f], f);
+                }
                 Op::Sense { row, index } => {
                     let stride = out.n_sensors * f;
                     for c in 0..f {
                         scatter(&self.front[row * f + c], out.sensors, index * f + c, stride, out.used);
                     }
                 }
-                Op::Join { joint, a, b, .. } if wants_joints => {
+                Op::Join { joint, a, b, .. } if wants_joints || W::READS => {
+                    watch.joint(*joint, &self.front, *a, *b, f);
+                    if !wants_joints {
+                        continue;
+                    }
                     let stride = tape.joints * f;
                     for c in 0..f {
                         let mut d = self.front[a * f + c];
@@ -89,7 +166,19 @@ impl<F: Fuse> Loads<F> {
                 _ => {}
             }
         }
-        finite(factor, out, tape.joints);
+    }
+
+    /// Marks the lanes whose answers are not finite.
+    pub fn finite(&self, factor: &mut Factor<F>, out: &Response<'_>) {
+        for values in [&*out.sensors, &*out.joints, &*out.derivatives, &*out.own] {
+            let size = values.len() / out.used.max(1);
+            for lane in 0..out.used {
+                let block = &values[lane * size..(lane + 1) * size];
+                if factor.failed[lane].is_none() && !block.iter().all(|v| v.is_finite()) {
+                    factor.not_finite(lane, "the response");
+                }
+            }
+        }
     }
 
     /// g'o = go - W^T gb and g'b = G^-T gb; a body that ends keeps nothing.
@@ -113,9 +202,15 @@ impl<F: Fuse> Loads<F> {
         }
     }
 
-    /// ub = G^-1 u'b - W uo - q gb.
+    /// ub = G^-1 u'b - W uo - q gb. Returns where the loads begin that it read, for the caller to drop.
     #[inline(always)]
-    fn backward<const MARCHES: bool>(&mut self, records: &[Lanes<F>], rows: &Rows, f: usize, loaded: bool) {
+    fn backward<const MARCHES: bool>(
+        &mut self,
+        records: &[Lanes<F>],
+        rows: &Rows,
+        f: usize,
+        loaded: bool,
+    ) -> usize {
         let (own, n) = (rows.own, rows.others.len());
         let gi = &records[rows.record..];
         let q = &gi[if MARCHES { 4 } else { 0 }..];
@@ -141,7 +236,7 @@ impl<F: Fuse> Loads<F> {
             self.front[own * f + c] = u0;
             self.front[(own + 1) * f + c] = u1;
         }
-        self.saved.truncate(saved);
+        saved
     }
 
     #[inline(always)]
@@ -180,18 +275,5 @@ impl<F: Fuse> Loads<F> {
 fn scatter<F: Fuse>(from: &Lanes<F>, to: &mut [c64], place: usize, stride: usize, used: usize) {
     for i in 0..used {
         to[i * stride + place] = from.lane(i);
-    }
-}
-
-/// Marks the lanes whose answers are not finite.
-fn finite<F: Fuse>(factor: &mut Factor<F>, out: &Response<'_>, joints: usize) {
-    let blocks = [(&*out.sensors, out.n_sensors * out.n_forces), (&*out.joints, joints * out.n_forces)];
-    for lane in 0..out.used {
-        for (values, size) in blocks {
-            let block = values.get(lane * size..(lane + 1) * size).unwrap_or(&[]);
-            if factor.failed[lane].is_none() && !block.iter().all(|v| v.is_finite()) {
-                factor.not_finite(lane, "the response");
-            }
-        }
     }
 }

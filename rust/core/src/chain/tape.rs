@@ -54,6 +54,17 @@ pub enum Op {
     Meet { rows: Vec<(usize, usize, bool)> },
 }
 
+/// What is wanted of the way back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wanted {
+    /// The displacements at the sensors.
+    Sensors,
+    /// The displacements everywhere: joints and masses too.
+    Everywhere,
+    /// The forces in the beams besides.
+    States,
+}
+
 /// Record of an operation that nothing will read again.
 const SCRATCH: usize = usize::MAX;
 
@@ -74,6 +85,8 @@ pub struct Tape {
     pub first_force: usize,
     /// Index of the first operation that reads; the number of operations if none does.
     pub first_sensor: usize,
+    /// Whether the records of lengths of beam hold the impedance at their start too.
+    pub states: bool,
     /// What lies beyond the last force and sensor, marched from the right end leftwards.
     pub right: Option<Box<Tape>>,
 }
@@ -127,10 +140,11 @@ struct Compiler<'a> {
 }
 
 impl Compiler<'_> {
-    /// Room for `fixed` numbers and W, which has a row for each of the body's own.
-    fn record(&mut self, body: usize, fixed: usize) -> Rows {
+    /// Room for `fixed` numbers and W, which has a row for each of the body's own; and for the impedance, if wanted.
+    fn record(&mut self, body: usize, fixed: usize, impedance: bool) -> Rows {
         let others = self.front.others(body);
-        let size = fixed + self.front.rows[body].len() * others.len();
+        let block = self.front.rows[body].len() * others.len();
+        let size = fixed + block + if impedance { 3 + block } else { 0 };
         let mut record = SCRATCH;
         if self.keep {
             record = self.tape.record_len;
@@ -160,7 +174,7 @@ impl Compiler<'_> {
         let parts = (steepest * length / LONGEST).ceil().max(1.0);
         let piece = self.piece(body, length / parts, steepest);
         for _ in 0..parts as usize {
-            let rows = self.record(body, 8);
+            let rows = self.record(body, 8, self.tape.states);
             self.tape.ops.push(Op::March { rows, piece });
         }
         self.place[body] = x;
@@ -188,9 +202,9 @@ impl Compiler<'_> {
         // Where the two marches meet, the other one has brought what lies beyond.
         let beyond = !self.crossing[body];
         let op = match &self.line.bodies[body] {
-            Body::Mass(_) => Op::EndMass { rows: self.record(body, 1) },
+            Body::Mass(_) => Op::EndMass { rows: self.record(body, 1, false) },
             Body::Beam(b) => Op::EndBeam {
-                rows: self.record(body, 4),
+                rows: self.record(body, 4, false),
                 endless: beyond && b.interval[last].is_infinite(),
                 pinned: beyond && b.ends[last] == End::Pinned,
             },
@@ -306,11 +320,12 @@ impl<'a> Compiler<'a> {
 }
 
 impl Tape {
-    /// Compiles a checked line for frequencies up to `highest` Hz; `joints` if their extensions are wanted.
+    /// Compiles a checked line for frequencies up to `highest` Hz.
     ///
-    /// What lies right of the last force and sensor is marched from the other side: nothing of it, nor of what lies
+    /// Unless more is wanted than the sensors, what lies right of the last force and sensor is marched from the other side: nothing of it, nor of what lies
     /// left of the first, has to be kept for the way back.
-    pub fn new(line: &Line, forces: &[Point], sensors: &[Point], highest: f64, joints: bool) -> Self {
+    pub fn new(line: &Line, forces: &[Point], sensors: &[Point], highest: f64, wanted: Wanted) -> Self {
+        let joints = wanted != Wanted::Sensors;
         let events = events(line, forces, sensors);
         let n = line.bodies.len();
         let read = events.iter().filter(|e| matches!(e.1, Event::Force(_) | Event::Sense(_))).map(|e| e.0);
@@ -325,6 +340,7 @@ impl Tape {
         };
         let crossing: Vec<bool> = touched(before).into_iter().zip(touched(beyond)).map(|(a, b)| a && b).collect();
         let mut c = Compiler::new(line, highest, crossing.clone(), false, joints);
+        c.tape.states = wanted == Wanted::States;
         c.march(before, forces, sensors);
         if beyond.is_empty() {
             return c.finish();

@@ -1,0 +1,50 @@
+//! A line that the tests share.
+
+use permway_core::{
+    c64,
+    line::{Beam, Body, End, Joint, Line, Point},
+};
+
+pub fn beam(bending: f64, shear: Option<f64>, mass: f64, interval: [f64; 2], end: End) -> Body {
+    let loss = c64::new(1.0, 0.02);
+    Body::Beam(Beam {
+        bending: loss * bending,
+        shear: shear.map(|s| loss * s),
+        mass,
+        rotary: if shear.is_some() { 0.25 } else { 0.0 },
+        interval,
+        ends: [end; 2],
+        modes: None,
+    })
+}
+
+/// Rail, slab and girder with unevenly placed joints, and a mass between two of them.
+pub fn line() -> Line {
+    let endless = [f64::NEG_INFINITY, f64::INFINITY];
+    let bodies = vec![
+        beam(6.7e6, Some(2.4e8), 60.8, endless, End::Free),
+        beam(3e7, None, 640.0, [-0.2, 12.3], End::Free),
+        beam(2e11, None, 12000.0, [-1.0, 13.0], End::Pinned),
+        Body::Mass(130.0),
+    ];
+    let mut joints = Vec::new();
+    for i in 0..20 {
+        let x = 0.625 * f64::from(i);
+        joints.push(Joint { x, a: 0, b: Some(1), law: 0, scale: 1.0 });
+        joints.push(Joint { x: x + 0.001, a: 1, b: Some(2), law: 1, scale: 1.0 });
+    }
+    joints.push(Joint { x: -3.0, a: 0, b: Some(3), law: 0, scale: 0.5 });
+    joints.push(Joint { x: -3.0, a: 3, b: None, law: 0, scale: 0.7 });
+    joints.push(Joint { x: 5.0, a: 2, b: None, law: 0, scale: 30.0 });
+    Line { bodies, joints, names: ["rail", "slab", "girder", "block"].map(String::from).to_vec() }
+}
+
+/// Stiffness of the line's two laws.
+pub fn laws(frequencies: &[f64]) -> Vec<c64> {
+    frequencies.iter().flat_map(|f| [c64::new(6e7, 8e6 + f * 1e4), c64::new(2e9, 3e8)]).collect()
+}
+
+/// Places on all its bodies, beyond its ends and between joints too.
+pub fn points() -> Vec<Point> {
+    [(0, -3.0), (0, 4.1), (1, 7.0), (2, 6.3), (0, 40.0), (3, -3.0)].map(|(body, x)| Point { body, x }).to_vec()
+}
