@@ -21,8 +21,10 @@ if TYPE_CHECKING:
     from permway.model.vehicle import Vehicle
     from permway.model.vehicle_presets import crh380a
     from permway.response.decay import decay_rate
+    from permway.response.passby import Axles, MassOnSpring, SprungMass, couple, hslm_a, passby
     from permway.response.quantities import accelerance, mobility
     from permway.response.receptance import Place, receptance
+    from permway.response.sensitivity import by_joint, change_joint, sensitivity
     from permway.response.solve import solve, write_dataset
     from permway.response.train import Train, train_response
 
@@ -37,36 +39,47 @@ _HOMES = {
     "model.vehicle": ("Vehicle",),
     "model.vehicle_presets": ("crh380a",),
     "response.decay": ("decay_rate",),
+    "response.passby": ("Axles", "MassOnSpring", "SprungMass", "couple", "hslm_a", "passby"),
     "response.quantities": ("accelerance", "mobility"),
     "response.receptance": ("Place", "receptance"),
+    "response.sensitivity": ("by_joint", "change_joint", "sensitivity"),
     "response.solve": ("solve", "write_dataset"),
     "response.train": ("Train", "train_response"),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
 __all__ = [
+    "Axles",
     "Beam",
     "Ends",
     "InputError",
     "Joints",
     "Line",
     "Mass",
+    "MassOnSpring",
     "Model",
     "PermwayError",
     "Place",
     "SolveError",
     "Spread",
+    "SprungMass",
     "Train",
     "Vehicle",
     "__version__",
     "accelerance",
+    "by_joint",
+    "change_joint",
+    "couple",
     "crh380a",
     "decay_rate",
+    "hslm_a",
     "law_from_dict",
     "mobility",
     "model_from_dict",
+    "passby",
     "read_model",
     "receptance",
+    "sensitivity",
     "slab_track_viaduct_32m",
     "solve",
     "train_response",

@@ -6,8 +6,7 @@ Symbols: E I, complex, `bending_Nm2`; m, `mass_kg_per_m`; k = (m omega^2 / (E I)
 displacement along the force. The section is given by modulus and inertia as printed; area and density only by
 their product.
 
-Left out: moving forces and masses, and trains over bridges (Fryba; Yang and Yau; HSLM-A), which need a response
-in time.
+Moving forces and masses, and trains over bridges, are in `test_moving_loads.py`.
 """
 
 import numpy as np

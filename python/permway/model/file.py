@@ -24,6 +24,7 @@ from permway.model.presets import LAWS, LINES
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_presets import VEHICLES
 from permway.records import FrozenModel
+from permway.response.passby.settings import PassBy
 from permway.response.receptance import Formulation, Place, check_places, check_sweep
 from permway.response.train import Train
 
@@ -121,6 +122,8 @@ class Model(FrozenModel):
     train : Train, optional
         With an irregularity: power spectra of the train and of the line at contacts and sensors.
     irregularity : irregularity, optional
+    passby : PassBy, optional
+        The train's run over the line, read at the sensors; needs no irregularity.
     conversion : "per_hertz" or "wavenumber_density_called_per_hertz"
     formulation : "chain" or "receptance"
     """
@@ -134,12 +137,15 @@ class Model(FrozenModel):
     sensors: tuple[Place, ...] = ()
     train: Train | None = None
     irregularity: AnyIrregularity | None = None
+    passby: PassBy | None = None
     conversion: Conversion = "per_hertz"
     formulation: Formulation = "chain"
 
     @model_validator(mode="after")
     def _check(self) -> Model:
-        if (self.train is None) != (self.irregularity is None):
+        if self.passby is not None and (self.train is None or not self.sensors):
+            raise fault("needs a [train] and [[sensors]]", "passby")
+        if (self.train is None) != (self.irregularity is None) and self.passby is None:
             raise ValueError("a train needs an irregularity, and an irregularity a train: give both or neither")
         if self.train is None and not self.forces:
             raise ValueError("nothing to compute: give [[forces]] and [[sensors]], or [train] and [irregularity]")

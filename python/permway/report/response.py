@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from permway.files import prepare_folder, write_bytes
+from permway.report.passby import passage
 from permway.response.decay import decay_rate
 
 _WIDTH_IN = 6.3
@@ -41,7 +42,8 @@ def draw_dataset(data: xr.Dataset, folder: Path, *, dpi: int = 150) -> list[Path
     -------
     list of Path
         Those of these that the data give: `receptance-FORCE.png` for each force, `wheel-rail-force.png`,
-        `vehicle-acceleration.png`, `line-acceleration.png`, `contact-receptance.png`, `decay-rate.png`.
+        `vehicle-acceleration.png`, `line-acceleration.png`, `contact-receptance.png`, `decay-rate.png`,
+        `passby-SENSOR.png` for each sensor.
 
     Raises
     ------
@@ -71,6 +73,9 @@ def _pictures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     ):
         if variable in data:
             yield f"{name}.png", _densities(data[variable], dimension, title)
+    if "passby_history" in data:
+        for sensor, name in _file_names([str(s) for s in data["sensor"].values]).items():
+            yield f"passby-{name}.png", passage(data, sensor)
     if "track_receptance" in data:
         yield "contact-receptance.png", _contact(data)
         if data.sizes["wheel"] > 1:

@@ -10,12 +10,13 @@ import xarray as xr
 
 from permway.errors import InputError
 from permway.model.file import Model
+from permway.response.passby.run import passby
 from permway.response.receptance import Progress, receptance
 from permway.response.train import train_response
 
 
 def solve(model: Model, *, threads: int | None = None, progress: Progress | None = None) -> xr.Dataset:
-    """Receptances, and a train's spectra if there is one.
+    """Receptances, a train's spectra if there is one, and its passage if that is asked for.
 
     Parameters
     ----------
@@ -28,7 +29,8 @@ def solve(model: Model, *, threads: int | None = None, progress: Progress | None
     Returns
     -------
     xarray.Dataset
-        See :func:`permway.response.receptance.receptance` and :func:`permway.response.train.train_response`.
+        See :func:`permway.response.receptance.receptance` and :func:`permway.response.train.train_response`; of
+        a passage the variables of :func:`permway.response.passby.run.passby`, as `passby_history` and so on.
 
     Raises
     ------
@@ -37,6 +39,8 @@ def solve(model: Model, *, threads: int | None = None, progress: Progress | None
     """
     frequency = model.frequencies.array()
     parts = []
+    # First, for its complaints come late.
+    passage = _passage(model, threads, progress) if model.passby is not None else None
     if model.train is not None and model.irregularity is not None:
         parts.append(
             train_response(
@@ -65,6 +69,8 @@ def solve(model: Model, *, threads: int | None = None, progress: Progress | None
                 progress=progress,
             )
         )
+    if passage is not None:
+        parts.append(passage)
     data = xr.merge(parts, combine_attrs="drop_conflicts", join="exact")
     data.attrs = {
         **parts[-1].attrs,
@@ -73,6 +79,30 @@ def solve(model: Model, *, threads: int | None = None, progress: Progress | None
         "model": model.model_dump_json(by_alias=True),
     }
     return data
+
+
+def _passage(model: Model, threads: int | None, progress: Progress | None) -> xr.Dataset:
+    """The passage with names that stand beside the others', its frequencies among them."""
+    assert model.passby is not None
+    assert model.train is not None
+    settings = model.passby.model_dump(exclude={"dynamic", "seed"})
+    random = model.passby.dynamic and model.irregularity is not None
+    data = passby(
+        model.line,
+        model.train,
+        sensors=model.sensors,
+        irregularity=model.irregularity if random else None,
+        seed=model.passby.seed if random else None,
+        temperature_C=model.temperature_C,
+        formulation=model.formulation,
+        threads=threads,
+        progress=progress,
+        **settings,
+    )
+    names = {str(name): f"passby_{name}" for name in data.data_vars}
+    renamed = data.rename({**names, "frequency": "passby_frequency"})
+    renamed.attrs = {f"passby_{name}": value for name, value in data.attrs.items()}
+    return renamed
 
 
 def write_dataset(data: xr.Dataset, path: str | Path) -> Path:
