@@ -1,5 +1,6 @@
-//! What the benches measure: dense complex systems, and lines with a request to sweep.
+//! What the benches measure: dense complex systems, lines with a request to sweep, and the processor's own peak.
 
 pub mod dense;
 pub mod lines;
+pub mod peak;
 pub mod timing;
