@@ -1,0 +1,1 @@
+"""Spectral estimates with their uncertainty: arrays in, arrays or labelled datasets out."""
