@@ -124,7 +124,7 @@ def solve(
         data = run(described, threads=threads, progress=progress)
     result: dict[str, Any] = {
         "dataset": str(write_dataset(data, path)),
-        "frequencies": int(data.sizes["frequency"]),
+        "frequencies": int(data.sizes.get("frequency", data.sizes.get("passby_frequency", 0))),
         "variables": sorted(str(name) for name in data.data_vars),
     }
     if plot is not None:
@@ -211,6 +211,66 @@ def sweep(
     _say({**shown, "already_there": done.already_there, "failed": failed}, as_json)
     if failed:
         raise typer.Exit(1)
+
+
+imports = typer.Typer(
+    help="Turn a folder as others hand it over into a campaign.", no_args_is_help=True, rich_markup_mode=None
+)
+app.add_typer(imports, name="import")
+
+Folder = Annotated[Path, typer.Argument(help="Folder to read.")]
+Into = Annotated[Path, typer.Option("--output", "-o", help="Folder for campaign.toml and model.toml.")]
+Copy = Annotated[bool, typer.Option(help="Copy the records beside the campaign, or refer to where they lie.")]
+
+
+@imports.command("sheet")
+def import_sheet(folder: Folder, output: Into, copy: Copy = True, as_json: Json = False) -> None:
+    """A measuring team's sheet.json, hammer FRFs and runs."""
+    from permway.recordings.importers.sheet import import_sheet as run
+
+    _say(run(folder, output, copy=copy).summary(), as_json)
+
+
+@imports.command("rubber-rig")
+def import_rubber_rig(
+    folder: Folder,
+    output: Into,
+    copy: Copy = False,
+    law: Annotated[str, typer.Option(help="Form of the law.")] = "fractional_zener",
+    as_json: Json = False,
+) -> None:
+    """DMA tables and shaker records of rubbers: a campaign for each."""
+    from permway.recordings.importers.rubber_rig import import_rubber_rig as run
+
+    _say({"campaigns": [campaign.summary() for campaign in run(folder, output, copy=copy, law=law)]}, as_json)
+
+
+@imports.command("pad-materials")
+def import_pad_materials(
+    folder: Folder,
+    output: Into,
+    copy: Copy = False,
+    law: Annotated[str, typer.Option(help="Form of the law.")] = "springpot_parallel",
+    as_json: Json = False,
+) -> None:
+    """Moduli of rail pad rubbers over frequency: a campaign for each."""
+    from permway.recordings.importers.pad_materials import import_pad_materials as run
+
+    _say({"campaigns": [campaign.summary() for campaign in run(folder, output, copy=copy, law=law)]}, as_json)
+
+
+@imports.command("track-decay")
+def import_track_decay(
+    folder: Folder,
+    output: Into,
+    copy: Copy = False,
+    support: Annotated[str, typer.Option(help="'discrete' or 'continuous'.")] = "discrete",
+    as_json: Json = False,
+) -> None:
+    """Track decay rates in one-third octaves."""
+    from permway.recordings.importers.track_decay import import_track_decay as run
+
+    _say(run(folder, output, copy=copy, support=support).summary(), as_json)
 
 
 @app.command()

@@ -1,0 +1,250 @@
+"""The campaign file: recordings with their conditions and sensors, and the model as its owner believes it."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import Field, ValidationError
+
+from permway.errors import InputError
+from permway.model.faults import model_error, refuse_coercion
+from permway.model.file import LARGEST_FILE, Model, read_model
+from permway.recordings.campaign_checks import check_campaign
+from permway.recordings.campaign_parts import Condition, HeldOut, IrregularityKnown, Record
+from permway.recordings.campaign_values import ParameterSet
+from permway.recordings.channel import Point, Sensor
+from permway.recordings.parameters import Parameter
+from permway.records import FrozenModel
+
+if TYPE_CHECKING:
+    from permway.recordings.campaign_load import Dataset
+
+
+class Said(FrozenModel):
+    """A campaign file, as it says it.
+
+    Parameters
+    ----------
+    format : 1
+        Version of the file format.
+    title : str
+    model : str
+        Name of the model file, beside the campaign file or in a folder below it.
+    allow_outside : bool
+        Whether `model` and the files of records may lie outside the campaign's folder.
+    parameters : sequence of Parameter
+    sensors : sequence of Sensor
+    forces : sequence of Point
+    conditions : sequence of Condition
+    irregularity : IrregularityKnown, optional
+    records : sequence of Record
+    held_out : sequence of HeldOut
+    """
+
+    format: Literal[1] = 1
+    title: str = ""
+    model: str = Field(min_length=1)
+    allow_outside: bool = False
+    parameters: tuple[Parameter, ...] = ()
+    sensors: tuple[Sensor, ...] = ()
+    forces: tuple[Point, ...] = ()
+    conditions: tuple[Condition, ...] = Field(min_length=1)
+    irregularity: IrregularityKnown = IrregularityKnown()
+    records: tuple[Record, ...] = Field(min_length=1)
+    held_out: tuple[HeldOut, ...] = ()
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """A campaign that was read and checked.
+
+    Attributes
+    ----------
+    said : Said
+        The file.
+    model : Model
+        As its owner believes it.
+    folder : Path
+        Where the campaign file lies.
+    parameters : ParameterSet
+        Resolved against the model.
+    """
+
+    said: Said
+    model: Model
+    folder: Path
+    parameters: ParameterSet = field(repr=False, compare=False)
+
+    def sensor(self, name: str) -> Sensor:
+        """The sensor of that name."""
+        return self.said.sensors[_named(self.said.sensors, name, "sensors")]
+
+    def point(self, name: str) -> Point:
+        """The force point of that name."""
+        return self.said.forces[_named(self.said.forces, name, "forces")]
+
+    def condition(self, name: str) -> Condition:
+        """The condition of that name."""
+        return self.said.conditions[_named(self.said.conditions, name, "conditions")]
+
+    def path(self, record: Record) -> Path:
+        """Where the file of a record lies."""
+        return self.folder / record.file
+
+    def model_with(self, values: Mapping[str, float]) -> Model:
+        """The model with other values of parameters; those not named keep their nominal.
+
+        Raises
+        ------
+        InputError
+            For a name that is no parameter, a value out of its bounds, or one that the model refuses.
+        """
+        return self.parameters.changed(values)[0]
+
+    def with_values(self, values: Mapping[str, float]) -> Campaign:
+        """The campaign with other values, also of sensors' chains and of conditions.
+
+        Its `parameters` stay those of the file, so values count from the owner's belief as before.
+
+        Raises
+        ------
+        InputError
+            As :meth:`model_with`.
+        """
+        model, said = self.parameters.changed(values)
+        return Campaign(said, model, self.folder, self.parameters)
+
+    def with_model(self, model: Model) -> Campaign:
+        """The campaign with another model, as an amendment makes it of the owner's.
+
+        Parameters keep their names, nominals and priors, and act on the new model; one whose numbers it no longer
+        has (of a law that was replaced) acts no more.
+        """
+        return Campaign(self.said, model, self.folder, self.parameters.on(model))
+
+    def summary(self) -> dict[str, str | int]:
+        """What there is, for people and machines."""
+        return {
+            "campaign": str(self.folder / "campaign.toml"),
+            "title": self.said.title,
+            "records": len(self.said.records),
+            "sensors": len(self.said.sensors),
+            "parameters": len(self.said.parameters),
+            "held_out": len(self.said.held_out),
+        }
+
+    def load(self) -> list[Dataset]:
+        """Read all records into labelled datasets; see :mod:`permway.recordings.campaign_load`."""
+        from permway.recordings.campaign_load import load
+
+        return load(self)
+
+
+def read_campaign(path: str | Path) -> Campaign:
+    """Read and check a campaign file; the records are only seen to be there.
+
+    Parameters
+    ----------
+    path : path
+        TOML; see `docs/campaign-file.md`.
+
+    Raises
+    ------
+    InputError
+        With file, place in the file, value and remedy.
+    """
+    path = Path(path)
+    table = _read_table(path, "name a campaign file (TOML)")
+    try:
+        return campaign_from_dict(table, folder=path.parent)
+    except InputError as error:
+        raise InputError(
+            error.what, where=f"{path}: {error.where}", value=error.value, remedy=error.remedy
+        ) from error
+
+
+def campaign_from_dict(table: Mapping[str, Any], *, folder: Path) -> Campaign:
+    """Build a campaign from a table, as TOML gives it.
+
+    Parameters
+    ----------
+    table : mapping
+    folder : path
+        Where the model file and the records lie.
+
+    Raises
+    ------
+    InputError
+        With the place in the table.
+    """
+    try:
+        said = Said.model_validate(dict(table))
+    except ValidationError as error:
+        raise model_error(error, table, "") from error
+    refuse_coercion(table, said, "")
+    model_path = beside(said.model, folder, "model", outside=said.allow_outside)
+    try:
+        model = read_model(model_path)
+    except InputError as error:
+        raise InputError(
+            error.what, where=f"model: {error.where}", value=error.value, remedy=error.remedy
+        ) from error
+    for index, record in enumerate(said.records):
+        for key, name in (("file", record.file), ("loss_file", record.loss_file)):
+            where = f"records[{index}].{key}"
+            if name is not None and not beside(name, folder, where, outside=said.allow_outside).is_file():
+                raise InputError("there is no such file", where=where, value=name)
+    check_campaign(said, model)
+    raw = _read_table(model_path, "name a model file (TOML)")
+    return Campaign(said, model, folder, ParameterSet(said.parameters, model, raw, said, model_path.parent))
+
+
+def beside(name: str, folder: Path, where: str, *, outside: bool) -> Path:
+    """The path of a file that a campaign names.
+
+    Raises
+    ------
+    InputError
+        For a name that leads out of the folder, unless that is allowed.
+    """
+    if not name or "\0" in name:
+        raise InputError("must be the name of a file", where=where, value=name)
+    path = folder / name
+    if not outside and not path.resolve().is_relative_to(folder.resolve()):
+        raise InputError(
+            "lies outside the campaign's folder",
+            where=where,
+            value=name,
+            remedy="put it beside the campaign file, or say allow_outside = true",
+        )
+    return path
+
+
+def _named(items: Sequence[Sensor | Point | Condition], name: str, where: str) -> int:
+    for index, item in enumerate(items):
+        if item.name == name:
+            return index
+    raise InputError("there is none of that name", where=where, value=name)
+
+
+def _read_table(path: Path, remedy: str) -> dict[str, Any]:
+    try:
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"cannot be read: {reason}", where=str(path), remedy=remedy) from error
+    if len(content) > LARGEST_FILE:
+        raise InputError(f"is larger than {LARGEST_FILE // 2**20} MiB", where=str(path), remedy=remedy)
+    try:
+        return tomllib.loads(content.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        raise InputError(
+            "is not text in UTF-8", where=f"{path}, byte {error.start}", remedy="save it as UTF-8"
+        ) from error
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"is not TOML: {error}", where=str(path)) from error

@@ -1,0 +1,150 @@
+"""The measuring chain: what lies between the motion of a body and the number that is written down."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
+
+from permway.arrays import Complexes, Reals
+from permway.model.faults import fault
+from permway.records import FrozenModel, Number
+
+Quantity = Literal["displacement", "velocity", "acceleration", "force"]
+
+DERIVATIVES: dict[str, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
+
+UNITS: dict[str, dict[str, float]] = {
+    "displacement": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
+    "velocity": {"m/s": 1.0, "mm/s": 1e-3},
+    "acceleration": {"m/s2": 1.0, "m/s^2": 1.0, "g": 9.80665, "mm/s2": 1e-3},
+    "force": {"N": 1.0, "kN": 1e3},
+}
+"""Units of each quantity, and what one of them is in SI."""
+
+
+class Chain(FrozenModel):
+    """Transfer from the true quantity, in SI, to the record, in the sensor's unit and in SI.
+
+    Parameters
+    ----------
+    gain : float
+        What is read over what is there.
+    delay_s : float
+        What is read comes so much later.
+    polarity : 1 or -1
+        -1 for a sensor mounted, or wired, the wrong way round.
+    mount_Hz : float, optional
+        Resonance of the sensor on its mount.
+    mount_loss_factor : float
+        Of the mount.
+    noise_floor : float
+        One-sided density of what is read with nothing there, unit squared per hertz.
+    """
+
+    gain: PositiveFloat = 1.0
+    delay_s: Number = Field(default=0.0, ge=-10.0, le=10.0)
+    polarity: Literal[1, -1] = 1
+    mount_Hz: PositiveFloat | None = None
+    mount_loss_factor: NonNegativeFloat = 0.05
+    noise_floor: NonNegativeFloat = 0.0
+
+    def transfer(self, frequency_Hz: Reals) -> Complexes:
+        """Read over true, shape of the frequencies.
+
+        The mount is a mass on a spring k (1 + i eta): (1 + i eta) / (1 + i eta - (f/f0)^2).
+        """
+        value = self.polarity * self.gain * np.exp(-2j * np.pi * frequency_Hz * self.delay_s)
+        if self.mount_Hz is not None:
+            spring = 1.0 + 1j * self.mount_loss_factor
+            value = value * (spring / (spring - (frequency_Hz / self.mount_Hz) ** 2))
+        return np.asarray(value, dtype=np.complex128)
+
+
+class Sensor(FrozenModel):
+    """A sensor: what it sits on, and what it reads.
+
+    Parameters
+    ----------
+    name : str
+    body : str, optional
+        Body of the line, with `x_m`.
+    x_m : float, optional
+    degree : str, optional
+        Instead: a degree of freedom of the vehicle, as "car1.wheelset2" or "car1.body.bounce".
+    direction : "down", "up", "lateral" or "longitudinal"
+        Of what it reads as positive. The model moves up and down; the others are kept, and not predicted.
+    quantity : "displacement", "velocity", "acceleration" or "force"
+    unit : str
+        As the file has it.
+    chain : Chain
+    """
+
+    name: str = Field(min_length=1)
+    body: str | None = None
+    x_m: Number | None = None
+    degree: str | None = None
+    direction: Literal["down", "up", "lateral", "longitudinal"] = "down"
+    quantity: Quantity = "acceleration"
+    unit: str
+    chain: Chain = Chain()
+
+    @model_validator(mode="after")
+    def _check(self) -> Sensor:
+        if (self.body is None) == (self.degree is None):
+            raise fault("give body and x_m, or degree", "body")
+        if (self.body is None) != (self.x_m is None):
+            raise fault("x_m goes with body" if self.body is None else "missing: where on the body", "x_m")
+        if self.unit not in UNITS[self.quantity]:
+            what = f"is no unit of {self.quantity} here: use one of {sorted(UNITS[self.quantity])}"
+            raise fault(what, "unit", value=self.unit)
+        return self
+
+    @property
+    def predicted(self) -> bool:
+        """Whether the model says anything of its direction."""
+        return self.direction in ("down", "up")
+
+    @property
+    def to_SI(self) -> float:
+        """One unit of the file in SI."""
+        return UNITS[self.quantity][self.unit]
+
+    @property
+    def noise_density(self) -> float:
+        """One-sided density of the noise floor, SI unit squared per hertz."""
+        return self.chain.noise_floor * self.to_SI**2
+
+    def transfer(self, frequency_Hz: Reals) -> Complexes:
+        """What is read, in SI, over the displacement down in m (over the force down in N), shape (F,)."""
+        sign = -1.0 if self.direction == "up" else 1.0
+        order = DERIVATIVES.get(self.quantity, 0)
+        return np.asarray(sign * (2j * np.pi * frequency_Hz) ** order * self.chain.transfer(frequency_Hz))
+
+
+class Point(FrozenModel):
+    """A place where a hammer strikes, or a shaker pushes.
+
+    Parameters
+    ----------
+    name : str
+    body : str
+    x_m : float
+    direction : "down" or "up"
+    unit : str
+        Of the force as the file has it.
+    chain : Chain
+        Of the force cell.
+    """
+
+    name: str = Field(min_length=1)
+    body: str
+    x_m: Number
+    direction: Literal["down", "up"] = "down"
+    unit: Literal["N", "kN"] = "N"
+    chain: Chain = Chain()
+
+    def transfer(self, frequency_Hz: Reals) -> Complexes:
+        """What is read over the force down, both in N, shape (F,)."""
+        return (-1.0 if self.direction == "up" else 1.0) * self.chain.transfer(frequency_Hz)

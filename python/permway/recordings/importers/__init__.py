@@ -1,0 +1,1 @@
+"""Folders as others hand them over, turned into campaigns."""

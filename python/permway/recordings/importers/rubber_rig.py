@@ -1,0 +1,166 @@
+"""Rubber tested twice over: a DMA machine, and a mass on two rings shaken at its base."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+from permway.errors import InputError
+from permway.laws import law_to_dict
+from permway.laws.dma import read_dma
+from permway.laws.identify import identify
+from permway.laws.transmissibility import ShearRig
+from permway.recordings.campaign import Campaign
+from permway.recordings.importers.writing import write_campaign
+
+RIG = ShearRig(
+    outer_diameter_m=33.5e-3, inner_diameter_m=11.8e-3, thickness_m=6e-3, rings=2, moving_mass_kg=14.8e-3
+)
+"""As the recordings' README gives it; end discs of 14.8 g move with the mass."""
+
+MASSES_KG = {"118g": 0.1178, "253g": 0.2533, "573g": 0.573, "1196g": 1.196}
+"""By the name of the file, to the tenth of a gram."""
+
+ROOM_C = 21.0
+"""Of the shaker's room, not logged."""
+
+
+def import_rubber_rig(
+    folder: Path, output: Path, *, copy: bool = False, law: str = "fractional_zener"
+) -> list[Campaign]:
+    """Turn every material of the folder into a campaign in a folder of its name.
+
+    The model is the rubber's law as identified from the DMA table at the lowest strain, by WLF, and one mass on it
+    for each shaker record; nothing is fitted to the shaker.
+
+    Parameters
+    ----------
+    folder : Path
+        Holds a folder for every material, with `dma` and `shaker` in it.
+    output : Path
+    copy : bool
+        Whether the records are copied beside the campaigns.
+    law : str
+        Family of the law, see :func:`permway.laws.identify.identify`.
+
+    Raises
+    ------
+    InputError
+        For a folder without materials, or files that cannot be read.
+    """
+    materials = sorted(path.parent.parent for path in folder.glob("*/dma/tf_015p.csv"))
+    if not materials:
+        raise InputError("holds no material", where=str(folder), remedy="it needs */dma/tf_015p.csv")
+    output.mkdir(exist_ok=True)
+    return [_material(path, output / path.name, copy=copy, law=law) for path in materials]
+
+
+def _material(folder: Path, output: Path, *, copy: bool, law: str) -> Campaign:
+    sweep = folder / "dma" / "tf_015p.csv"
+    shaken = sorted((folder / "shaker").glob("*.csv"))
+    if not shaken:
+        raise InputError("holds no shaker record", where=str(folder / "shaker"))
+    found = identify(read_dma(sweep), law=law, shift="wlf", reference_temperature_C=ROOM_C)
+    masses = {path: _mass(path) for path in shaken}
+    strains = sorted((folder / "dma").glob("sd_*.csv"))
+    records: list[dict[str, Any]] = [_dma(path) for path in (sweep, *strains)]
+    records += [
+        {
+            "name": path.stem,
+            "file": path.name,
+            "condition": f"shaker_{path.stem.split('_')[0]}",
+            "statistic": "transmissibility",
+            "channels": {"mass": name},
+        }
+        for path, (name, _) in masses.items()
+    ]
+    levels = sorted({path.stem.split("_")[0] for path in shaken})
+    campaign = {
+        "format": 1,
+        "title": f"{folder.name}: two rings in shear, and their DMA",
+        "model": "model.toml",
+        "parameters": [
+            {
+                "name": "rig.factor",
+                "unit": "1",
+                "paths": ["line.laws.rubber.effective_fraction"],
+                "acts": "scales",
+                "tolerance_2sigma": 0.5,
+            }
+        ],
+        "sensors": [
+            {"name": name, "body": name, "x_m": _place(i), "unit": "m/s2"}
+            for i, (name, _) in enumerate(masses.values())
+        ],
+        "conditions": [
+            {"name": "dma", "kind": "table"},
+            *(
+                {"name": f"shaker_{level}", "kind": "shaker", "temperature_C": ROOM_C, "note": "room, not logged"}
+                for level in levels
+            ),
+        ],
+        "records": records,
+        "held_out": [
+            {"name": "shaker", "axis": "record", "members": [path.stem for path in shaken]},
+            *(
+                [{"name": "strain", "axis": "record", "members": [path.stem for path in strains]}]
+                if strains
+                else []
+            ),
+        ],
+    }
+    model = _model(folder.name, law_to_dict(found.law), list(masses.values()))
+    return write_campaign(output, campaign=campaign, model=model, sources=[sweep, *strains, *shaken], copy=copy)
+
+
+def _dma(path: Path) -> dict[str, Any]:
+    return {
+        "name": path.stem,
+        "file": path.name,
+        "condition": "dma",
+        "statistic": "material",
+        "law": "line.laws.rubber.material",
+    }
+
+
+def _mass(path: Path) -> tuple[str, float]:
+    key = path.stem.split("_")[-1]
+    if key in MASSES_KG:
+        return f"mass_{key}", MASSES_KG[key]
+    grams = re.fullmatch(r"(\d+(?:\.\d+)?)g", key)
+    if grams is None:
+        raise InputError("says no mass", where=str(path), value=path.stem, remedy="name it as 1g_253g.csv")
+    return f"mass_{key.replace('.', '-')}", 1e-3 * float(grams[1])
+
+
+def _place(index: int) -> float:
+    return float(index)
+
+
+def _model(name: str, law: dict[str, Any], masses: list[tuple[str, float]]) -> dict[str, Any]:
+    places = [{"body": body, "x_m": _place(i)} for i, (body, _) in enumerate(masses)]
+    return {
+        "format": 1,
+        "title": f"{name}: masses on two rings each",
+        "temperature_C": ROOM_C,
+        "frequencies": {"from_Hz": 20.0, "to_Hz": 1000.0, "points": 100},
+        "line": {
+            "bodies": {body: {"type": "mass", "mass_kg": mass + RIG.moving_mass_kg} for body, mass in masses},
+            "laws": {
+                "rubber": {
+                    "type": "pad",
+                    "area_m2": RIG.shape_factor_m * RIG.thickness_m / RIG.rings,
+                    "thickness_m": RIG.thickness_m,
+                    "effective_fraction": 1.0,
+                    "material": law,
+                }
+            },
+            "joints": [
+                {"between": [body, "ground"], "law": "rubber", "at": [_place(i)], "scale": float(RIG.rings)}
+                for i, (body, _) in enumerate(masses)
+            ],
+        },
+        "forces": places,
+        "sensors": places,
+    }

@@ -1,0 +1,249 @@
+"""A measuring team's folder - sheet.json, hammer FRFs, runs - as a campaign."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from permway.errors import InputError
+from permway.recordings.campaign import Campaign
+from permway.recordings.importers.sheet_form import Sheet, Spot, read_sheet
+from permway.recordings.importers.sheet_model import model_table
+from permway.recordings.importers.sheet_runs import UNITS, read_runs
+from permway.recordings.importers.writing import write_campaign
+from permway.recordings.readers import read_frf
+
+KEYS = {
+    "E": ("youngs_modulus_Pa", "Pa"),
+    "I": ("second_moment_m4", "m4"),
+    "rho": ("density_kg_per_m3", "kg/m3"),
+    "A": ("area_m2", "m2"),
+    "G": ("shear_modulus_Pa", "Pa"),
+    "kappa": ("shear_coefficient", "1"),
+    "k": ("stiffness", "N/m"),
+    "eta": ("loss_factor", "1"),
+}
+
+VEHICLE_KEYS = {
+    "Mc": ("car_body_mass_kg", "kg"),
+    "Mt": ("bogie_mass_kg", "kg"),
+    "Mw": ("wheelset_mass_kg", "kg"),
+    "Jc": ("car_body_inertia_kg_m2", "kg m2"),
+    "Jt": ("bogie_inertia_kg_m2", "kg m2"),
+    "kp": ("primary_stiffness_N_per_m", "N/m"),
+    "cp": ("primary_damping_Ns_per_m", "N s/m"),
+    "ks": ("secondary_stiffness_N_per_m", "N/m"),
+    "cs": ("secondary_damping_Ns_per_m", "N s/m"),
+    "lc": ("bogie_distance_m", "m"),
+    "lt": ("wheelbase_m", "m"),
+}
+
+LAYERS = ("pad", "mortar", "sliding", "bearing")
+
+_SUFFIXES = (".uff", ".unv", ".mat", ".csv", ".npz", ".h5", ".nc", ".tdms", ".wav")
+_NODES = {1: "rail", 2: "slab", 3: "base", 4: "girder"}
+
+
+def import_sheet(folder: Path, output: Path, *, copy: bool = True) -> Campaign:
+    """Turn a folder with a `sheet.json` into a campaign.
+
+    Parameters
+    ----------
+    folder : Path
+    output : Path
+        Gets `campaign.toml`, `model.toml` and, with `copy`, the records.
+
+    Raises
+    ------
+    InputError
+        For a sheet or a record that cannot be read, or does not hold what the sheet says.
+    """
+    sheet = read_sheet(folder)
+    unit = _unit(sheet.hammer.quantity)
+    title = f"{folder.resolve().name}: {sheet.layout.spans} span(s) of {sheet.layout.span_m:g} m"
+    conditions, records, sources = [], [], []
+    for temperature in sheet.temperature_C:
+        name = f"hammer_{temperature:+.0f}C"
+        source = _find(folder, name)
+        conditions.append({"name": name, "kind": "hammer", "temperature_C": temperature})
+        records.append(_hammer_record(sheet, name, source))
+        sources.append(source)
+    runs = None
+    if sheet.runs is not None:
+        names = [f"run_{speed:.0f}kmh" for speed in sheet.runs.speeds_kmh]
+        runs = read_runs(sheet, [_find(folder, name) for name in names])
+        conditions += runs.conditions(names)
+        records += runs.records(names)
+        sources += runs.sources
+    campaign = {
+        "format": 1,
+        "title": title,
+        "model": "model.toml",
+        "irregularity": {"knowledge": "within", "within_dB": 2.0} if runs else None,
+        "parameters": [*_parameters(sheet), *(_train_parameters(sheet) if runs else [])],
+        "sensors": [*_line_sensors(sheet, unit), *(runs.sensors() if runs else [])],
+        "forces": [{"name": _label(spot), "body": spot[0], "x_m": spot[1]} for spot in sheet.hammer.points],
+        "conditions": conditions,
+        "records": records,
+        "held_out": _held_out(sheet),
+    }
+    return write_campaign(output, campaign=campaign, model=model_table(sheet, title), sources=sources, copy=copy)
+
+
+def _find(folder: Path, name: str) -> Path:
+    found = [path for suffix in _SUFFIXES if (path := folder / (name + suffix)).is_file()]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        names = [path.name for path in found]
+        raise InputError("there are two of that name", where=str(folder), value=names, remedy="leave one")
+    remedy = f"the sheet speaks of it; its name ends in one of {', '.join(_SUFFIXES)}"
+    raise InputError(f"there is no file {name}", where=str(folder), remedy=remedy)
+
+
+def _label(spot: Spot) -> str:
+    return f"{spot[0]}@{spot[1]:g}"
+
+
+def _line_sensors(sheet: Sheet, unit: str) -> list[dict[str, Any]]:
+    return [
+        {"name": _label(spot), "body": spot[0], "x_m": spot[1], "quantity": "acceleration", "unit": unit}
+        for spot in sheet.hammer.sensors
+    ]
+
+
+def _unit(quantity: str) -> str:
+    """Accelerance in (m/s^2)/N is what these folders hold; anything else is refused."""
+    found = re.search(r"\((m/s\^?2|g)\)\s*/\s*N", quantity)
+    if not quantity.lower().startswith("accelerance") or found is None:
+        remedy = "write it as 'accelerance (m/s^2)/N, ...'"
+        raise InputError(
+            "must be an accelerance with its unit",
+            where="sheet.json: hammer.quantity",
+            value=quantity,
+            remedy=remedy,
+        )
+    return UNITS[found[1]]
+
+
+def _hammer_record(sheet: Sheet, name: str, source: Path) -> dict[str, Any]:
+    file = read_frf(source)
+    responses = _matched(file.responses, sheet.hammer.sensors, source, "sensors")
+    references = _matched(file.references, sheet.hammer.points, source, "points")
+    blows = re.search(r"of (\d+) blows", sheet.hammer.quantity)
+    record: dict[str, Any] = {
+        "name": name,
+        "file": source.name,
+        "condition": name,
+        "statistic": "frf",
+        "band_Hz": list(sheet.hammer.lines_Hz[:2]),
+        "responses": responses,
+        "references": references,
+    }
+    if blows is not None:
+        record["averages"] = float(blows[1])
+    elif file.averages is None:
+        remedy = "write it as 'H1 of 8 blows'"
+        raise InputError("says no number of blows", where="sheet.json: hammer.quantity", remedy=remedy)
+    return record
+
+
+def _matched(labels: Iterable[str], spots: tuple[Spot, ...], source: Path, what: str) -> dict[str, str]:
+    """The file's label of each place of the sheet.
+
+    Raises
+    ------
+    InputError
+        For a place that the file does not have.
+    """
+    found: dict[tuple[str, float], str] = {}
+    for label in dict.fromkeys(labels):
+        spot = _spot_of(label)
+        if spot is not None:
+            found.setdefault(spot, label)
+    matched = {}
+    for index, spot in enumerate(spots):
+        key = (spot[0], round(spot[1], 2))
+        if key not in found:
+            where = f"{source}: hammer.{what}[{index}]"
+            raise InputError("the file has no such place", where=where, value=list(spot))
+        matched[found[key]] = _label(spot)
+    return matched
+
+
+def _spot_of(label: str) -> tuple[str, float] | None:
+    """Body and x of a label: "rail@16.32", or a UFF node 10000 * body + x in cm."""
+    named = re.match(r"\s*([A-Za-z]\w*)\s*@\s*(-?\d+(?:\.\d+)?)", label)
+    if named is not None:
+        return named[1], round(float(named[2]), 2)
+    node = re.search(r"\d{5,}", label)
+    if node is None or int(node[0]) // 10000 not in _NODES:
+        return None
+    return _NODES[int(node[0]) // 10000], round(int(node[0]) % 10000 / 100.0, 2)
+
+
+def _parameters(sheet: Sheet) -> list[dict[str, Any]]:
+    parameters = []
+    for group, table in sheet.tolerance_2sigma_relative.items():
+        for key, tolerance in table.items():
+            if group == "vehicle":
+                if sheet.runs is None:
+                    continue
+                name, unit = VEHICLE_KEYS[key]
+                path = f"train.vehicle.{name}"
+            else:
+                name, unit = KEYS[key]
+                path = f"line.laws.{group}.{name}" if group in LAYERS else f"line.bodies.{group}.{name}"
+            nominal = float(getattr(getattr(sheet.values, group), key))
+            parameters.append(
+                {
+                    "name": f"{group}.{key}",
+                    "unit": unit,
+                    "paths": [path],
+                    "acts": "scales",
+                    "nominal": nominal,
+                    "tolerance_2sigma": tolerance,
+                    "prior": "log_normal",
+                }
+            )
+    return parameters
+
+
+def _train_parameters(sheet: Sheet) -> list[dict[str, Any]]:
+    level = {
+        "name": "irregularity.level",
+        "unit": "dB",
+        "paths": ["campaign.irregularity.level_dB"],
+        "acts": "sets",
+        "tolerance_2sigma": 2.0,
+        "absolute": True,
+    }
+    floors = [
+        {
+            "name": f"noise.{channel}",
+            "unit": "(m/s2)2/Hz",
+            "paths": [f"campaign.sensors.{channel}.chain.noise_floor"],
+            "acts": "scales",
+            "tolerance_2sigma": 0.9,
+            "prior": "log_normal",
+        }
+        for channel in (sheet.runs.channels if sheet.runs else ())
+    ]
+    return [level, *floors]
+
+
+def _held_out(sheet: Sheet) -> list[dict[str, Any]]:
+    """Groups along the axes that such a folder has: places, a channel, a band, a speed, a temperature."""
+    length = sheet.layout.spans * sheet.layout.span_m
+    groups: list[dict[str, Any]] = [
+        {"name": "second quarter", "axis": "place", "from_to_m": [0.25 * length, 0.5 * length - 0.01]},
+        {"name": "upper band", "axis": "band", "band_Hz": [200.0, 260.0]},
+        {"name": "last sensor", "axis": "channel", "members": [_label(sheet.hammer.sensors[-1])]},
+    ]
+    if sheet.runs is not None and len(sheet.runs.speeds_kmh) > 1:
+        groups.append({"name": "last speed", "axis": "speed", "members": [sheet.runs.speeds_kmh[-1] / 3.6]})
+    if len(sheet.temperature_C) > 1:
+        groups.append({"name": "last temperature", "axis": "temperature", "members": [sheet.temperature_C[-1]]})
+    return groups

@@ -1,0 +1,191 @@
+"""The form of a measuring team's `sheet.json`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, ConfigDict, Field, PositiveFloat, ValidationError, model_validator
+
+from permway.errors import InputError
+from permway.model.faults import fault, model_error, refuse_coercion
+from permway.records import FrozenModel, Number
+
+LARGEST_SHEET = 4 * 1024 * 1024
+
+
+class _Part(FrozenModel):
+    """A table of the sheet, which may say more than is read."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore", allow_inf_nan=False)
+
+
+class Layout(_Part):
+    """Spans, slabs, fasteners and approaches, m."""
+
+    spans: int = Field(ge=1, le=1000, strict=True)
+    span_m: PositiveFloat
+    fastener_spacing_m: PositiveFloat
+    approach_m: Number = Field(ge=0.0)
+    slab_length_m: PositiveFloat
+
+
+class RailValues(_Part):
+    """Rail, SI."""
+
+    E: PositiveFloat
+    I: PositiveFloat  # noqa: E741
+    rho: PositiveFloat
+    A: PositiveFloat
+    G: PositiveFloat
+    kappa: PositiveFloat
+    eta: Number = Field(ge=0.0)
+
+
+class BeamValues(_Part):
+    """Slab, base or girder, SI."""
+
+    E: PositiveFloat
+    I: PositiveFloat  # noqa: E741
+    rho: PositiveFloat
+    A: PositiveFloat
+    eta: Number = Field(ge=0.0)
+
+
+class LayerValues(_Part):
+    """A layer's stiffness, N/m, and loss factor."""
+
+    k: PositiveFloat
+    eta: Number = Field(ge=0.0)
+
+
+class VehicleValues(_Part):
+    """Vehicle: masses of the whole, suspensions of one side; `half` is the share of the masses in the model."""
+
+    Mc: PositiveFloat
+    Mt: PositiveFloat
+    Mw: PositiveFloat
+    Jc: PositiveFloat
+    Jt: PositiveFloat
+    kp: PositiveFloat
+    cp: PositiveFloat
+    ks: PositiveFloat
+    cs: PositiveFloat
+    lc: PositiveFloat
+    lt: PositiveFloat
+    half: float = Field(gt=0.0, le=1.0)
+
+
+class Values(_Part):
+    """The designer's values."""
+
+    rail: RailValues
+    slab: BeamValues
+    base: BeamValues
+    girder: BeamValues
+    pad: LayerValues
+    mortar: LayerValues
+    sliding: LayerValues
+    bearing: LayerValues
+    vehicle: VehicleValues
+
+
+def _place(value: object) -> object:
+    if not (isinstance(value, list | tuple) and len(value) == 2 and isinstance(value[0], str)):
+        raise fault("must be [body, x in m]", value=value)
+    return value
+
+
+Spot = Annotated[tuple[str, Number], BeforeValidator(_place)]
+"""Body and x, m."""
+
+
+class Hammer(_Part):
+    """The hammer test."""
+
+    quantity: str
+    lines_Hz: tuple[Number, Number, Number]
+    sensors: tuple[Spot, ...] = Field(min_length=1)
+    points: tuple[Spot, ...] = Field(min_length=1)
+
+
+class Runs(_Part):
+    """The train's runs."""
+
+    sampling_Hz: PositiveFloat
+    seconds: PositiveFloat
+    unit: str
+    speeds_kmh: tuple[PositiveFloat, ...] = Field(min_length=1)
+    channels: tuple[str, ...] = Field(min_length=1)
+    position: str = ""
+    irregularity: str = ""
+
+
+class Sheet(_Part):
+    """A sheet, checked."""
+
+    layout: Layout
+    values: Values
+    contact_stiffness_N_per_m: PositiveFloat
+    tolerance_2sigma_relative: dict[str, dict[str, PositiveFloat]]
+    temperature_C: tuple[Number, ...] = Field(min_length=1)
+    hammer: Hammer
+    runs: Runs | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Sheet:
+        for group, table in self.tolerance_2sigma_relative.items():
+            values = getattr(self.values, group, None)
+            if values is None:
+                raise fault(f"there are no values of {group!r}", "tolerance_2sigma_relative", group)
+            for key, tolerance in table.items():
+                if not hasattr(values, key):
+                    raise fault(f"{group} has no value {key!r}", "tolerance_2sigma_relative", group, key)
+                if tolerance >= 1.0:
+                    what = "reaches below zero: give a ratio, not percent"
+                    raise fault(what, "tolerance_2sigma_relative", group, key, value=tolerance)
+        return self
+
+
+def read_sheet(folder: Path) -> Sheet:
+    """Read and check `sheet.json` of a folder.
+
+    Raises
+    ------
+    InputError
+        With the place in the sheet.
+    """
+    path = folder / "sheet.json"
+    table = _load(path)
+    try:
+        sheet = Sheet.model_validate(table)
+        refuse_coercion(table, sheet, "")
+        return sheet
+    except (ValidationError, InputError) as error:
+        told = error if isinstance(error, InputError) else model_error(error, table, "")
+        raise InputError(told.what, where=f"{path}: {told.where}", value=told.value, remedy=told.remedy) from error
+
+
+def _load(path: Path) -> Mapping[str, Any]:
+    try:
+        with path.open("rb") as file:
+            content = file.read(LARGEST_SHEET + 1)
+    except OSError as error:
+        raise InputError(
+            f"cannot be read: {error.strerror or error}", where=str(path), remedy="name a folder that holds one"
+        ) from error
+    if len(content) > LARGEST_SHEET:
+        raise InputError(f"is larger than {LARGEST_SHEET // 2**20} MiB: not a sheet", where=str(path))
+    try:
+        table = json.loads(content.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        raise InputError(
+            "is not text in UTF-8", where=f"{path}, byte {error.start}", remedy="save it as UTF-8"
+        ) from error
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"is not JSON: {error}", where=str(path)) from error
+    if not isinstance(table, dict):
+        raise InputError("must be a table", where=str(path))
+    return table

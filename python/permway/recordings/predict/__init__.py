@@ -1,0 +1,181 @@
+"""Predictions of exactly what each sensor of a campaign saw, in the shape of its datasets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import xarray as xr
+
+from permway.errors import InputError
+from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_load import Dataset
+from permway.recordings.predict import decay, hammer, material, run, shaker
+from permway.recordings.predict.sweeps import Answer, Need, Sweep, plan, solve
+
+__all__ = ["Answer", "Need", "PassBy", "Sweep", "need_of", "plan", "predict", "predict_one", "solve", "why_not"]
+
+PassBy = Callable[[Campaign, Dataset], xr.Dataset]
+"""What predicts sensors beside the track under a passing train."""
+
+
+def predict(
+    campaign: Campaign, datasets: Sequence[Dataset], *, threads: int | None = None, passby: PassBy | None = None
+) -> list[xr.Dataset]:
+    """Predict all datasets: one solve of the line for each temperature.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        With the values to predict for: see :meth:`Campaign.with_values`.
+    datasets : sequence of Dataset
+        What :meth:`Campaign.load` gives; only their coordinates are read.
+    threads : int, optional
+    passby : callable, optional
+        Predicts records whose sensors all stand beside the track while a train passes.
+
+    Returns
+    -------
+    list of xarray.Dataset
+        For each dataset the variable of its statistic, with the same dimensions and coordinates.
+
+    Raises
+    ------
+    InputError
+        For what cannot be predicted; see :func:`why_not`.
+    SolveError
+        If the line cannot be solved.
+    """
+    beside = [passby is not None and _is_beside(campaign, dataset) for dataset in datasets]
+    needs = [None if apart else need_of(campaign, d) for d, apart in zip(datasets, beside, strict=True)]
+    answers = [
+        solve(sweep, campaign.model, threads=threads) for sweep in plan(need for need in needs if need is not None)
+    ]
+    by_temperature = {answer.sweep.temperature_C: answer for answer in answers}
+    found = []
+    for dataset, need, apart in zip(datasets, needs, beside, strict=True):
+        if apart and passby is not None:
+            found.append(passby(campaign, dataset))
+        else:
+            answer = None if need is None else by_temperature[need.temperature_C]
+            found.append(predict_one(campaign, dataset, need, answer))
+    return found
+
+
+def why_not(campaign: Campaign, dataset: Dataset) -> InputError | None:
+    """Why a dataset cannot be predicted without a pass-by; None if it can."""
+    try:
+        need_of(campaign, dataset)
+    except InputError as error:
+        return error
+    return None
+
+
+def need_of(campaign: Campaign, dataset: Dataset) -> Need | None:
+    """The receptances behind a dataset; None for a material's table, which needs none.
+
+    Raises
+    ------
+    InputError
+        For a statistic or a sensor that cannot be predicted.
+    """
+    record, condition, data = dataset.record, dataset.condition, dataset.data
+    temperature = hammer.temperature(campaign, condition)
+    _check_directions(campaign, record.name, [*record.channels.values(), *record.responses.values()])
+    match record.statistic:
+        case "frf":
+            return hammer.need(
+                campaign, condition, _names(data, "sensor"), _names(data, "force"), _frequency(data)
+            )
+        case "csd" | "psd":
+            _check_on_board(campaign, record.name, _names(data, "channel"))
+            lines = run.solved_lines(_frequency(data), record.segment_s, record.interpolated_Hz)
+            assert campaign.model.train is not None
+            spots = tuple((campaign.model.train.body, float(x)) for x in run.wheels_of(campaign.model, condition))
+            return Need(temperature, lines, spots, spots)
+        case "transmissibility":
+            sensors = [campaign.sensor(name) for name in _names(data, "channel")]
+            spots = tuple((str(sensor.body), float(sensor.x_m or 0.0)) for sensor in sensors)
+            return shaker.need(campaign.model, temperature, spots, _frequency(data))
+        case "decay":
+            return decay.need(campaign, record, temperature, data)
+        case "material":
+            return None
+    raise InputError(
+        f'a record of "{record.statistic}" is kept, and not predicted', where=f"records.{record.name}.statistic"
+    )
+
+
+def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer: Answer | None) -> xr.Dataset:
+    """Predict one dataset from receptances that were solved for it; see :func:`predict`."""
+    record, condition, data = dataset.record, dataset.condition, dataset.data
+    if need is None or answer is None:
+        return material.predicted(campaign, record, data)
+    values = answer.of(need)
+    match record.statistic:
+        case "frf":
+            frequency = _frequency(data)
+            read = hammer.read(campaign, _names(data, "sensor"), _names(data, "force"), frequency)
+            return _like(data, "frf", np.moveaxis(values * read, 0, -1))
+        case "csd" | "psd":
+            sensors = [campaign.sensor(name) for name in _names(data, "channel")]
+            matrix = run.expected_csd(
+                campaign.model,
+                campaign.said.irregularity,
+                condition,
+                sensors,
+                need.frequency_Hz,
+                run.influence(campaign.model, need.frequency_Hz, values),
+                _frequency(data),
+                segment_s=record.segment_s,
+                interpolated=record.interpolated_Hz is not None,
+            )
+            both = _like(data, "csd", np.moveaxis(matrix, 0, -1))
+            both["psd"] = data["psd"].copy(data=np.einsum("fcc->cf", matrix).real)
+            return both
+        case "transmissibility":
+            moved = shaker.transmissibility(campaign.model, need.temperature_C, need.frequency_Hz, values)
+            chains = [campaign.sensor(name).chain.transfer(need.frequency_Hz) for name in _names(data, "channel")]
+            return _like(data, "transmissibility", moved.T * np.stack(chains))
+        case _:
+            return decay.predicted(record, data, values)
+
+
+def _like(data: xr.Dataset, name: str, values: np.ndarray) -> xr.Dataset:
+    predicted = data[name].copy(data=values)
+    return predicted.to_dataset(name=name)
+
+
+def _names(data: xr.Dataset, dimension: str) -> list[str]:
+    return [str(name) for name in data[dimension].values]
+
+
+def _frequency(data: xr.Dataset) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    return np.asarray(data["frequency"].values, dtype=np.float64)
+
+
+def _check_directions(campaign: Campaign, record: str, names: list[str]) -> None:
+    for name in names:
+        sensor = campaign.sensor(name)
+        if not sensor.predicted:
+            raise InputError(
+                f"reads {sensor.direction}, and the model moves up and down",
+                where=f"records.{record}: sensors.{name}.direction",
+                remedy="leave the record out of what is predicted",
+            )
+
+
+def _is_beside(campaign: Campaign, dataset: Dataset) -> bool:
+    """Whether all sensors of a train's record stand on the line."""
+    names = dataset.record.channels.values()
+    return dataset.condition.kind == "train" and all(campaign.sensor(name).body is not None for name in names)
+
+
+def _check_on_board(campaign: Campaign, record: str, names: list[str]) -> None:
+    for name in names:
+        if campaign.sensor(name).degree is None:
+            raise InputError(
+                "stands beside the track, and the train passes it",
+                where=f"records.{record}: sensors.{name}",
+                remedy="give it a record of its own and hand predict a pass-by, or leave it out",
+            )

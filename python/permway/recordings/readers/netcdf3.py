@@ -1,0 +1,48 @@
+"""NetCDF of the classic format as named arrays, by scipy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import io
+
+from permway.errors import InputError
+from permway.recordings.readers.store import Store, Variable
+
+
+@contextmanager
+def open_store(source: Path) -> Iterator[Store]:
+    """The arrays of a classic NetCDF file; characters along a last axis are texts."""
+    # Not mapped: a map that outlives the file is scipy's warning, and arrays are copied here anyway.
+    with io.netcdf_file(str(source), "r", mmap=False) as file:
+        variables = {name: _variable(name, file.variables[name]) for name in file.variables}
+        yield Store(str(source), variables, _attributes(file))
+
+
+def _variable(name: str, found: Any) -> Variable:
+    array = np.asarray(found.data)
+    if array.dtype.kind == "S":
+        texts = np.array([b"".join(row).decode("utf-8", "replace") for row in array.reshape(-1, array.shape[-1])])
+        return Variable(name, texts.shape, "text", lambda slices: np.asarray(texts[slices]))
+    if array.dtype.kind not in "fiu":
+        raise InputError("neither numbers nor texts", where=name, value=str(array.dtype))
+    plain = array.astype(array.dtype.newbyteorder("="))
+
+    def read(slices: tuple[slice, ...]) -> NDArray[np.generic]:
+        return np.asarray(plain[slices])
+
+    step = float(np.finfo(plain.dtype).eps) if plain.dtype.kind == "f" else 2.0**-52
+    return Variable(name, plain.shape, "real", read, _attributes(found), tuple(found.dimensions), step)
+
+
+def _attributes(item: Any) -> dict[str, object]:
+    table = dict(item._attributes)
+    return {
+        key: value.decode("utf-8", "replace") if isinstance(value, bytes) else value
+        for key, value in table.items()
+    }

@@ -1,0 +1,188 @@
+"""Frequency responses and tables among named arrays."""
+
+from __future__ import annotations
+
+from itertools import permutations
+
+import numpy as np
+
+from permway.arrays import Reals
+from permway.errors import InputError
+from permway.recordings.readers.headers import clean_unit, split_header
+from permway.recordings.readers.limits import MOST_BYTES
+from permway.recordings.readers.store import UNITS, Store, Variable
+from permway.recordings.record import Cells, FrfRecord, TableRecord
+
+FREQUENCIES = {"f", "freq", "freqs", "frequency", "frequencies", "frequency_hz", "freq_hz", "f_hz"}
+COHERENCES = {"coh", "coherence", "gamma2", "g2", "coherence2"}
+RESPONSES = ("sensor", "sensors", "response", "responses", "output", "outputs", "channels", "channel")
+REFERENCES = (
+    "hammer",
+    "hammers",
+    "reference",
+    "references",
+    "force",
+    "forces",
+    "point",
+    "points",
+    "input",
+    "inputs",
+)
+AVERAGES = {"averages", "n_averages", "navg", "n_avg", "blows", "n_blows"}
+_USUAL = {"frf", "frfs", "h", "h1", "accelerance", "mobility", "receptance"}
+
+
+def as_frf(store: Store, part: str | None = None, *, max_bytes: int = MOST_BYTES) -> FrfRecord:
+    """Find frequency responses among arrays: one complex array over frequency, response and reference.
+
+    Axes are told by their names where the format has them, else by their lengths; where lengths do not tell, they
+    stand in the order frequency, response, reference.
+
+    Raises
+    ------
+    InputError
+        If something is missing, or more than one thing can be meant.
+    """
+    frequency = _vector(store, FREQUENCIES, "frequencies", max_bytes)
+    values = _complex(store, part)
+    responses, references = _names(store, RESPONSES, "responses"), _names(store, REFERENCES, "references")
+    wanted = (frequency.size, len(responses), len(references))
+    order = _order(store, values, wanted)
+    pairs = [(response, reference) for response in responses for reference in references]
+    coherence = next((v for name, v in store.variables.items() if name.lower() in COHERENCES), None)
+    averages = store.number(AVERAGES)
+    unit = store.texts(UNITS)
+    return FrfRecord(
+        responses=tuple(pair[0] for pair in pairs),
+        references=tuple(pair[1] for pair in pairs),
+        frequency_Hz=frequency,
+        values=_table(store, values, order, wanted, max_bytes).astype(np.complex128),
+        coherence=None if coherence is None else _coherence(store, coherence, values, order, wanted, max_bytes),
+        unit=values.unit() or (clean_unit(unit[0]) if unit is not None and len(unit) == 1 else None),
+        averages=None if averages is None else round(averages),
+        source=store.source,
+    )
+
+
+def as_table(store: Store, *, max_bytes: int = MOST_BYTES) -> TableRecord:
+    """All arrays of one length and one axis, as columns.
+
+    Raises
+    ------
+    InputError
+        If there is none, or they differ in length.
+    """
+    columns: dict[str, Cells] = {}
+    units: dict[str, str | None] = {}
+    for key, variable in store.variables.items():
+        if variable.kind == "complex" or sum(length != 1 for length in variable.shape) > 1 or not variable.shape:
+            continue
+        name, unit = split_header(key)
+        cells = np.ravel(variable.all(store.source, max_bytes=max_bytes))
+        columns[name] = tuple(str(x) for x in cells) if variable.kind == "text" else cells.astype(np.float64)
+        units[name] = variable.unit() or unit
+    if not columns:
+        raise InputError(
+            "holds no columns: no array of one axis", where=store.source, value=list(store.variables)[:12]
+        )
+    return TableRecord(columns=columns, units=units, source=store.source)
+
+
+def _vector(store: Store, names: set[str], what: str, max_bytes: int) -> Reals:
+    found = [variable for name, variable in store.variables.items() if name.lower() in names]
+    if len(found) != 1 or found[0].kind != "real":
+        raise InputError(
+            f"no array of {what}" if not found else f"more than one array of {what}, or not of real numbers",
+            where=store.source,
+            value=list(store.variables)[:12],
+            remedy=f"name one of them {sorted(names)[0]!r}",
+        )
+    unit = found[0].unit()
+    if unit not in (None, "Hz"):
+        raise InputError("frequencies must be in Hz", where=f"{store.source}: '{found[0].name}'", value=unit)
+    return np.ravel(found[0].all(store.source, max_bytes=max_bytes)).astype(np.float64)
+
+
+def _complex(store: Store, part: str | None) -> Variable:
+    if part is not None:
+        found = [variable for name, variable in store.variables.items() if name == part]
+    else:
+        found = [variable for variable in store.variables.values() if variable.kind == "complex"]
+    usual = [variable for variable in found if variable.name.lower() in _USUAL]
+    found = usual if len(found) > 1 and len(usual) == 1 else found
+    if len(found) != 1 or found[0].kind != "complex":
+        raise InputError(
+            "no array of complex numbers"
+            if not found
+            else "not one array of complex numbers, which must be the FRFs",
+            where=store.source,
+            value=[variable.name for variable in found] or list(store.variables)[:12],
+            remedy='say which array it is, as in part="frf"',
+        )
+    return found[0]
+
+
+def _names(store: Store, names: tuple[str, ...], what: str) -> tuple[str, ...]:
+    for name in names:
+        found = store.texts({name})
+        if found is not None:
+            twice = next((x for i, x in enumerate(found) if x in found[:i]), None)
+            if twice is not None or not found:
+                where = f"{store.source}: '{name}'"
+                raise InputError("a name that stands twice" if found else "no names", where=where, value=twice)
+            return found
+    raise InputError(
+        f"no names of the {what}",
+        where=store.source,
+        remedy=f"give an array of texts named {' or '.join(names[:4])}",
+    )
+
+
+def _order(store: Store, values: Variable, wanted: tuple[int, ...]) -> tuple[int, int, int]:
+    """Axes of frequency, response and reference."""
+    where = f"{store.source}: '{values.name}'"
+    shape = values.shape
+    if len(shape) == 2 and 1 in wanted[1:]:
+        shape = (*shape, 1)
+    if len(values.axes) == len(shape) == 3:
+        kinds = (FREQUENCIES, set(RESPONSES), set(REFERENCES))
+        named = [[i for i, axis in enumerate(values.axes) if axis.lower() in kind] for kind in kinds]
+        if all(len(found) == 1 for found in named):
+            order = (named[0][0], named[1][0], named[2][0])
+            if tuple(shape[axis] for axis in order) == wanted:
+                return order
+    fits = [p for p in permutations(range(len(shape)), 3) if tuple(shape[axis] for axis in p) == wanted]
+    if len(shape) != 3 or not fits:
+        raise InputError(
+            f"is not {wanted[0]} frequencies by {wanted[1]} responses by {wanted[2]} references",
+            where=where,
+            value=values.shape,
+            remedy="give names and frequencies for each axis",
+        )
+    first = fits[0]
+    return first[0], first[1], first[2]
+
+
+def _table(
+    store: Store, variable: Variable, order: tuple[int, int, int], wanted: tuple[int, ...], max_bytes: int
+) -> np.ndarray:
+    array = np.asarray(variable.all(store.source, max_bytes=max_bytes))
+    array = array.reshape((*array.shape, *(1,) * (3 - array.ndim))).transpose(order[1], order[2], order[0])
+    return np.ascontiguousarray(array).reshape(wanted[1] * wanted[2], wanted[0])
+
+
+def _coherence(
+    store: Store,
+    coherence: Variable,
+    values: Variable,
+    order: tuple[int, int, int],
+    wanted: tuple[int, ...],
+    max_bytes: int,
+) -> Reals:
+    if coherence.kind != "real" or coherence.shape != values.shape:
+        raise InputError(
+            f"the coherence must be real and of the shape of '{values.name}', {values.shape}",
+            where=f"{store.source}: '{coherence.name}'",
+            value=coherence.shape,
+        )
+    return _table(store, coherence, order, wanted, max_bytes).astype(np.float64)
