@@ -70,8 +70,12 @@ fn rail(young: f64, shear: f64, moment: f64, area: f64, loss: f64) -> Body {
 pub fn rail_on_supports() -> Case {
     let joints =
         (-120..=120).map(|i| Joint { x: 0.6 * f64::from(i), a: 0, b: None, law: 0, scale: 1.0 }).collect();
-    let line =
-        Line { bodies: vec![rail(2.1e11, 8.1e10, 3038.3e-8, 76.70e-4, 0.02)], joints, names: vec!["rail".into()] };
+    let line = Line {
+        bodies: vec![rail(2.1e11, 8.1e10, 3038.3e-8, 76.70e-4, 0.02)],
+        joints,
+        names: vec!["rail".into()],
+        ..Line::default()
+    };
     Case { line, laws: vec![c64::new(300e6, 75e6)], points: vec![Point { body: 0, x: 0.0 }] }
 }
 
@@ -108,7 +112,12 @@ pub fn viaduct(modes: Option<usize>) -> Case {
     let laws = vec![loss(6e7, 0.12), loss(3.79e11, 0.2), loss(2.1e11, 0.2), loss(6e9, 0.25)];
     let points = [-10.0, -7.5, 7.5, 10.0].map(|x| Point { body: 0, x: 0.5 * span + x }).to_vec();
     Case {
-        line: Line { bodies, joints, names: ["rail", "slab", "base", "girder"].map(String::from).to_vec() },
+        line: Line {
+            bodies,
+            joints,
+            names: ["rail", "slab", "base", "girder"].map(String::from).to_vec(),
+            ..Line::default()
+        },
         laws,
         points,
     }

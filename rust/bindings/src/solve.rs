@@ -31,8 +31,9 @@ const MOST_THREADS: usize = 1024;
 
 /// Harmonic response of a line to unit forces.
 ///
-/// Bodies are the beams, then the masses; a lower body of -1 is the ground, a shear stiffness of 0
-/// an Euler-Bernoulli beam, 0 modes the closed form. `laws` has shape (frequency, law), N/m.
+/// Bodies are the beams and shafts, then the masses; a lower body of -1 is the ground, a shear stiffness of 0
+/// an Euler-Bernoulli beam, a bending stiffness of 0 a shaft, 0 modes the closed form. `stretches`, a table
+/// within that of the beams, says where sections change. `laws` has shape (frequency, law), N/m.
 /// Returns receptance in m/N, shape (frequency, sensor, force); joint extension, shape (frequency,
 /// joint, force), or None; and the frequencies that failed as (index, kind, message), NaN in the
 /// arrays. `progress(done, total)` is called now and then, and at the end; an exception from it

@@ -278,7 +278,12 @@ mod tests {
         joints.push(Joint { x: -3.0, a: 0, b: Some(3), law: 0, scale: 0.5 });
         joints.push(Joint { x: -3.0, a: 3, b: None, law: 0, scale: 0.7 });
         joints.push(Joint { x: 5.0, a: 2, b: None, law: 0, scale: 30.0 });
-        Line { bodies, joints, names: ["rail", "slab", "girder", "block"].map(String::from).to_vec() }
+        Line {
+            bodies,
+            joints,
+            names: ["rail", "slab", "girder", "block"].map(String::from).to_vec(),
+            ..Line::default()
+        }
     }
 
     fn run(line: &Line, frequencies: &[f64], formulation: Formulation, threads: usize) -> Answer {
@@ -361,7 +366,12 @@ mod tests {
     fn singular_frequency_is_reported_and_the_sweep_survives() {
         let (mass, omega) = (1.0, std::f64::consts::TAU);
         let joint = Joint { x: 0.0, a: 0, b: None, law: 0, scale: 1.0 };
-        let line = Line { bodies: vec![Body::Mass(mass)], joints: vec![joint], names: vec!["block".into()] };
+        let line = Line {
+            bodies: vec![Body::Mass(mass)],
+            joints: vec![joint],
+            names: vec!["block".into()],
+            ..Line::default()
+        };
         let point = [Point { body: 0, x: 0.0 }];
         let k = omega * omega;
         let laws = [c64::new(k, 0.0); 2];
