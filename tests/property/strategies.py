@@ -12,8 +12,8 @@ better. A free body of mass m has the receptance 1/(m omega^2), and what a joint
 of the dense system's digits: hence beams from 50 kg/m and 2 m on, masses from 100 kg on, joints to 9e9 N/m, which
 leave nine at 1 Hz. The impedance that is marched loses k |H| in a joint much stiffer than all that it ties, which
 the same bound keeps; and at d behind a pin on the left it is of the size E I / d^3, of which the turning of a bar
-that nothing else holds is a small remainder (2e-9 off with a joint at a twentieth of its length): hence the margin
-of :func:`extent`.
+that nothing else holds is a small remainder (2e-9 off with a joint at a twentieth of its length, 5e-9 with a
+change of section a millimetre from it): hence the margin of :func:`extent`, which changes keep too.
 """
 
 import math
@@ -75,11 +75,14 @@ def laws(draw):
 
 
 @st.composite
-def stretches(draw, interval):
-    """None, one or two intervals on a body, to the millimetre, often to its end."""
+def stretches(draw, interval, ends):
+    """None, one or two intervals on a body, to the millimetre, often to its end; not cut near a pin."""
     start, stop = interval or (-REACH_M, REACH_M)
-    places = sorted({station(draw, start, stop) for _ in range(draw(st.sampled_from([0, 0, 2, 4])))})
-    return [pair for pair in zip(places[::2], places[1::2], strict=False) if pair[1] - pair[0] > 1e-4]
+    margin = 0.1 * (stop - start) if interval else 0.0
+    low, high = start + margin * (ends[0] == "pinned"), stop - margin * (ends[1] == "pinned")
+    places = sorted({station(draw, low, high) for _ in range(draw(st.sampled_from([0, 0, 2, 4])))})
+    pairs = [pair for pair in zip(places[::2], places[1::2], strict=False) if pair[1] - pair[0] > 1e-4]
+    return [(start if a == low else a, stop if b == high else b) for a, b in pairs]
 
 
 @st.composite
@@ -88,7 +91,7 @@ def shafts(draw, *, finite=None, lossless=False):
     width, height = draw(decades(0.2, 5.0)), draw(decades(0.1, 3.0))
     low, high = sorted((width, height))
     interval = _interval(draw, height) if (draw(st.booleans()) if finite is None else finite) else None
-    factor = decades(0.1, 3.0)
+    factor, ends = decades(0.1, 3.0), (draw(_ENDS), draw(_ENDS))
     return Shaft(
         shear_modulus_Pa=draw(decades(8e9, 8e10)),
         torsion_constant_m4=high * low**3 / 3.0 * (1.0 - 0.63 * low / high),
@@ -98,10 +101,10 @@ def shafts(draw, *, finite=None, lossless=False):
         arm_m=min(0.75, math.sqrt(2300.0 * low * high * (low**2 + high**2) / 12.0 / 50.0)),
         loss_factor=0.0 if lossless else draw(decades(0.005, 0.5)),
         intervals_m=interval,
-        ends=(draw(_ENDS), draw(_ENDS)),
+        ends=ends,
         changes=[
             ShaftChange(from_m=a, to_m=b, torsion_factor=draw(factor), mass_factor=draw(factor))
-            for a, b in draw(stretches(interval[0] if interval else None))
+            for a, b in draw(stretches(interval[0] if interval else None, ends))
         ],
     )
 
@@ -124,8 +127,8 @@ def beams(draw, *, finite=None, lossless=False, uniform=False):
     second = area * height**2 * draw(between(1.0 / 12.0, 0.2))
     timoshenko, with_ends = draw(st.booleans()), draw(st.booleans()) if finite is None else finite
     interval = _interval(draw, height) if with_ends else None
-    factor = decades(0.1, 3.0)
-    where = [] if uniform else draw(stretches(interval[0] if interval else None))
+    factor, ends = decades(0.1, 3.0), (draw(_ENDS), draw(_ENDS))
+    where = [] if uniform else draw(stretches(interval[0] if interval else None, ends))
     return Beam(
         theory="timoshenko" if timoshenko else "euler",
         youngs_modulus_Pa=modulus,
@@ -136,7 +139,7 @@ def beams(draw, *, finite=None, lossless=False, uniform=False):
         shear_coefficient=draw(between(0.3, 0.87)) if timoshenko else None,
         loss_factor=0.0 if lossless else draw(decades(0.005, 0.5)),
         intervals_m=interval,
-        ends=(draw(_ENDS), draw(_ENDS)),
+        ends=ends,
         changes=[
             BeamChange(
                 from_m=a,
@@ -186,7 +189,7 @@ def _joints(draw, laws, upper, lower, at):
 
 @st.composite
 def lines(draw, *, finite=None, lossless=False, uniform=False):
-    """One to five beams and shafts, up to three masses at one station each, joints between them and to the ground."""
+    """One to five beams and shafts, up to three masses at one station each, joints of them and the ground."""
     materials = {f"law{i}": law for i, law in enumerate(draw(st.lists(laws(), min_size=1, max_size=3)))}
     names = sorted(materials)
     shape = beams(finite=finite, lossless=lossless, uniform=uniform)
