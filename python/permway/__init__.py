@@ -13,15 +13,17 @@ from permway._core import __version__
 if TYPE_CHECKING:
     from permway.errors import InputError, PermwayError, SolveError
     from permway.laws import law_from_dict
-    from permway.model.bodies import Beam, Mass
+    from permway.model.bodies import Beam, Mass, Shaft
     from permway.model.file import Model, model_from_dict, read_model
     from permway.model.joints import Ends, Joints, Spread
     from permway.model.line import Line
     from permway.model.presets import slab_track_viaduct_32m, wj7b, wj7b_constant
+    from permway.model.roll import Roll
     from permway.model.vehicle import Vehicle
     from permway.model.vehicle_presets import crh380a
     from permway.response.decay import decay_rate
     from permway.response.quantities import accelerance, mobility
+    from permway.response.rails import both_rails
     from permway.response.receptance import Place, receptance
     from permway.response.solve import solve, write_dataset
     from permway.response.train import Train, train_response
@@ -29,14 +31,16 @@ if TYPE_CHECKING:
 _HOMES = {
     "errors": ("InputError", "PermwayError", "SolveError"),
     "laws": ("law_from_dict",),
-    "model.bodies": ("Beam", "Mass"),
+    "model.bodies": ("Beam", "Mass", "Shaft"),
     "model.file": ("Model", "model_from_dict", "read_model"),
     "model.joints": ("Ends", "Joints", "Spread"),
     "model.line": ("Line",),
     "model.presets": ("slab_track_viaduct_32m", "wj7b", "wj7b_constant"),
+    "model.roll": ("Roll",),
     "model.vehicle": ("Vehicle",),
     "model.vehicle_presets": ("crh380a",),
     "response.decay": ("decay_rate",),
+    "response.rails": ("both_rails",),
     "response.quantities": ("accelerance", "mobility"),
     "response.receptance": ("Place", "receptance"),
     "response.solve": ("solve", "write_dataset"),
@@ -54,12 +58,15 @@ __all__ = [
     "Model",
     "PermwayError",
     "Place",
+    "Roll",
+    "Shaft",
     "SolveError",
     "Spread",
     "Train",
     "Vehicle",
     "__version__",
     "accelerance",
+    "both_rails",
     "crh380a",
     "decay_rate",
     "law_from_dict",

@@ -21,6 +21,7 @@ from permway.model.irregularity import AnyIrregularity, Conversion
 from permway.model.irregularity_spectra import FASTEST_M_PER_S
 from permway.model.line import Line
 from permway.model.presets import LAWS, LINES
+from permway.model.roll import Roll, antisymmetric
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_presets import VEHICLES
 from permway.records import FrozenModel
@@ -121,6 +122,9 @@ class Model(FrozenModel):
     train : Train, optional
         With an irregularity: power spectra of the train and of the line at contacts and sensors.
     irregularity : irregularity, optional
+    roll : Roll, optional
+        Of a half model that stands for two rails: forces are then on one of them, and receptances are computed on
+        its side and on the other. A train runs on both alike.
     conversion : "per_hertz" or "wavenumber_density_called_per_hertz"
     formulation : "chain" or "receptance"
     """
@@ -134,6 +138,7 @@ class Model(FrozenModel):
     sensors: tuple[Place, ...] = ()
     train: Train | None = None
     irregularity: AnyIrregularity | None = None
+    roll: Roll | None = None
     conversion: Conversion = "per_hertz"
     formulation: Formulation = "chain"
 
@@ -145,6 +150,8 @@ class Model(FrozenModel):
             raise ValueError("nothing to compute: give [[forces]] and [[sensors]], or [train] and [irregularity]")
         if self.forces and not self.sensors:
             raise ValueError("forces without [[sensors]]: say where the response is wanted")
+        if self.roll is not None and not self.forces:
+            raise fault("without [[forces]] nothing rolls: a train runs on both rails alike", "roll")
         if self.temperature_C is not None and not -100.0 <= self.temperature_C <= 150.0:
             what = "is no temperature of a track: give degrees Celsius, not kelvin"
             raise fault(what, "temperature_C", value=self.temperature_C)
@@ -165,6 +172,11 @@ class Model(FrozenModel):
             raise _below("line", error) from error
         for kind, places in (("forces", self.forces), ("sensors", self.sensors)):
             check_places(self.line, places, kind)
+        if self.roll is not None:
+            try:
+                antisymmetric(self.line, self.roll)
+            except InputError as error:
+                raise _below("roll", error) from error
         if self.train is not None:
             try:
                 check_places(self.line, self.train.wheels(), "wheels")

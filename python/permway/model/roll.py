@@ -1,9 +1,9 @@
 """Two rails on one slab: the antisymmetric half that belongs to a half model.
 
-A line that is symmetric about its middle moves in two ways that do not see each other. Both rails alike: that is the
-half model. One down, the other up: what carries them rolls by phi, so that at the rails, y to either side, it moves
-by +-y phi. Seen from one rail, in w = y phi, a body that rolls is a shaft (G J / y^2, rho I_p / y^2), a mass is
-m r^2 / y^2 with its radius of gyration r, and joints between such bodies, spread over a width b or standing at
+A line that is symmetric about its middle moves in two ways that do not see each other. Both rails alike: that is
+the half model. One down, the other up: what carries them rolls by phi, so that at the rails, y to either side, it
+moves by +-y phi. Seen from one rail, in w = y phi, a body that rolls is a shaft (G J / y^2, rho I_p / y^2), a mass
+is m r^2 / y^2 with its radius of gyration r, and joints between such bodies, spread over a width b or standing at
 +-a, have their stiffness times b^2 / (12 y^2) or a^2 / y^2.
 """
 
@@ -95,7 +95,7 @@ class Roll(FrozenModel):
 
     gauge_m: float = Field(gt=0.1, lt=10.0)
     bodies: dict[str, Annotated[Twisting | Rolling, Field(discriminator="type")]] = Field(min_length=1)
-    laws: dict[str, Lever] = {}
+    laws: dict[str, Lever] = Field(default_factory=dict)
 
 
 def antisymmetric(line: Line, roll: Roll) -> Line:
@@ -169,7 +169,7 @@ def _levered(index: int, layer: Joints, roll: Roll, arm_m: float) -> Joints:
         return layer
     if layer.law not in roll.laws:
         raise InputError(
-            f"joints[{index}] tie {layer.between[0]} to {layer.between[1]} by the law {layer.law!r}, without a lever",
+            f"joints[{index}] tie {rows[0]} to {rows[1]}, which roll, and their law has no lever",
             where=f"laws.{layer.law}",
             remedy="give width_m or arm_m",
         )
