@@ -7,7 +7,7 @@ import re
 import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from pydantic import Field, PositiveFloat, ValidationError, field_validator, model_validator
@@ -16,6 +16,7 @@ from permway.arrays import Reals
 from permway.errors import InputError
 from permway.laws.base import Law
 from permway.laws.lawfile import load_law
+from permway.laws.measured import Quantity, read_measured
 from permway.model.faults import fault, model_error, refuse_coercion
 from permway.model.irregularity import AnyIrregularity, Conversion
 from permway.model.irregularity_spectra import FASTEST_M_PER_S
@@ -315,6 +316,17 @@ def _law(law: object, where: str, folder: Path | None) -> object:
 
 def _law_file(table: dict[str, Any], where: str, folder: Path | None) -> Law:
     name = table.pop("file")
+    quantity = None
+    if table.get("type") == "measured":
+        quantity = table.pop("quantity", None)
+        if quantity not in get_args(Quantity):
+            raise InputError(
+                "unknown",
+                where=f"{where}.quantity",
+                value=quantity,
+                remedy=f"use one of {list(get_args(Quantity))}",
+            )
+        del table["type"]
     if table:
         raise InputError(
             "does not go with a file", where=f"{where}.{next(iter(table))}", remedy="name the file alone"
@@ -329,7 +341,7 @@ def _law_file(table: dict[str, Any], where: str, folder: Path | None) -> Law:
             "lies outside the model's folder", where=f"{where}.file", value=name, remedy="put it beside the model"
         )
     try:
-        return load_law(path)
+        return load_law(path) if quantity is None else read_measured(path, quantity)
     except InputError as error:
         raise InputError(
             error.what, where=f"{where}.file: {error.where}", value=error.value, remedy=error.remedy
