@@ -111,7 +111,7 @@ fn uic60() -> Body {
 pub fn rail_on_supports() -> Case {
     let joints =
         (-120..=120).map(|i| Joint { x: 0.6 * f64::from(i), a: 0, b: None, law: 0, scale: 1.0 }).collect();
-    let line = Line { bodies: vec![uic60()], joints, names: vec!["rail".into()] };
+    let line = Line { bodies: vec![uic60()], joints, names: vec!["rail".into()], ..Line::default() };
     Case { line, laws: vec![c64::new(300e6, 75e6)], points: vec![Point { body: 0, x: 0.0 }], spans: 1 }
 }
 
@@ -126,7 +126,7 @@ pub fn rail_on_sleepers() -> Case {
         joints.push(Joint { x, a: sleeper, b: None, law: 1, scale: 1.0 });
     }
     Case {
-        line: Line { bodies, joints, names },
+        line: Line { bodies, joints, names, ..Line::default() },
         laws: vec![c64::new(300e6, 75e6), c64::new(50e6, 50e6)],
         points: vec![Point { body: 0, x: 0.0 }],
         spans: 1,
@@ -171,7 +171,7 @@ pub fn viaduct(spans: usize, modes: Option<usize>) -> Case {
     let loss = |k: f64, eta: f64| c64::new(k, k * eta);
     let laws = vec![loss(6e7, 0.12), loss(3.79e11, 0.2), loss(2.1e11, 0.2), loss(6e9, 0.25)];
     let points = [-10.0, -7.5, 7.5, 10.0].map(|x| Point { body: 0, x: 0.5 * length + x }).to_vec();
-    Case { line: Line { bodies, joints, names }, laws, points, spans }
+    Case { line: Line { bodies, joints, names, ..Line::default() }, laws, points, spans }
 }
 
 #[cfg(test)]

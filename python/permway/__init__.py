@@ -13,16 +13,18 @@ from permway._core import __version__
 if TYPE_CHECKING:
     from permway.errors import InputError, PermwayError, SolveError
     from permway.laws import law_from_dict
-    from permway.model.bodies import Beam, Mass
+    from permway.model.bodies import Beam, Mass, Shaft
     from permway.model.file import Model, model_from_dict, read_model
     from permway.model.joints import Ends, Joints, Spread
     from permway.model.line import Line
     from permway.model.presets import slab_track_viaduct_32m, wj7b, wj7b_constant
+    from permway.model.roll import Roll
     from permway.model.vehicle import Vehicle
     from permway.model.vehicle_presets import crh380a
     from permway.response.decay import decay_rate
     from permway.response.passby import Axles, MassOnSpring, SprungMass, couple, hslm_a, passby
     from permway.response.quantities import accelerance, mobility
+    from permway.response.rails import both_rails
     from permway.response.receptance import Place, receptance
     from permway.response.sensitivity import by_joint, change_joint, sensitivity
     from permway.response.solve import solve, write_dataset
@@ -31,15 +33,17 @@ if TYPE_CHECKING:
 _HOMES = {
     "errors": ("InputError", "PermwayError", "SolveError"),
     "laws": ("law_from_dict",),
-    "model.bodies": ("Beam", "Mass"),
+    "model.bodies": ("Beam", "Mass", "Shaft"),
     "model.file": ("Model", "model_from_dict", "read_model"),
     "model.joints": ("Ends", "Joints", "Spread"),
     "model.line": ("Line",),
     "model.presets": ("slab_track_viaduct_32m", "wj7b", "wj7b_constant"),
+    "model.roll": ("Roll",),
     "model.vehicle": ("Vehicle",),
     "model.vehicle_presets": ("crh380a",),
     "response.decay": ("decay_rate",),
     "response.passby": ("Axles", "MassOnSpring", "SprungMass", "couple", "hslm_a", "passby"),
+    "response.rails": ("both_rails",),
     "response.quantities": ("accelerance", "mobility"),
     "response.receptance": ("Place", "receptance"),
     "response.sensitivity": ("by_joint", "change_joint", "sensitivity"),
@@ -60,6 +64,8 @@ __all__ = [
     "Model",
     "PermwayError",
     "Place",
+    "Roll",
+    "Shaft",
     "SolveError",
     "Spread",
     "SprungMass",
@@ -67,6 +73,7 @@ __all__ = [
     "Vehicle",
     "__version__",
     "accelerance",
+    "both_rails",
     "by_joint",
     "change_joint",
     "couple",

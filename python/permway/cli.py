@@ -163,6 +163,32 @@ def fit_pad(
 
 
 @app.command()
+def compare(
+    campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", help="Folder for page, numbers, pictures; by default beside the campaign."
+        ),
+    ] = None,
+    raw_only: Annotated[bool, typer.Option("--raw-only", help="With the owner's values only.")] = False,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """Predicted against measured: with the owner's values, and recalibrated."""
+    from permway.diagnosis.compare import compare as run
+    from permway.files import prepare_folder
+    from permway.recordings.campaign import read_campaign
+    from permway.report.compare import write_comparison
+
+    described = read_campaign(campaign)
+    folder = prepare_folder(output or campaign.parent / "comparison")
+    with _progress("comparing", as_json) as progress:
+        result = run(described, raw_only=raw_only, threads=threads, progress=progress)
+    _say(write_comparison(result, folder), as_json)
+
+
+@app.command()
 def reproduce(
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder for report.html and tables.json.")] = Path(
         "permway-paper"

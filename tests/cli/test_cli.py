@@ -11,13 +11,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from permway.laws import AnyLaw
-from permway.model.bodies import Beam, Mass
+from permway.laws import AnyLaw, Measured
+from permway.model.bodies import Beam, BeamChange, Mass, Shaft
 from permway.model.contact import GivenContact, HertzContact
 from permway.model.file import Frequencies, model_from_dict, read_model
 from permway.model.irregularity import AnyIrregularity
 from permway.model.joints import Ends, Joints, Spread
 from permway.model.presets import LAWS, LINES, SlabTrackViaduct
+from permway.model.roll import Lever, Roll, Rolling, Twisting
+from permway.model.shafts import ShaftChange
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_presets import VEHICLES
 from permway.response.receptance import Place
@@ -237,7 +239,25 @@ def test_reference_names_every_key_and_type():
     named = set(re.findall(r"`([a-zA-Z_0-9]+)`", REFERENCE))
     types = set(re.findall(r'"([a-z_0-9]+)"', REFERENCE))
     irregularities = AnyIrregularity.__origin__.__args__
-    records = [Beam, Mass, GivenContact, HertzContact, Frequencies, Joints, SlabTrackViaduct, Vehicle, Place]
+    records = [
+        Beam,
+        BeamChange,
+        Shaft,
+        ShaftChange,
+        Mass,
+        Measured,
+        Roll,
+        Twisting,
+        Rolling,
+        Lever,
+        GivenContact,
+        HertzContact,
+        Frequencies,
+        Joints,
+        SlabTrackViaduct,
+        Vehicle,
+        Place,
+    ]
     keys = {key for record in [*records, *irregularities] for key in record.model_fields} - {"type"}
     assert keys - named - {"scale"} == set()
     for record in (Ends, Spread, Train):

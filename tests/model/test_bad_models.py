@@ -23,6 +23,43 @@ second_moment_m4 = 1.7e-3
 density_kg_per_m3 = 2500.0
 area_m2 = 0.5
 intervals_m = [[0.0, 5.0], [5.0, 10.0], [10.1, 15.0]]
+changes = [
+    { from_m = 1.0, to_m = 2.0, bending_factor = 0.5 },
+    { from_m = 11.0, to_m = 15.0, bending_factor = 0.8, mass_factor = 0.9 },
+]
+
+[line.bodies.axle]
+type = "shaft"
+shear_modulus_Pa = 1.5e10
+torsion_constant_m4 = 0.02
+density_kg_per_m3 = 2500.0
+polar_moment_m4 = 0.4
+arm_m = 0.75
+intervals_m = [[20.0, 26.0]]
+changes = [{ from_m = 21.0, to_m = 22.0, torsion_factor = 0.5 }]
+
+[line.laws.soil]
+type = "measured"
+quantity = "impedance"
+frequency_Hz = [1.0, 500.0]
+real = [2.0e6, 1.0e6]
+imaginary = [-3.0e8, -3.0e5]
+
+[roll]
+gauge_m = 1.5
+
+[roll.bodies]
+cap = { type = "mass", radius_m = 1.2 }
+
+[roll.bodies.slab]
+type = "beam"
+shear_modulus_Pa = 1.5e10
+torsion_constant_m4 = 0.02
+polar_moment_m4 = 0.4
+changes = [{ from_m = 1.0, to_m = 2.0, torsion_factor = 0.6 }]
+
+[roll.laws]
+bearing = { arm_m = 1.0 }
 
 [line.bodies.plate]
 type = "mass"
@@ -65,6 +102,11 @@ law = "ballast"
 at = [20.0, 20.6, 21.2, 21.8, 22.4, 23.0, 30.0, 30.6, 31.2, 31.8, 32.4, 33.0]
 stiffness_is = "per_metre"
 layer_m = [19.0, 34.0]
+
+[[line.joints]]
+between = ["axle", "ground"]
+law = "soil"
+at = [20.5, 25.5]
 
 """
 
@@ -224,7 +266,8 @@ EDITS = [
     ("kind of end", 'ends = "free"', 'ends = "clamped"',
      "line.bodies.girder.ends", ['"free" or "pinned"', "'clamped'"]),
     ("third end", 'ends = "free"', 'ends = ["free", "free", "free"]', "line.bodies.girder.ends", ["for each end"]),
-    ("kind of body", 'type = "mass"', 'type = "sprung"', "line.bodies.sleeper", ["'sprung'", "'beam', 'mass'"]),
+    ("kind of body", 'type = "mass"', 'type = "sprung"',
+     "line.bodies.sleeper", ["'sprung'", "'beam', 'shaft', 'mass'"]),
     ("kind of law", 'type = "hysteretic"', 'type = "spring"', "line.laws.bearing", ["'spring'", "'hysteretic'"]),
     # Numbers
     ("nan", "youngs_modulus_Pa = 3.6e10", "youngs_modulus_Pa = nan",
@@ -398,6 +441,7 @@ PLATE_AT = (
 BED = 'stiffness_is = "per_metre"\nlayer_m = [19.0, 34.0]'
 BED_AT = "at = [20.0, 20.6, 21.2, 21.8, 22.4, 23.0, 30.0, 30.6, 31.2, 31.8, 32.4, 33.0]"
 GRADED = "    { from_m = 5.0, to_m = 15.0, factor_from = 1.0, factor_to = 0.2 },\n"
+THINNED = "from_m = 1.0, to_m = 2.0, bending_factor = 0.5"
 LOST = "{ from_m = 0.0, to_m = 6.0, factor = 0.5 }"
 
 # The same of the file with rows of masses, piers, dowels, changes and scatter.
@@ -469,11 +513,70 @@ LAYOUT_EDITS = [
      "line.joints[1].changes[0].factor", ["greater than or equal to 0"]),
     ("changes as a table", "changes = [\n    " + LOST + ",\n" + GRADED + "]", "changes = " + LOST,
      "line.joints[1].changes", ["must be a list"]),
-    ("key of a change", "factor = 0.5", "faktor = 0.5", "line.joints[1].changes[0]", ["'factor'"]),
+    ("key of a change", "6.0, factor = 0.5", "6.0, faktor = 0.5", "line.joints[1].changes[0]", ["'factor'"]),
     ("scatter in percent", "relative_std = 0.2", "relative_std = 20.0",
      "line.joints[2].scatter.relative_std", ["less than or equal to 10", "20.0"]),
     ("seed in words", "seed = 3", 'seed = "three"', "line.joints[2].scatter.seed", ["integer", "'three'"]),
     ("seed forgotten", "seed = 3, ", "", "line.joints[2].scatter.seed", ["missing"]),
+    # Sections that change
+    ("change off the slabs", THINNED, "from_m = 16.0, to_m = 17.0, bending_factor = 0.5",
+     "line.bodies.slab.changes[0]", ["(16, 17) m does not lie on one body", "10.1 to 15 m"]),
+    ("change over two slabs", THINNED, "from_m = 4.0, to_m = 6.0, bending_factor = 0.5",
+     "line.bodies.slab.changes[0]", ["(4, 6) m does not lie on one body"]),
+    ("changes overlap", THINNED, "from_m = 10.5, to_m = 11.5, bending_factor = 0.5",
+     "line.bodies.slab.changes[1]", ["(11, 15) m begins before 11.5 m", "no overlap"]),
+    ("nothing left of a beam", THINNED, "from_m = 1.0, to_m = 2.0, bending_factor = 0.0",
+     "line.bodies.slab.changes[0].bending_factor", ["greater than 0"]),
+    ("negative mass left", "mass_factor = 0.9", "mass_factor = -0.9",
+     "line.bodies.slab.changes[1].mass_factor", ["greater than 0", "-0.9"]),
+    ("no number left", "bending_factor = 0.8", "bending_factor = nan",
+     "line.bodies.slab.changes[1].bending_factor", ["got nan"]),
+    ("change to infinity", THINNED, "from_m = 1.0, to_m = inf, bending_factor = 0.5",
+     "line.bodies.slab.changes[0].to_m", ["got inf"]),
+    ("section change reversed", THINNED, "from_m = 2.0, to_m = 1.0, bending_factor = 0.5",
+     "line.bodies.slab.changes[0].to_m", ["1 lies left of from_m = 2"]),
+    ("section change at a point", THINNED, "from_m = 1.0, to_m = 1.0, bending_factor = 0.5",
+     "line.bodies.slab.changes[0].to_m", ["too near"]),
+    ("section change of nothing", THINNED, "from_m = 1.0, to_m = 2.0",
+     "line.bodies.slab.changes[0]", ["changes nothing", "'bending_factor', 'mass_factor', 'shear_factor'"]),
+    ("shear of an euler beam", THINNED, "from_m = 1.0, to_m = 2.0, shear_factor = 0.5",
+     "line.bodies.slab.changes[0].shear_factor", ["no shear stiffness"]),
+    ("torsion of a beam", THINNED, "from_m = 1.0, to_m = 2.0, torsion_factor = 0.5",
+     "line.bodies.slab.changes[0].torsion_factor", ["does not belong"]),
+    ("section of a mass", "mass_kg = 150.0", "mass_kg = 150.0\nchanges = []",
+     "line.bodies.sleeper.changes", ["does not belong in this table"]),
+    ("modes of a stepped beam", "intervals_m = [[0.0, 5.0]", "modes = 9\nintervals_m = [[0.0, 5.0]",
+     "line.bodies.slab.modes", ["uniform beams"]),
+    # Shafts
+    ("bending of a shaft", "torsion_factor = 0.5", "bending_factor = 0.5",
+     "line.bodies.axle.changes[0].bending_factor", ["does not belong"]),
+    ("shaft without an arm", "arm_m = 0.75\n", "", "line.bodies.axle.arm_m", ["missing"]),
+    ("arm in millimetres", "arm_m = 0.75", "arm_m = 750.0", "line.bodies.axle.arm_m", ["= 750 ", "in metres"]),
+    ("shaft in GPa", "shear_modulus_Pa = 1.5e10\ntorsion", "shear_modulus_Pa = 15.0\ntorsion",
+     "line.bodies.axle.shear_modulus_Pa", ["not GPa"]),
+    ("stiffer than round", "torsion_constant_m4 = 0.02\n", "torsion_constant_m4 = 0.5\n",
+     "line.bodies.axle.torsion_constant_m4", ["above polar_moment_m4 = 0.4"]),
+    ("shaft off its joints", "intervals_m = [[20.0, 26.0]]", "intervals_m = [[20.0, 25.0]]",
+     "line.joints[5].at[1]", ["off the axle", "got 25.5"]),
+    # Tables of impedance
+    ("kind of table", 'quantity = "impedance"', 'quantity = "mobility"',
+     "line.laws.soil.quantity", ["'dynamic_stiffness', 'impedance' or 'apparent_mass'"]),
+    ("rows of a table", "real = [2.0e6, 1.0e6]", "real = [2.0e6]", "line.laws.soil", ["real has 1 rows"]),
+    ("table that gives power", "real = [2.0e6, 1.0e6]", "real = [-2.0e6, 1.0e6]",
+     "line.laws.soil", ["creates energy at 10 Hz"]),
+    # Two rails
+    ("gauge in millimetres", "gauge_m = 1.5", "gauge_m = 1500.0", "roll.gauge_m", ["less than 10"]),
+    ("roll of what is not there", "cap = { type", "pier = { type", "roll.bodies.pier", ["no such name", "'cap'"]),
+    ("roll of a law that is not there", "bearing = { arm_m", "baering = { arm_m",
+     "roll.laws.baering", ["no such name", "'bearing'"]),
+    ("twist of a mass", '{ type = "mass", radius_m = 1.2 }', '{ type = "beam", shear_modulus_Pa = 1e10, '
+     "torsion_constant_m4 = 0.1, polar_moment_m4 = 0.2 }", "roll.bodies.cap.type", ["is a mass on the line"]),
+    ("law without a lever", "bearing = { arm_m = 1.0 }", "", "roll.laws.bearing", ["joints[0] tie slab to slab"]),
+    ("lever of nothing", "{ arm_m = 1.0 }", "{ }", "roll.laws.bearing", ["give width_m or arm_m"]),
+    ("two levers", "{ arm_m = 1.0 }", "{ arm_m = 1.0, width_m = 2.0 }", "roll.laws.bearing", ["give width_m or"]),
+    ("twist that does not change", "changes = [{ from_m = 1.0, to_m = 2.0, torsion_factor = 0.6 }]", "",
+     "roll.bodies.slab.changes", ["the beam's section changes", "torsion_factor"]),
+    ("nothing rolls", FORCES + SENSORS, SENSORS, "roll", ["without [[forces]] nothing rolls"]),
     ("negative seed", "seed = 3", "seed = -3", "line.joints[2].scatter.seed", ["greater than or equal to 0"]),
 ]  # fmt: skip
 

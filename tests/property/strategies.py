@@ -4,13 +4,16 @@ Ranges are log-uniform where a magnitude spans decades: rails to box girders, ba
 factors 0.005 to 0.5 in everything. Beams of both theories, with or without ends, free or pinned, lie anywhere
 over 60 m and overlap as they happen to.
 
+A beam in three has another section over one or two intervals, a millimetre to all of it, and every fifth body is a
+shaft.
+
 Four bounds are there for rounding's sake, each where the other formulation, against 60 digits, kept 1e-12 or
 better. A free body of mass m has the receptance 1/(m omega^2), and what a joint k leaves of it loses k/(m omega^2)
 of the dense system's digits: hence beams from 50 kg/m and 2 m on, masses from 100 kg on, joints to 9e9 N/m, which
 leave nine at 1 Hz. The impedance that is marched loses k |H| in a joint much stiffer than all that it ties, which
 the same bound keeps; and at d behind a pin on the left it is of the size E I / d^3, of which the turning of a bar
-that nothing else holds is a small remainder (2e-9 off with a joint at a twentieth of its length): hence the margin
-of :func:`extent`.
+that nothing else holds is a small remainder (2e-9 off with a joint at a twentieth of its length, 5e-9 with a
+change of section a millimetre from it): hence the margin of :func:`extent`, which changes keep too.
 """
 
 import math
@@ -18,10 +21,11 @@ import math
 import numpy as np
 from hypothesis import strategies as st
 from permway.laws import FractionalKelvinVoigt, FractionalZener, Hysteretic, KelvinVoigt, Zener
-from permway.model.bodies import Beam, Mass
+from permway.model.bodies import Beam, BeamChange, Mass, Shaft
 from permway.model.joints import GROUND, Joints
 from permway.model.line import Line
 from permway.model.presets import slab_track_viaduct_32m
+from permway.model.shafts import ShaftChange
 from permway.response.receptance import Place, receptance
 
 REACH_M = 30.0
@@ -71,7 +75,48 @@ def laws(draw):
 
 
 @st.composite
-def beams(draw, *, finite=None, lossless=False):
+def stretches(draw, interval, ends):
+    """None, one or two intervals on a body, to the millimetre, often to its end; not cut near a pin."""
+    start, stop = interval or (-REACH_M, REACH_M)
+    margin = 0.1 * (stop - start) if interval else 0.0
+    low, high = start + margin * (ends[0] == "pinned"), stop - margin * (ends[1] == "pinned")
+    places = sorted({station(draw, low, high) for _ in range(draw(st.sampled_from([0, 0, 2, 4])))})
+    pairs = [pair for pair in zip(places[::2], places[1::2], strict=False) if pair[1] - pair[0] > 1e-4]
+    return [(start if a == low else a, stop if b == high else b) for a, b in pairs]
+
+
+@st.composite
+def shafts(draw, *, finite=None, lossless=False):
+    """A slab, base plate or girder that rolls, seen from 0.75 m: 0.2 to 5 m wide, 0.1 m high or more."""
+    width, height = draw(decades(0.2, 5.0)), draw(decades(0.1, 3.0))
+    low, high = sorted((width, height))
+    interval = _interval(draw, height) if (draw(st.booleans()) if finite is None else finite) else None
+    factor, ends = decades(0.1, 3.0), (draw(_ENDS), draw(_ENDS))
+    return Shaft(
+        shear_modulus_Pa=draw(decades(8e9, 8e10)),
+        torsion_constant_m4=high * low**3 / 3.0 * (1.0 - 0.63 * low / high),
+        density_kg_per_m3=draw(between(2300.0, 7850.0)),
+        polar_moment_m4=low * high * (low**2 + high**2) / 12.0,
+        # No lighter than a beam: 50 kg/m.
+        arm_m=min(0.75, math.sqrt(2300.0 * low * high * (low**2 + high**2) / 12.0 / 50.0)),
+        loss_factor=0.0 if lossless else draw(decades(0.005, 0.5)),
+        intervals_m=interval,
+        ends=ends,
+        changes=[
+            ShaftChange(from_m=a, to_m=b, torsion_factor=draw(factor), mass_factor=draw(factor))
+            for a, b in draw(stretches(interval[0] if interval else None, ends))
+        ],
+    )
+
+
+def _interval(draw, height):
+    start = round(draw(between(-REACH_M, REACH_M)), 3)
+    length = draw(decades(max(5.0 * height, 2.0), min(max(50.0 * height, 10.0), 60.0)))
+    return ((start, round(start + length, 3)),)
+
+
+@st.composite
+def beams(draw, *, finite=None, lossless=False, uniform=False):
     """A rail, slab, base plate or girder: 0.1 to 3 m high, up to 3 m wide, from 50 kg/m, 20 to 210 GPa.
 
     With ends it is 5 to 50 heights long, since a shorter block is no beam, and at least 2 m.
@@ -81,12 +126,9 @@ def beams(draw, *, finite=None, lossless=False):
     # From a solid section (1/12) towards all of it in two flanges (1/4).
     second = area * height**2 * draw(between(1.0 / 12.0, 0.2))
     timoshenko, with_ends = draw(st.booleans()), draw(st.booleans()) if finite is None else finite
-    interval = None
-    if with_ends:
-        start = round(draw(between(-REACH_M, REACH_M)), 3)
-        interval = (
-            (start, round(start + draw(decades(max(5.0 * height, 2.0), min(max(50.0 * height, 10.0), 60.0))), 3)),
-        )
+    interval = _interval(draw, height) if with_ends else None
+    factor, ends = decades(0.1, 3.0), (draw(_ENDS), draw(_ENDS))
+    where = [] if uniform else draw(stretches(interval[0] if interval else None, ends))
     return Beam(
         theory="timoshenko" if timoshenko else "euler",
         youngs_modulus_Pa=modulus,
@@ -97,7 +139,17 @@ def beams(draw, *, finite=None, lossless=False):
         shear_coefficient=draw(between(0.3, 0.87)) if timoshenko else None,
         loss_factor=0.0 if lossless else draw(decades(0.005, 0.5)),
         intervals_m=interval,
-        ends=(draw(_ENDS), draw(_ENDS)),
+        ends=ends,
+        changes=[
+            BeamChange(
+                from_m=a,
+                to_m=b,
+                bending_factor=draw(factor),
+                shear_factor=draw(factor) if timoshenko else 1.0,
+                mass_factor=draw(factor),
+            )
+            for a, b in where
+        ],
     )
 
 
@@ -136,12 +188,14 @@ def _joints(draw, laws, upper, lower, at):
 
 
 @st.composite
-def lines(draw, *, finite=None, lossless=False):
-    """One to five beams, up to three masses at one station each, and joints between them and to the ground."""
+def lines(draw, *, finite=None, lossless=False, uniform=False):
+    """One to five beams and shafts, up to three masses at one station each, joints of them and the ground."""
     materials = {f"law{i}": law for i, law in enumerate(draw(st.lists(laws(), min_size=1, max_size=3)))}
     names = sorted(materials)
-    shapes = st.lists(beams(finite=finite, lossless=lossless), min_size=1, max_size=5)
-    bodies = {f"beam{i}": beam for i, beam in enumerate(draw(shapes))}
+    shape = beams(finite=finite, lossless=lossless, uniform=uniform)
+    if not uniform:
+        shape = st.one_of(*([shape] * 4), shafts(finite=finite, lossless=lossless))
+    bodies = {f"beam{i}": beam for i, beam in enumerate(draw(st.lists(shape, min_size=1, max_size=5)))}
     joints = []
     for name in bodies:
         for _ in range(draw(st.integers(0, 2))):
@@ -158,7 +212,7 @@ def lines(draw, *, finite=None, lossless=False):
 
 
 def _beams(bodies):
-    return [name for name, body in bodies.items() if isinstance(body, Beam)]
+    return [name for name, body in bodies.items() if not isinstance(body, Mass)]
 
 
 @st.composite

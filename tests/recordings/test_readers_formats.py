@@ -12,11 +12,10 @@ import numpy as np
 import pytest
 import written
 import xarray as xr
-from scipy import io
-from scipy.io import wavfile
-
 from permway.errors import InputError
 from permway.recordings.readers import read_frf, read_table, read_time, time_blocks
+from scipy import io
+from scipy.io import wavfile
 
 NODES = ("1:+Z", "2:+Z", "3:+Z")
 COLUMNS = ("ax", "bo", "ra")
@@ -134,8 +133,8 @@ def test_latin_1_header(tmp_path: Path) -> None:
 
 
 def test_text_of_several_pieces(tmp_path: Path) -> None:
-    # 5 MB and more, so that the checks run over the seam between pieces.
-    x = np.random.default_rng(1).standard_normal((2, 120_000))
+    # 4 MB and more, so that the checks run over the seam between pieces.
+    x = np.random.default_rng(1).standard_normal((2, 90_000))
     path = tmp_path / "a.csv"
     rows = (f"{i / 1024:.6f},{a:.17g},{b:.17g}" for i, (a, b) in enumerate(x.T.tolist()))
     path.write_text("t,a,b\n" + "\n".join(rows) + "\n")
@@ -143,9 +142,9 @@ def test_text_of_several_pieces(tmp_path: Path) -> None:
     np.testing.assert_array_equal(record.values, x)
     assert record.sampling_Hz == 1024.0
     lines = path.read_text().split("\n")
-    del lines[110_000]
+    del lines[80_000]
     path.write_text("\n".join(lines))
-    with pytest.raises(InputError, match=r"line 110001, column 't': a step of 0\.00195.* not uniform"):
+    with pytest.raises(InputError, match=r"line 80001, column 't': a step of 0\.00195.* not uniform"):
         read_time(path)
 
 
@@ -158,7 +157,7 @@ def test_several_groups_of_hdf5(tmp_path: Path) -> None:
             data.attrs["dt"] = 0.01
     record = read_time(path, part="two")
     assert (record.channels, record.units, record.sampling_Hz, len(record)) == (("acc",), ("g",), 100.0, 20)
-    with pytest.raises(InputError, match="10 samples|20 samples"):
+    with pytest.raises(InputError, match="20 samples where 'one/acc' has 10"):
         read_time(path)
 
 
@@ -215,7 +214,7 @@ def test_table_of_numbers_and_texts(tmp_path: Path) -> None:
     np.testing.assert_array_equal(table.numbers("125"), [np.nan, 0.5])
     with pytest.raises(InputError, match="column 'rail': holds texts"):
         table.numbers("rail")
-    with pytest.raises(InputError, match="no such column .*'rails'.*rail, temp"):
+    with pytest.raises(InputError, match=r"no such column .*'rails'.*rail, temp"):
         table.numbers("rails")
     assert read_table(path, texts=["temp"]).texts("temp") == ("13.0", "-1")
 

@@ -1,7 +1,7 @@
 """Universal files: by pyuff, by hand after the specification, and both readers held against each other.
 
-Source of the layout: University of Cincinnati, SDRL, "Universal File Formats for Modal Analysis Testing", datasets 55
-and 58: fields of fixed width, 6E13.5 in single and 4E20.12 in double precision.
+Source of the layout: University of Cincinnati, SDRL, "Universal File Formats for Modal Analysis Testing", datasets
+55 and 58: fields of fixed width, 6E13.5 in single and 4E20.12 in double precision.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 import pyuff
 import written
-
 from permway.errors import InputError
 from permway.recordings.readers import read_frf, read_table, read_time
 

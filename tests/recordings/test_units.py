@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
 from permway.errors import InputError
 from permway.recordings.units import QUANTITIES, Unit, check_same, parse_unit
 

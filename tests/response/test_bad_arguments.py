@@ -161,6 +161,14 @@ def tables(**changes):
             "interval": np.array([[-np.inf, np.inf]]),
             "pinned": np.array([[False, False]]),
             "modes": np.array([0]),
+            "stretches": {
+                "body": np.zeros(0, dtype=np.int64),
+                "bending": np.zeros(0, dtype=np.complex128),
+                "shear": np.zeros(0, dtype=np.complex128),
+                "mass": np.zeros(0),
+                "rotary": np.zeros(0),
+                "interval": np.zeros((0, 2)),
+            },
         },
         "masses": np.array([150.0]),
         "joints": {

@@ -17,6 +17,7 @@ from permway.laws.checks import LawCheck
 from permway.laws.combined import Parallel, Scaled, Series, StorageLossPair
 from permway.laws.elastic import Hysteretic, KelvinVoigt, Maxwell, Zener
 from permway.laws.fractional import FVMP, FractionalKelvinVoigt, FractionalZener, HavriliakNegami, Springpot
+from permway.laws.measured import Given, Measured
 from permway.laws.pad import Pad
 from permway.laws.prony import Prony
 from permway.laws.shift import WLF, AnyShift, Arrhenius, Free, Shift
@@ -36,6 +37,8 @@ AnyLaw = Annotated[
     | FVMP
     | Prony
     | Tabulated
+    | Measured
+    | Given
     | TFDV
     | Pad
     | Series
@@ -56,12 +59,14 @@ __all__ = [
     "FractionalKelvinVoigt",
     "FractionalZener",
     "Free",
+    "Given",
     "HavriliakNegami",
     "Hysteretic",
     "KelvinVoigt",
     "Law",
     "LawCheck",
     "Maxwell",
+    "Measured",
     "Pad",
     "Parallel",
     "Prony",

@@ -1,32 +1,40 @@
-"""What moves along a line: beams and masses."""
+"""What moves along a line: beams, shafts and masses."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, model_validator
+from pydantic import Field, PositiveFloat, model_validator
 
 from permway.model.faults import fault
+from permway.model.shafts import Shaft as Shaft
+from permway.model.slender import Factor, SectionChange, Slender, check_changes
 from permway.model.stations import Interval as Interval
 from permway.model.stations import MassesAt
 from permway.model.stations import Metres as Metres
 from permway.records import FrozenModel
 
-End = Literal["free", "pinned"]
+
+class BeamChange(SectionChange):
+    """Another section of a beam from one place to another: a crack, a thinned slab, a weld, a corroded foot.
+
+    Parameters
+    ----------
+    from_m, to_m : float
+        The interval.
+    bending_factor, shear_factor : float
+        On bending and shear stiffness.
+    mass_factor : float
+        On mass and rotary inertia.
+    """
+
+    bending_factor: Factor = 1.0
+    shear_factor: Factor = 1.0
 
 
-def _ends(value: object) -> object:
-    given = [value] if isinstance(value, str) else value
-    known = isinstance(given, Sequence) and all(isinstance(e, str) and e in ("free", "pinned") for e in given)
-    if not known or (value is given and len(given) != 2):  # type: ignore[arg-type]
-        raise fault('must be "free" or "pinned", or one of them for each end', value=value)
-    return value
-
-
-class Beam(FrozenModel):
-    """A uniform beam, or a row of equal ones (the girders of several spans).
+class Beam(Slender):
+    """A beam, or a row of equal ones (the girders of several spans).
 
     Parameters
     ----------
@@ -46,6 +54,8 @@ class Beam(FrozenModel):
         Number of bending modes that the receptance formulation sums, instead of the closed form.
     share : float
         Factor on stiffness and mass: 0.5 for the half model of one rail, 2 for two rails as one.
+    changes : sequence of BeamChange
+        Where the section is another; elsewhere the beam is uniform.
     """
 
     type: Literal["beam"] = "beam"
@@ -56,11 +66,8 @@ class Beam(FrozenModel):
     area_m2: PositiveFloat
     shear_modulus_Pa: PositiveFloat | None = None
     shear_coefficient: PositiveFloat | None = None
-    loss_factor: NonNegativeFloat = 0.0
-    intervals_m: tuple[Interval, ...] | None = Field(default=None, min_length=1)
-    ends: Annotated[End | tuple[End, End], BeforeValidator(_ends)] = "free"
     modes: int | None = Field(default=None, ge=1, le=10_000)
-    share: PositiveFloat = 1.0
+    changes: tuple[BeamChange, ...] = ()
 
     @model_validator(mode="after")
     def _check(self) -> Beam:
@@ -70,24 +77,17 @@ class Beam(FrozenModel):
         if self.theory == "euler" and shear != (None, None):
             raise ValueError("an euler beam has no shear_modulus_Pa or shear_coefficient: use timoshenko")
         _check_units(self)
-        if self.intervals_m is None:
-            if self.modes is not None:
+        if self.modes is not None:
+            if self.intervals_m is None:
                 raise fault("modes need a beam with ends: give intervals_m", "modes")
-            return self
-        if self.theory == "timoshenko" and self.modes is not None:
-            raise fault("modes are for euler beams; the closed form of timoshenko needs none", "modes")
-        reach = -math.inf
-        for index, (start, stop) in enumerate(self.intervals_m):
-            if not start < stop:
-                what = f"the interval ({start:g}, {stop:g}) m does not run from left to right"
-                raise fault(what, "intervals_m", index)
-            if start < reach:
-                what = (
-                    f"the interval ({start:g}, {stop:g}) m begins before {reach:g} m, where the one before it "
-                    "ends: name the beams from left to right, without overlap"
-                )
-                raise fault(what, "intervals_m", index)
-            reach = stop
+            if self.theory == "timoshenko":
+                raise fault("modes are for euler beams; the closed form of timoshenko needs none", "modes")
+            if self.changes:
+                raise fault("modes are for uniform beams; the closed form needs none", "modes")
+        for index, change in enumerate(self.changes):
+            if self.theory == "euler" and change.shear_factor != 1.0:
+                raise fault("an euler beam has no shear stiffness", "changes", index, "shear_factor")
+        check_changes(self.changes, self.intervals_m)
         return self
 
     @property
@@ -113,12 +113,6 @@ class Beam(FrozenModel):
         """Rotary inertia per length of the model's share, kg m; 0 for an Euler-Bernoulli beam."""
         return self.share * self.density_kg_per_m3 * self.second_moment_m4 if self.theory == "timoshenko" else 0.0
 
-    @property
-    def pinned(self) -> tuple[bool, bool]:
-        """Whether the left and the right end are pinned."""
-        left, right = (self.ends, self.ends) if isinstance(self.ends, str) else self.ends
-        return left == "pinned", right == "pinned"
-
 
 class Mass(FrozenModel):
     """A point mass (sleeper, baseplate, pier cap, resonator), or a row of equal ones.
@@ -137,7 +131,7 @@ class Mass(FrozenModel):
     at: MassesAt | None = None
 
 
-AnyBody = Annotated[Beam | Mass, Field(discriminator="type")]
+AnyBody = Annotated[Beam | Shaft | Mass, Field(discriminator="type")]
 
 
 def _check_units(beam: Beam) -> None:

@@ -7,7 +7,7 @@ import re
 import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from pydantic import Field, PositiveFloat, ValidationError, field_validator, model_validator
@@ -16,11 +16,13 @@ from permway.arrays import Reals
 from permway.errors import InputError
 from permway.laws.base import Law
 from permway.laws.lawfile import load_law
+from permway.laws.measured import Quantity, read_measured
 from permway.model.faults import fault, model_error, refuse_coercion
 from permway.model.irregularity import AnyIrregularity, Conversion
 from permway.model.irregularity_spectra import FASTEST_M_PER_S
 from permway.model.line import Line
 from permway.model.presets import LAWS, LINES
+from permway.model.roll import Roll, antisymmetric
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_presets import VEHICLES
 from permway.records import FrozenModel
@@ -124,6 +126,9 @@ class Model(FrozenModel):
     irregularity : irregularity, optional
     passby : PassBy, optional
         The train's run over the line, read at the sensors; needs no irregularity.
+    roll : Roll, optional
+        Of a half model that stands for two rails: forces are then on one of them, and receptances are computed on
+        its side and on the other. A train runs on both alike.
     conversion : "per_hertz" or "wavenumber_density_called_per_hertz"
     formulation : "chain" or "receptance"
     """
@@ -138,6 +143,7 @@ class Model(FrozenModel):
     train: Train | None = None
     irregularity: AnyIrregularity | None = None
     passby: PassBy | None = None
+    roll: Roll | None = None
     conversion: Conversion = "per_hertz"
     formulation: Formulation = "chain"
 
@@ -151,6 +157,8 @@ class Model(FrozenModel):
             raise ValueError("nothing to compute: give [[forces]] and [[sensors]], or [train] and [irregularity]")
         if self.forces and not self.sensors:
             raise ValueError("forces without [[sensors]]: say where the response is wanted")
+        if self.roll is not None and not self.forces:
+            raise fault("without [[forces]] nothing rolls: a train runs on both rails alike", "roll")
         if self.temperature_C is not None and not -100.0 <= self.temperature_C <= 150.0:
             what = "is no temperature of a track: give degrees Celsius, not kelvin"
             raise fault(what, "temperature_C", value=self.temperature_C)
@@ -171,6 +179,11 @@ class Model(FrozenModel):
             raise _below("line", error) from error
         for kind, places in (("forces", self.forces), ("sensors", self.sensors)):
             check_places(self.line, places, kind)
+        if self.roll is not None:
+            try:
+                antisymmetric(self.line, self.roll)
+            except InputError as error:
+                raise _below("roll", error) from error
         if self.train is not None:
             try:
                 check_places(self.line, self.train.wheels(), "wheels")
@@ -309,6 +322,17 @@ def _law(law: object, where: str, folder: Path | None) -> object:
 
 def _law_file(table: dict[str, Any], where: str, folder: Path | None) -> Law:
     name = table.pop("file")
+    quantity = None
+    if table.get("type") == "measured":
+        quantity = table.pop("quantity", None)
+        if quantity not in get_args(Quantity):
+            raise InputError(
+                "unknown",
+                where=f"{where}.quantity",
+                value=quantity,
+                remedy=f"use one of {list(get_args(Quantity))}",
+            )
+        del table["type"]
     if table:
         raise InputError(
             "does not go with a file", where=f"{where}.{next(iter(table))}", remedy="name the file alone"
@@ -323,7 +347,7 @@ def _law_file(table: dict[str, Any], where: str, folder: Path | None) -> Law:
             "lies outside the model's folder", where=f"{where}.file", value=name, remedy="put it beside the model"
         )
     try:
-        return load_law(path)
+        return load_law(path) if quantity is None else read_measured(path, quantity)
     except InputError as error:
         raise InputError(
             error.what, where=f"{where}.file: {error.where}", value=error.value, remedy=error.remedy

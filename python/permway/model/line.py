@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +12,8 @@ from pydantic import model_validator
 from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.laws import AnyLaw, Hysteretic
-from permway.model.bodies import AnyBody, Beam, Mass
+from permway.model.beam_columns import beam_columns
+from permway.model.bodies import AnyBody, Beam, Mass, Shaft
 from permway.model.faults import fault
 from permway.model.joint_table import JointTable as JointTable
 from permway.model.joint_table import joint_table
@@ -28,7 +30,7 @@ class Line(FrozenModel):
 
     Parameters
     ----------
-    bodies : dict of name to Beam or Mass
+    bodies : dict of name to Beam, Shaft or Mass
     joints : sequence of Joints
     laws : dict of name to law
         Complex stiffness in N/m that the joints refer to.
@@ -63,7 +65,7 @@ class Line(FrozenModel):
         return self
 
     def segments(self) -> list[Segment]:
-        """Beams one by one, then masses: the bodies of the core."""
+        """Beams and shafts one by one, then masses: the bodies of the core."""
         return segments_of(self.bodies)
 
     def locate(self, body: str, x_m: float, *, where: str) -> int:
@@ -121,14 +123,18 @@ class Line(FrozenModel):
             columns.append(values)
         return np.stack(columns, axis=-1) if columns else np.zeros((frequency.size, 0), dtype=np.complex128)
 
-    def beams(self) -> list[tuple[Beam, Segment]]:
-        """The beams with their segments, in the core's order."""
-        pairs = []
+    def beams(self) -> list[tuple[Beam | Shaft, Segment]]:
+        """The beams and shafts with their segments, in the core's order."""
+        pairs: list[tuple[Beam | Shaft, Segment]] = []
         for segment in self.segments():
             body = self.bodies[segment.body]
-            if isinstance(body, Beam):
+            if not isinstance(body, Mass):
                 pairs.append((body, segment))
         return pairs
+
+    def beam_columns(self) -> dict[str, Any]:
+        """Beams and shafts as the core's columns, with the stretches where their sections change."""
+        return beam_columns(self.beams())
 
     def masses_kg(self) -> Reals:
         """Point masses in the core's order, kg."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.errors import InputError
-from permway.model.bodies import AnyBody, Beam, Mass
+from permway.model.bodies import AnyBody, Mass
 from permway.model.faults import fault
 from permway.model.stations import TOUCH_M, Ends, groups, shared
 
@@ -34,7 +34,7 @@ class Segment:
 
 
 def segments_of(bodies: Mapping[str, AnyBody]) -> list[Segment]:
-    """Beams one by one, then masses."""
+    """Beams and shafts one by one, then masses."""
     return list(_segments(tuple(bodies.items())))
 
 
@@ -45,7 +45,7 @@ def _segments(named: tuple[tuple[str, AnyBody], ...]) -> tuple[Segment, ...]:
     beams: list[Segment] = []
     masses: list[Segment] = []
     for name, body in bodies.items():
-        if isinstance(body, Beam):
+        if not isinstance(body, Mass):
             intervals = body.intervals_m or ((-np.inf, np.inf),)
             beams += [Segment(_label(name, i, len(intervals)), name, *reach) for i, reach in enumerate(intervals)]
         elif body.at is None:
@@ -82,7 +82,7 @@ def end_places(bodies: Mapping[str, AnyBody], ends: Ends) -> Reals:
 def check_rows(bodies: Mapping[str, AnyBody]) -> None:
     """Refuse rows of masses that stand nowhere, twice at one place, or at the places of each other."""
     for name, body in bodies.items():
-        if isinstance(body, Beam) or body.at is None:
+        if not isinstance(body, Mass) or body.at is None:
             continue
         followed, at = [name], body.at
         while isinstance(at, Ends):

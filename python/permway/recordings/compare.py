@@ -1,4 +1,4 @@
-"""One record and its predictions as curves, channel by channel: intervals, and decibels line by line and by band."""
+"""One record and its predictions as curves, channel by channel, with intervals; decibels by line and by band."""
 
 from __future__ import annotations
 
@@ -29,11 +29,13 @@ VARIABLE = {
 POWERS = ("psd", "decay_rate")
 """Variables whose decibels are 10 lg."""
 
-UNSURE_DB = 3.0
+UNSURE_DB = 1.0
 """A line of larger standard deviation says nothing of a level, and is left out of levels in bands."""
 
 
-def curves(campaign: Campaign, dataset: Dataset, predicted: Mapping[str, xr.Dataset], scatter_dB: Reals) -> xr.Dataset:
+def curves(
+    campaign: Campaign, dataset: Dataset, predicted: Mapping[str, xr.Dataset], scatter_dB: Reals
+) -> xr.Dataset:
     """Measured and predicted side by side.
 
     Parameters
@@ -120,7 +122,8 @@ def third_octaves(record: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        `deviation_dB` (model, channel, band), NaN where no line says anything; `lines` (channel, band).
+        `deviation_dB` (model, channel, band), NaN where no line says anything; `scatter_dB` (channel, band), its
+        standard deviation by noise; `lines` (channel, band).
     """
     number = np.round(10.0 * np.log10(record["frequency"].values)).astype(np.int64)
     bands = Bands(number=np.arange(number.min(), number.max() + 1))
@@ -128,12 +131,17 @@ def third_octaves(record: xr.Dataset) -> xr.Dataset:
     said = np.isfinite(record["deviation_dB"].values).all(axis=0) & (record["scatter_dB"].values <= UNSURE_DB)
     power = record.attrs["variable"] in POWERS
 
-    def level(values: np.ndarray) -> Reals:
-        square = np.where(said, np.abs(values) ** (1 if power else 2), 0.0)
-        return np.asarray(square @ member.T)
+    def squares(values: np.ndarray) -> Reals:
+        return np.where(said, np.abs(values) ** (1 if power else 2), 0.0)
 
+    measured = squares(record["measured"].values)
+    scatter = np.where(said, measured * record["scatter_dB"].values, 0.0)
+    # Neighbouring lines under Hann's window say half the same.
+    alike = 2.0 if record.attrs["variable"] == "psd" else 1.0
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = 10.0 * np.log10(level(record["measured"].values) / level(record["predicted"].values))
+        level = measured @ member.T
+        ratio = 10.0 * np.log10(level / (squares(record["predicted"].values) @ member.T))
+        noise = np.sqrt(alike * (scatter**2 @ member.T)) / level
     return xr.Dataset(
         {
             "deviation_dB": (
@@ -141,7 +149,16 @@ def third_octaves(record: xr.Dataset) -> xr.Dataset:
                 np.where(np.isfinite(ratio), ratio, np.nan),
                 {"long_name": "level, measured over predicted", "units": "dB"},
             ),
-            "lines": (("channel", "band"), (said @ member.T).astype(np.int64), {"long_name": "lines", "units": "1"}),
+            "scatter_dB": (
+                ("channel", "band"),
+                noise,
+                {"long_name": "standard deviation by noise", "units": "dB"},
+            ),
+            "lines": (
+                ("channel", "band"),
+                (said @ member.T).astype(np.int64),
+                {"long_name": "lines", "units": "1"},
+            ),
         },
         coords={
             "model": record["model"].values,

@@ -145,7 +145,7 @@ def _channel(name: str, values: Reals, rate: float | None, mains: Sequence[float
     step = _quantum(sound)
     clipped, found = _clipping(name, values, step)
     yield found
-    held, found = _dropouts(name, values, finite, clipped)
+    held, found = _dropouts(name, values, finite & ~clipped, step)
     yield found
     # What was told already is no measurement of level, noise and lines.
     usable = finite & ~held
@@ -180,8 +180,9 @@ def _clipping(name: str, values: Reals, step: float) -> tuple[Flags, list[Findin
     """Flat tops: runs at the extreme value that are entered or left by more than the quantisation explains."""
     flags = np.zeros(values.size, dtype=np.bool_)
     found = []
-    for extreme in (np.nanmax(values), np.nanmin(values)):
-        near = np.abs(values - extreme) <= 1e-9 * abs(extreme)
+    finite = values[np.isfinite(values)]
+    for extreme in (finite.max(), finite.min()):
+        near = np.isfinite(values) & (np.abs(values - extreme) <= 1e-9 * abs(extreme))
         tops = [(a, b) for a, b in _runs(near, _SHORTEST_CLIP) if _cut(values, a, b, step)]
         # A value held once, for long and in one place only, is a dropout at an extreme.
         if len(tops) == 1 and tops[0][1] - tops[0][0] > 50:
@@ -194,21 +195,23 @@ def _clipping(name: str, values: Reals, step: float) -> tuple[Flags, list[Findin
 
 
 def _cut(values: Reals, a: int, b: int, step: float) -> bool:
-    before = abs(values[a] - values[a - 1]) if a else np.inf
-    after = abs(values[a] - values[b]) if b < values.size else np.inf
-    return bool(max(before, after) > 2.5 * step)
+    """Whether a run is entered or left by a jump: at a turning point a slow signal stands still as well."""
+    beside = [values[i] for i in (a - 1, b) if 0 <= i < values.size and np.isfinite(values[i])]
+    return any(abs(values[a] - value) > 2.5 * step for value in beside)
 
 
-def _dropouts(name: str, values: Reals, finite: Flags, clipped: Flags) -> tuple[Flags, list[Finding]]:
+def _dropouts(name: str, values: Reals, usable: Flags, step: float) -> tuple[Flags, list[Finding]]:
     """Runs of one and the same value, longer than the quantisation would give by chance."""
     same = np.zeros(values.size, dtype=np.bool_)
-    same[1:] = (values[1:] == values[:-1]) & finite[1:] & ~clipped[1:]
+    same[1:] = (values[1:] == values[:-1]) & usable[1:]
     share = min(max(float(same.mean()), 1e-12), 0.999)
     # A run of n equal samples comes about share^(n - 1) often by chance; less than once in a thousand records.
     by_chance = 1 + int(np.ceil(np.log(1e-3 / values.size) / np.log(share)))
     flags = np.zeros(values.size, dtype=np.bool_)
     found = []
     for a, b in _runs(same, max(_SHORTEST_DROPOUT, by_chance) - 1):
+        if not _cut(values, a - 1, b, step):
+            continue
         flags[a - 1 : b] = True
         what = f"{b - a + 1} samples held at {values[a]:.6g}"
         found.append(Finding("dropout", "error", name, what, a - 1, b - 1, value=float(values[a])))
@@ -219,9 +222,13 @@ def _spikes(name: str, values: Reals, usable: Flags) -> list[Finding]:
     """One or two samples far from what their neighbours on both sides foretell, by the local scale of that."""
     centre = float(np.median(values[usable]))
     filled = np.where(usable, values, centre) - centre
-    error = np.where(usable, _interpolation_error(filled), 0.0)
+    # What was lost has no neighbours to be foretold from, nor to foretell.
+    sure = ~ndimage.binary_dilation(~usable, iterations=_SPIKE_ORDER)
+    if sure.sum() < 256:
+        return []
+    error = np.where(sure, _interpolation_error(filled), 0.0)
     size = np.abs(error)
-    overall = 1.4826 * float(np.median(size[usable]))
+    overall = 1.4826 * float(np.median(size[sure]))
     blocks = [1.4826 * float(np.median(size[a : a + _SPIKE_BLOCK])) for a in range(0, size.size, _SPIKE_BLOCK)]
     # The greatest of a block and its neighbours, for what is loud may begin anywhere in a block.
     local = np.repeat(ndimage.maximum_filter1d(np.array(blocks), 3, mode="nearest"), _SPIKE_BLOCK)[: size.size]

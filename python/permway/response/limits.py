@@ -6,6 +6,8 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.errors import InputError
+from permway.model.beam_columns import sections
+from permway.model.bodies import Beam, Shaft
 from permway.model.line import JointTable, Line
 
 MOST_THREADS = 1024
@@ -81,13 +83,7 @@ def check_elements(line: Line, table: JointTable, places_m: Reals, highest_Hz: f
     for beam, segment in line.beams():
         length = min(segment.stop, float(x.max())) - max(segment.start, float(x.min()))
         with np.errstate(all="ignore"):
-            # A bound on both roots of z^2 - s z + p = 0, the squared exponents.
-            compliance = np.complex128(1.0 / beam.shear_N if beam.shear_N else 0.0)
-            inertia, rotary = beam.mass_kg_per_m * omega**2, beam.rotary_kg_m * omega**2
-            bending = np.complex128(beam.bending_Nm2)
-            s = abs(rotary / bending + compliance * inertia)
-            p = abs(inertia / bending * (compliance * rotary - 1.0))
-            total += float(np.sqrt(s + np.sqrt(p))) * max(length, 0.0) / _ELEMENT
+            total += _steepest(beam, omega) * max(length, 0.0) / _ELEMENT
         if not total <= MOST_ELEMENTS:
             raise InputError(
                 f"waves at {highest_Hz:g} Hz are too short: {segment.name} would need {total:.3g} elements",
@@ -95,3 +91,19 @@ def check_elements(line: Line, table: JointTable, places_m: Reals, highest_Hz: f
                 value=highest_Hz,
                 remedy=f"at most {MOST_ELEMENTS}: lower the highest frequency, or check the beam's units",
             )
+
+
+def _steepest(beam: Beam | Shaft, omega: np.float64) -> float:
+    """A bound on the modulus of the exponents of a body's waves, 1/m, in any of its sections."""
+    bound = 0.0
+    for bending, shear, mass, rotary in sections(beam):
+        if bending == 0.0:
+            bound = max(bound, float(omega * np.sqrt(mass / abs(shear))))
+            continue
+        # On both roots of z^2 - s z + p = 0, the squared exponents.
+        compliance = np.complex128(1.0 / shear if shear else 0.0)
+        flexibility = 1.0 / np.complex128(bending)
+        s = abs(rotary * omega**2 * flexibility + compliance * mass * omega**2)
+        p = abs(mass * omega**2 * flexibility * (compliance * rotary * omega**2 - 1.0))
+        bound = max(bound, float(np.sqrt(s + np.sqrt(p))))
+    return bound

@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
 from permway.errors import InputError
 from permway.model.file import Model
 from permway.response.passby.run import passby
+from permway.response.rails import both_rails
 from permway.response.receptance import Progress, receptance
 from permway.response.train import train_response
 
@@ -29,8 +31,9 @@ def solve(model: Model, *, threads: int | None = None, progress: Progress | None
     Returns
     -------
     xarray.Dataset
-        See :func:`permway.response.receptance.receptance` and :func:`permway.response.train.train_response`; of
-        a passage the variables of :func:`permway.response.passby.run.passby`, as `passby_history` and so on.
+        See :func:`permway.response.receptance.receptance`, :func:`permway.response.rails.both_rails` and
+        :func:`permway.response.train.train_response`; of a passage the variables of
+        :func:`permway.response.passby.run.passby`, as `passby_history` and so on.
 
     Raises
     ------
@@ -57,18 +60,18 @@ def solve(model: Model, *, threads: int | None = None, progress: Progress | None
             )
         )
     if model.forces:
-        parts.append(
-            receptance(
-                model.line,
-                frequency,
-                forces=model.forces,
-                sensors=model.sensors,
-                temperature_C=model.temperature_C,
-                formulation=model.formulation,
-                threads=threads,
-                progress=progress,
-            )
-        )
+        options: dict[str, Any] = {
+            "forces": model.forces,
+            "sensors": model.sensors,
+            "temperature_C": model.temperature_C,
+            "formulation": model.formulation,
+            "threads": threads,
+            "progress": progress,
+        }
+        if model.roll is not None:
+            parts.append(both_rails(model.line, model.roll, frequency, **options))
+        else:
+            parts.append(receptance(model.line, frequency, **options))
     if passage is not None:
         parts.append(passage)
     data = xr.merge(parts, combine_attrs="drop_conflicts", join="exact")

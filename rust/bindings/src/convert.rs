@@ -3,7 +3,7 @@
 use num_complex::Complex;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use permway_core::{
-    line::{Beam, Body, End, Joint, Line, Point},
+    line::{Beam, Body, End, Joint, Line, Point, Shaft, Stretch},
     sensitivity::Sensitivity,
 };
 use pyo3::{create_exception, exceptions::PyValueError, prelude::*};
@@ -27,6 +27,25 @@ pub struct Beams<'py> {
     pinned: PyReadonlyArray2<'py, bool>,
     #[pyo3(item("modes"))]
     modes: PyReadonlyArray1<'py, i64>,
+    #[pyo3(item("stretches"))]
+    stretches: Stretches<'py>,
+}
+
+/// Columns of a table of lengths where a beam or shaft has another section.
+#[derive(FromPyObject)]
+pub struct Stretches<'py> {
+    #[pyo3(item("body"))]
+    body: PyReadonlyArray1<'py, i64>,
+    #[pyo3(item("bending"))]
+    bending: PyReadonlyArray1<'py, Complex<f64>>,
+    #[pyo3(item("shear"))]
+    shear: PyReadonlyArray1<'py, Complex<f64>>,
+    #[pyo3(item("mass"))]
+    mass: PyReadonlyArray1<'py, f64>,
+    #[pyo3(item("rotary"))]
+    rotary: PyReadonlyArray1<'py, f64>,
+    #[pyo3(item("interval"))]
+    interval: PyReadonlyArray2<'py, f64>,
 }
 
 /// Columns of a table of joints.
@@ -127,7 +146,46 @@ fn index(value: i64, what: &str) -> PyResult<usize> {
     usize::try_from(value).map_err(|_| TablesError::new_err(format!("{what} {value} must not be negative")))
 }
 
-/// Bodies are the beams, then the masses.
+/// A beam; a shear stiffness of zero stands for Euler-Bernoulli, a bending stiffness of zero for a shaft.
+fn slender(
+    [bending, shear]: [Complex<f64>; 2],
+    [mass, rotary]: [f64; 2],
+    interval: [f64; 2],
+    ends: [End; 2],
+    modes: Option<usize>,
+) -> Body {
+    if bending == Complex::ZERO {
+        return Body::Shaft(Shaft { stiffness: shear, mass, interval, ends });
+    }
+    let shear = (shear != Complex::ZERO).then_some(shear);
+    Body::Beam(Beam { bending, shear, mass, rotary, interval, ends, modes })
+}
+
+/// Lengths of other sections.
+fn stretches(table: &Stretches<'_>) -> PyResult<Vec<Stretch>> {
+    let (body, interval) = (table.body.as_array(), table.interval.as_array());
+    let (bending, shear) = (table.bending.as_array(), table.shear.as_array());
+    let (mass, rotary) = (table.mass.as_array(), table.rotary.as_array());
+    let lengths = [body.len(), bending.len(), shear.len(), mass.len(), rotary.len(), interval.nrows()];
+    let n = same_length("stretches", &lengths)?;
+    if n > 0 && interval.ncols() != 2 {
+        return Err(TablesError::new_err("stretches: interval has two columns"));
+    }
+    (0..n)
+        .map(|i| {
+            let section = slender(
+                [bending[i], shear[i]],
+                [mass[i], rotary[i]],
+                [interval[[i, 0]], interval[[i, 1]]],
+                [End::Free; 2],
+                None,
+            );
+            Ok(Stretch { body: index(body[i], "stretches: body")?, section })
+        })
+        .collect()
+}
+
+/// Bodies are the beams and shafts, then the masses.
 pub fn line(
     names: Vec<String>,
     beams: &Beams<'_>,
@@ -149,16 +207,13 @@ pub fn line(
     let end = |p: bool| if p { End::Pinned } else { End::Free };
     let mut bodies = Vec::with_capacity(n);
     for i in 0..n {
-        bodies.push(Body::Beam(Beam {
-            bending: bending[i],
-            // A shear stiffness of zero stands for an Euler-Bernoulli beam.
-            shear: (shear[i] != Complex::ZERO).then_some(shear[i]),
-            mass: mass[i],
-            rotary: rotary[i],
-            interval: [interval[[i, 0]], interval[[i, 1]]],
-            ends: [end(pinned[[i, 0]]), end(pinned[[i, 1]])],
-            modes: usize::try_from(modes[i]).ok().filter(|m| *m > 0),
-        }));
+        bodies.push(slender(
+            [bending[i], shear[i]],
+            [mass[i], rotary[i]],
+            [interval[[i, 0]], interval[[i, 1]]],
+            [end(pinned[[i, 0]]), end(pinned[[i, 1]])],
+            usize::try_from(modes[i]).ok().filter(|m| *m > 0),
+        ));
     }
     bodies.extend(masses.as_array().iter().map(|m| Body::Mass(*m)));
     let (x, upper, lower) = (joints.x.as_array(), joints.upper.as_array(), joints.lower.as_array());
@@ -176,7 +231,7 @@ pub fn line(
             })
         })
         .collect::<PyResult<_>>()?;
-    Ok(Line { bodies, joints, names })
+    Ok(Line { bodies, joints, names, stretches: stretches(&beams.stretches)? })
 }
 
 /// Places of forces or sensors.

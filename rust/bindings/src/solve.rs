@@ -35,8 +35,9 @@ const MOST_THREADS: usize = 1024;
 
 /// Harmonic response of a line to unit forces.
 ///
-/// Bodies are the beams, then the masses; a lower body of -1 is the ground, a shear stiffness of 0
-/// an Euler-Bernoulli beam, 0 modes the closed form. `laws` has shape (frequency, law), N/m.
+/// Bodies are the beams and shafts, then the masses; a lower body of -1 is the ground, a shear stiffness of 0
+/// an Euler-Bernoulli beam, a bending stiffness of 0 a shaft, 0 modes the closed form. `stretches`, a table
+/// within that of the beams, says where sections change. `laws` has shape (frequency, law), N/m.
 /// Returns receptance in m/N, shape (frequency, sensor, force); joint extension, shape (frequency,
 /// joint, force), or None; on request (`derived`) derivatives of the receptance between forces, shape (frequency,
 /// parameter, sensor, force), and each joint's extension by a unit tension in itself, shape (frequency, joint); and the

@@ -87,6 +87,21 @@ impl Transfer<c64> {
 }
 
 impl<T: Field> Transfer<T> {
+    /// Transfer over length `l` in m of a shaft; rotation and moment, which it has not, stay what they are.
+    #[inline(always)]
+    pub fn of_shaft(compliance: T, mu: T, l: f64, terms: usize) -> Self {
+        let (zero, one) = (T::real(0.0), T::real(1.0));
+        let squared = -(compliance * mu);
+        let [_, _, c2, c3] = coefficients(squared, zero, l, terms);
+        let (cosh, length) = (one + squared * c2, T::real(l) + squared * c3);
+        Self {
+            a: [[cosh, zero], [zero, one]],
+            b: [[length * compliance, zero], [zero, zero]],
+            c: [[-(length * mu), zero], [zero, zero]],
+            d: [[cosh, zero], [zero, one]],
+        }
+    }
+
     /// Transfer over length `l` in m, by so many terms of the series.
     #[inline(always)]
     pub fn over(section: &Section<T>, l: f64, terms: usize) -> Self {
@@ -149,6 +164,20 @@ mod tests {
                     assert!((dg - e * g[i]).norm() < 1e-11 * g[i].norm());
                 }
             }
+        }
+    }
+
+    /// A shaft's wave passes through; what it has not stays.
+    #[test]
+    fn wave_of_a_shaft_passes_through() {
+        for (mu, l) in [(3.0, 0.4), (4e8, 1.5), (1e-3, 20.0)] {
+            let (stiffness, mu) = (c64::new(2.4e8, 2.4e6), c64::new(mu, 0.0));
+            let lambda = -c64::I * (mu / stiffness).sqrt();
+            let t = Transfer::of_shaft(stiffness.inv(), mu, l, terms(lambda.norm() * l));
+            let (force, e) = (stiffness * lambda, (lambda * l).exp());
+            assert!((t.a[0][0] + t.b[0][0] * force - e).norm() < 1e-14);
+            assert!((t.c[0][0] + t.d[0][0] * force - e * force).norm() < 1e-14 * force.norm());
+            assert!(t.a[1][1] == c64::ONE && t.d[1][1] == c64::ONE && t.b[1][1] == c64::ZERO);
         }
     }
 

@@ -10,6 +10,7 @@ use crate::{
     dual::{Dual, SLOPES},
     element::{Section, Transfer},
     field::Field,
+    shaft::Twist,
     small::{self, M2},
     waves::Waves,
 };
@@ -19,7 +20,6 @@ pub type M4<T> = [[T; 4]; 4];
 
 /// The integrals over one length of beam: by bending flexibility, shear compliance, mass and rotary inertia times
 /// omega squared.
-#[inline(always)]
 pub fn over_length<T: Field>(section: &Section<T>, length: f64, terms: usize) -> [M4<T>; SLOPES] {
     let inputs = Section {
         flexibility: Dual::input(section.flexibility, 0),
@@ -27,20 +27,36 @@ pub fn over_length<T: Field>(section: &Section<T>, length: f64, terms: usize) ->
         mu: Dual::input(section.mu, 2),
         rotary: Dual::input(section.rotary, 3),
     };
-    let t = Transfer::over(&inputs, length, terms);
-    // Rows and columns of T, and of J dT/dp = [[dc, dd], [-da, -db]].
-    let entry = |r: usize, c: usize| {
-        let block = [[&t.a, &t.b], [&t.c, &t.d]][r / 2][c / 2];
-        block[r % 2][c % 2]
-    };
-    let part = |p: usize, i: usize, j: usize| {
-        (0..4).fold(T::real(0.0), |sum, k| {
-            let turned = if k < 2 { entry(k + 2, j).slopes[p] } else { -entry(k - 2, j).slopes[p] };
-            sum - entry(k, i).value * turned
-        })
-    };
-    // Symmetric: the lower triangle is taken twice.
-    std::array::from_fn(|p| std::array::from_fn(|i| std::array::from_fn(|j| part(p, i.max(j), i.min(j)))))
+    of_transfer(&Transfer::over(&inputs, length, terms))
+}
+
+/// The integrals over one length of shaft, of which the first and the last are none.
+pub fn over_shaft<T: Field>(compliance: T, mu: T, length: f64, terms: usize) -> [M4<T>; SLOPES] {
+    of_transfer(&Transfer::of_shaft(Dual::input(compliance, 1), Dual::input(mu, 2), length, terms))
+}
+
+fn of_transfer<T: Field>(t: &Transfer<Dual<T>>) -> [M4<T>; SLOPES] {
+    // Rows of T, and of J dT/dp = [[dc, dd], [-da, -db]]; loops, for spelled out they would be much code.
+    let rows = [
+        [t.a[0][0], t.a[0][1], t.b[0][0], t.b[0][1]],
+        [t.a[1][0], t.a[1][1], t.b[1][0], t.b[1][1]],
+        [t.c[0][0], t.c[0][1], t.d[0][0], t.d[0][1]],
+        [t.c[1][0], t.c[1][1], t.d[1][0], t.d[1][1]],
+    ];
+    let mut out = [[[T::real(0.0); 4]; 4]; SLOPES];
+    for (p, n) in out.iter_mut().enumerate() {
+        for (i, line) in n.iter_mut().enumerate() {
+            for (j, sum) in line.iter_mut().enumerate() {
+                // Symmetric: the lower triangle is taken twice.
+                let (i, j) = (i.max(j), i.min(j));
+                for k in 0..2 {
+                    *sum = *sum - rows[k][i].value * rows[k + 2][j].slopes[p]
+                        + rows[k + 2][i].value * rows[k][j].slopes[p];
+                }
+            }
+        }
+    }
+    out
 }
 
 /// The integrals over a half-infinite beam, over displacement and rotation of its end; `None` where its waves merge.
@@ -60,6 +76,13 @@ pub fn over_half_infinite(waves: &Waves, left: bool) -> Option<[M2; SLOPES]> {
         let turned = [[shares[0][0], shares[1][0]], [shares[0][1], shares[1][1]]];
         small::mul(&turned, &half)
     }))
+}
+
+/// The integrals over a half-infinite shaft, over the displacement of its end.
+pub fn over_half_infinite_shaft(twist: &Twist) -> [M2; SLOPES] {
+    let l = twist.exponent();
+    let force = twist.stiffness * l;
+    [c64::ZERO, force * force, c64::ONE, c64::ZERO].map(|p| [[-p / (l + l), c64::ZERO], [c64::ZERO; 2]])
 }
 
 #[cfg(test)]

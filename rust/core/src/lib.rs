@@ -1,6 +1,6 @@
 //! The mechanics of permway, without Python in it.
 //!
-//! A [`Line`](line::Line) is bodies (beams and masses) tied by joints. Two formulations give its
+//! A [`Line`](line::Line) is bodies (beams, shafts and masses) tied by joints. Two formulations give its
 //! harmonic response to unit forces: [`receptance`] joins Green's functions of the beams in one
 //! dense system per frequency, [`chain`] marches an exact impedance along the line. [`sweep`]
 //! runs either over many frequencies on several threads.
@@ -18,8 +18,10 @@ pub mod green;
 pub mod lanes;
 pub mod line;
 pub mod modes;
+pub mod parts;
 pub mod receptance;
 pub mod sensitivity;
+pub mod shaft;
 pub mod small;
 pub mod sweep;
 pub mod waves;

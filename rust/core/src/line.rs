@@ -30,13 +30,39 @@ pub struct Beam {
     pub modes: Option<usize>,
 }
 
+/// A uniform body along the line whose places move up and down as it shears or twists: `S w'' = -f`, no bending.
+///
+/// A body that rolls about its axis moves by w = y phi at the distance y from it: S = G J / y^2, m = rho I_p / y^2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shaft {
+    /// Complex stiffness S against w', N.
+    pub stiffness: c64,
+    /// Mass per length, kg/m.
+    pub mass: f64,
+    /// First and last coordinate in m; infinite for a shaft without end.
+    pub interval: [f64; 2],
+    /// What holds the two ends; of no meaning for an infinite one.
+    pub ends: [End; 2],
+}
+
 /// Something that moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Body {
     /// A beam along the line.
     Beam(Beam),
+    /// A shaft along the line.
+    Shaft(Shaft),
     /// A point mass in kg.
     Mass(f64),
+}
+
+/// A length of a body where its section is another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Index of the body.
+    pub body: usize,
+    /// The section, of the body's kind; its interval is the stretch's, its ends have no meaning.
+    pub section: Body,
 }
 
 /// A spring of complex stiffness `scale * law(frequency)` between two bodies, or a body and the ground, at x.
@@ -64,7 +90,7 @@ pub struct Point {
 }
 
 /// Bodies and joints along x.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Line {
     /// The bodies.
     pub bodies: Vec<Body>,
@@ -72,17 +98,64 @@ pub struct Line {
     pub joints: Vec<Joint>,
     /// Names of the bodies, for messages.
     pub names: Vec<String>,
+    /// Where sections change, by body and then from left to right; none reaches infinity.
+    pub stretches: Vec<Stretch>,
 }
 
 /// Two places closer than this are one, in m.
 pub const SAME_PLACE: f64 = 1e-9;
 
-impl Beam {
-    /// Whether x lies on the beam.
-    pub fn holds(&self, x: f64) -> bool {
-        x >= self.interval[0] - SAME_PLACE && x <= self.interval[1] + SAME_PLACE
+impl Body {
+    /// First and last coordinate, m; `None` for a mass.
+    pub fn interval(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Beam(b) => Some(b.interval),
+            Self::Shaft(s) => Some(s.interval),
+            Self::Mass(_) => None,
+        }
     }
 
+    /// What holds the two ends.
+    pub fn ends(&self) -> [End; 2] {
+        match self {
+            Self::Beam(b) => b.ends,
+            Self::Shaft(s) => s.ends,
+            Self::Mass(_) => [End::Free; 2],
+        }
+    }
+
+    fn check(&self, name: &str) -> Result<(), CoreError> {
+        match self {
+            Self::Beam(beam) => beam.check(name),
+            Self::Shaft(shaft) => shaft.check(name),
+            Self::Mass(m) if m.is_finite() && *m > 0.0 => Ok(()),
+            Self::Mass(_) => Err(CoreError::Invalid(format!("{name}: mass must be positive"))),
+        }
+    }
+}
+
+/// Whether an interval has a length. NaN has none.
+fn has_length(interval: [f64; 2]) -> bool {
+    interval[1].partial_cmp(&interval[0]) == Some(std::cmp::Ordering::Greater)
+}
+
+impl Shaft {
+    fn check(&self, name: &str) -> Result<(), CoreError> {
+        let bad = |what: &str| Err(CoreError::Invalid(format!("{name}: {what}")));
+        if !(self.stiffness.is_finite() && self.stiffness.re > 0.0) {
+            return bad("stiffness must be finite with a positive real part");
+        }
+        if !(self.mass.is_finite() && self.mass > 0.0) {
+            return bad("mass per length must be positive");
+        }
+        if !has_length(self.interval) {
+            return bad("the interval must have a positive length");
+        }
+        Ok(())
+    }
+}
+
+impl Beam {
     fn check(&self, name: &str) -> Result<(), CoreError> {
         let bad = |what: &str| Err(CoreError::Invalid(format!("{name}: {what}")));
         if !(self.bending.is_finite() && self.bending.re > 0.0) {
@@ -97,8 +170,7 @@ impl Beam {
         if !(self.rotary.is_finite() && self.rotary >= 0.0) {
             return bad("rotary inertia must not be negative");
         }
-        // Written so that NaN fails too.
-        if self.interval[1].partial_cmp(&self.interval[0]) != Some(std::cmp::Ordering::Greater) {
+        if !has_length(self.interval) {
             return bad("the interval must have a positive length");
         }
         if self.modes.is_some() && (self.shear.is_some() || !self.is_finite()) {
@@ -128,14 +200,9 @@ impl Line {
     /// `Invalid` naming the body, joint or point at fault.
     pub fn check(&self, laws: usize, forces: &[Point], sensors: &[Point]) -> Result<(), CoreError> {
         for (i, body) in self.bodies.iter().enumerate() {
-            match body {
-                Body::Beam(beam) => beam.check(&self.name(i))?,
-                Body::Mass(m) if m.is_finite() && *m > 0.0 => {}
-                Body::Mass(_) => {
-                    return Err(CoreError::Invalid(format!("{}: mass must be positive", self.name(i))));
-                }
-            }
+            body.check(&self.name(i))?;
         }
+        self.check_stretches()?;
         for (i, j) in self.joints.iter().enumerate() {
             let bad = |what: &str| CoreError::Invalid(format!("joint {i} at x = {} m: {what}", j.x));
             if j.law >= laws {
@@ -160,17 +227,81 @@ impl Line {
         Ok(())
     }
 
+    /// The section of a body in its stretch, or the body's own.
+    pub fn section(&self, body: usize, stretch: Option<usize>) -> &Body {
+        stretch.map_or(&self.bodies[body], |k| &self.stretches[k].section)
+    }
+
+    /// The stretch of a body that holds x.
+    pub fn stretch_at(&self, body: usize, x: f64) -> Option<usize> {
+        let from = |s: &Stretch| s.section.interval().map_or(f64::NAN, |i| i[0]);
+        let after = self.stretches.partition_point(|s| s.body < body || (s.body == body && from(s) <= x));
+        let last = after.checked_sub(1)?;
+        let Stretch { body: of, section } = self.stretches[last];
+        (of == body && section.interval()?[1] > x).then_some(last)
+    }
+
+    /// The uniform parts of a body, from left to right: where, and in which stretch.
+    pub fn parts(&self, body: usize) -> Vec<([f64; 2], Option<usize>)> {
+        let Some([from, to]) = self.bodies[body].interval() else { return Vec::new() };
+        let (mut parts, mut at) = (Vec::new(), from);
+        for (k, s) in self.stretches.iter().enumerate().filter(|(_, s)| s.body == body) {
+            let Some([a, b]) = s.section.interval() else { continue };
+            // Slivers are rounding.
+            if a - at > SAME_PLACE {
+                parts.push(([at, a], None));
+            } else if let Some((before, _)) = parts.last_mut() {
+                before[1] = a;
+            }
+            parts.push(([if parts.is_empty() { from.max(at) } else { a }, b], Some(k)));
+            at = b;
+        }
+        if to - at > SAME_PLACE {
+            parts.push(([at, to], None));
+        }
+        parts
+    }
+
+    fn check_stretches(&self) -> Result<(), CoreError> {
+        let mut before = (0, f64::NEG_INFINITY);
+        for s in &self.stretches {
+            let bad = |what: &str| Err(CoreError::Invalid(format!("{}: {what}", self.name(s.body))));
+            let whole = match (self.bodies.get(s.body), &s.section) {
+                (Some(Body::Beam(b)), Body::Beam(section)) if b.shear.is_some() == section.shear.is_some() => {
+                    if b.modes.is_some() {
+                        return bad("modes are for uniform beams");
+                    }
+                    b.interval
+                }
+                (Some(Body::Shaft(b)), Body::Shaft(_)) => b.interval,
+                _ => return bad("another section must be of the body's own kind"),
+            };
+            s.section.check(&self.name(s.body))?;
+            let Some([from, to]) = s.section.interval() else { continue };
+            if !(from.is_finite() && to.is_finite()) {
+                return bad("another section must not reach infinity");
+            }
+            if to - from <= SAME_PLACE || from < whole[0] - SAME_PLACE || to > whole[1] + SAME_PLACE {
+                return bad("another section must have a length on the body");
+            }
+            if s.body < before.0 || (s.body == before.0 && from < before.1) {
+                return bad("other sections must come by body and from left to right, without overlap");
+            }
+            before = (s.body, to);
+        }
+        Ok(())
+    }
+
     fn check_place(&self, body: usize, x: f64) -> Result<(), String> {
         if !x.is_finite() {
             return Err("the place is not finite".into());
         }
-        match self.bodies.get(body) {
-            None => Err(format!("there is no body {body}")),
-            Some(Body::Beam(b)) if !b.holds(x) => {
-                let [from, to] = b.interval;
+        let Some(found) = self.bodies.get(body) else { return Err(format!("there is no body {body}")) };
+        match found.interval() {
+            Some([from, to]) if !(x >= from - SAME_PLACE && x <= to + SAME_PLACE) => {
                 Err(format!("off {}, which runs from {from} to {to} m", self.name(body)))
             }
-            Some(_) => Ok(()),
+            _ => Ok(()),
         }
     }
 }

@@ -12,6 +12,7 @@ use crate::{
     green::{Distances, Green},
     line::{Body, Line, Point, SAME_PLACE},
     modes::Modes,
+    parts::Parts,
 };
 use faer::Mat;
 
@@ -68,7 +69,7 @@ impl Dense {
             .zip(&places)
             .map(|(b, xs)| match b {
                 Body::Beam(b) => b.modes.map(|n| Modes::new(b, n, xs)),
-                Body::Mass(_) => None,
+                Body::Shaft(_) | Body::Mass(_) => None,
             })
             .collect();
         let distances = places.iter().map(|xs| Distances::new(xs)).collect();
@@ -80,9 +81,11 @@ impl Dense {
         let one = |(i, body): (usize, &Body)| -> Result<Mat<c64>, CoreError> {
             let xs = &self.places[i];
             let n = xs.len();
+            let uniform = !line.stretches.iter().any(|s| s.body == i);
             let beam = match body {
                 Body::Mass(m) => return Ok(Mat::from_fn(n, n, |_, _| c64::new(-1.0 / (omega * omega * m), 0.0))),
-                Body::Beam(beam) => beam,
+                Body::Beam(beam) if uniform => beam,
+                Body::Beam(_) | Body::Shaft(_) => return Parts::new(line, i, omega)?.between_all(xs),
             };
             if let Some(modes) = &self.modes[i] {
                 return Ok(modes.receptance(omega));

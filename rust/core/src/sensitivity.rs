@@ -19,7 +19,8 @@ pub struct Sensitivity<'a> {
     pub weights: &'a [f64],
     /// Number of groups.
     pub n_groups: usize,
-    /// Whether by bending stiffness, shear stiffness, mass and rotary inertia of every beam, and by every point mass.
+    /// Whether by bending stiffness, shear stiffness, mass and rotary inertia of every beam and shaft, of which a shaft
+    /// has the second and third, and by every point mass. Sections that differ over a stretch move in proportion.
     pub bodies: bool,
     /// Forces whose places stand for the sensors.
     pub sensors: &'a [usize],
@@ -58,7 +59,7 @@ impl Sensitivity<'_> {
         let mut next = 0;
         let first = line.bodies.iter().map(|body| {
             let mine = next;
-            next += if matches!(body, Body::Beam(_)) { OF_A_BEAM } else { 1 };
+            next += if matches!(body, Body::Mass(_)) { 1 } else { OF_A_BEAM };
             mine
         });
         (first.collect(), next)

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{laws, line, points};
+use common::{laws, points, varied as line};
 use permway_core::{
     c64,
     line::{Body, Line, Point},
@@ -108,6 +108,18 @@ fn derivatives_by_bodies_are_those_of_differences() {
     let mut parameter = line.joints.len();
     for (i, body) in line.bodies.iter().enumerate() {
         match *body {
+            Body::Shaft(shaft) => {
+                for (p, size) in [(1, shaft.stiffness.re), (2, shaft.mass)] {
+                    let change = |line: &mut Line, h: f64| {
+                        if let Body::Shaft(s) = &mut line.bodies[i] {
+                            if p == 1 { s.stiffness += size * h } else { s.mass += size * h }
+                        }
+                    };
+                    let found = worst(&line, &answer, parameter + p, change, size);
+                    assert!(found < 2e-7, "shaft, property {p}: {found}");
+                }
+                parameter += 4;
+            }
             Body::Mass(m) => {
                 let change = |line: &mut Line, h: f64| line.bodies[i] = Body::Mass(m * (1.0 + h));
                 let found = worst(&line, &answer, parameter, change, m);
@@ -118,13 +130,19 @@ fn derivatives_by_bodies_are_those_of_differences() {
                 let sizes = [beam.bending.re, beam.shear.map_or(0.0, |s| s.re), beam.mass, beam.rotary];
                 for (p, size) in sizes.into_iter().enumerate() {
                     let change = |line: &mut Line, h: f64| {
-                        if let Body::Beam(b) = &mut line.bodies[i] {
-                            match p {
-                                0 => b.bending += size * h,
-                                1 => b.shear = b.shear.map(|s| s + size * h),
-                                2 => b.mass += size * h,
-                                _ => b.rotary += size * h,
+                        let mut change = |body: &mut Body, share: f64| {
+                            if let Body::Beam(b) = body {
+                                match p {
+                                    0 => b.bending += size * h * share,
+                                    1 => b.shear = b.shear.map(|s| s + size * h * share),
+                                    2 => b.mass += size * h * share,
+                                    _ => b.rotary += size * h * share,
+                                }
                             }
+                        };
+                        change(&mut line.bodies[i], 1.0);
+                        for stretch in line.stretches.iter_mut().filter(|s| s.body == i) {
+                            change(&mut stretch.section, if p < 2 { common::WEAK } else { 1.0 });
                         }
                     };
                     let found = worst(&line, &answer, parameter + p, change, size);
@@ -150,6 +168,7 @@ fn derivatives_sum_to_the_response() {
         for body in &line.bodies {
             match body {
                 Body::Mass(m) => values.push(c64::new(*m, 0.0)),
+                Body::Shaft(s) => values.extend([c64::ZERO, s.stiffness, c64::new(s.mass, 0.0), c64::ZERO]),
                 Body::Beam(b) => values.extend([
                     b.bending,
                     b.shear.unwrap_or(c64::ZERO),

@@ -98,7 +98,12 @@ fn threads_change_nothing() {
 fn singular_frequency_is_reported_and_the_sweep_survives() {
     let (mass, omega) = (1.0, std::f64::consts::TAU);
     let joint = Joint { x: 0.0, a: 0, b: None, law: 0, scale: 1.0 };
-    let line = Line { bodies: vec![Body::Mass(mass)], joints: vec![joint], names: vec!["block".into()] };
+    let line = Line {
+        bodies: vec![Body::Mass(mass)],
+        joints: vec![joint],
+        names: vec!["block".into()],
+        ..Line::default()
+    };
     let point = [Point { body: 0, x: 0.0 }];
     let k = omega * omega;
     let laws = [c64::new(k, 0.0); 2];

@@ -132,7 +132,8 @@ class _Reader:
             cell = cells[index] if index < len(cells) else ""
             digits = re.fullmatch(r"[-+]?\d*(?:[.,](\d*))?(?:[eE]([-+]?\d{1,3}))?", cell)
             if digits is not None:
-                worth.append(10.0 ** (int(digits[2] or 0) - len(digits[1] or "")))
+                power = int(digits[2] or 0) - len(digits[1] or "")
+                worth.append(10.0 ** min(max(power, -300), 300))
         # Where trailing zeros are left out ("0.5") the longest cell tells; with exponents the largest number does.
         exponents = any("e" in line.lower() for line in self.layout.sample)
         return (max(worth) if exponents else min(worth)) if worth else 0.0

@@ -13,6 +13,7 @@ import numpy as np
 from permway.errors import InputError
 from permway.recordings.readers.headers import clean_unit, is_unit_row, split_header
 
+_PIECE_BYTES = 2**20
 _LONGEST_LINE = 2**20
 _LINES_LOOKED_AT = 200
 _REMARKS = ("#", "%", "//")
@@ -54,21 +55,35 @@ def numbered_lines(source: Path) -> Iterator[tuple[int, str]]:
     InputError
         If it is not text, or a line is longer than any table's.
     """
-    count = 0
+    count, rest, first = 0, b"", True
     with source.open("rb") as file:
-        for raw in iter(lambda: file.readline(_LONGEST_LINE), b""):
+        while piece := file.read(_PIECE_BYTES):
+            if first:
+                piece, first = piece.removeprefix(b"\xef\xbb\xbf"), False
+            # Up to the last line's end; what follows is the beginning of the next piece.
+            whole, end, rest = (rest + piece).rpartition(b"\n")
+            if end:
+                for line in _decoded(whole, source, count):
+                    count += 1
+                    yield count, line
+            elif len(rest) > _LONGEST_LINE:
+                raise InputError("a line longer than a table's", where=f"{source}: line {count + 1}")
+    if rest:
+        for line in _decoded(rest, source, count):
             count += 1
-            if b"\x00" in raw:
-                what = "not a text: it holds zero bytes"
-                raise InputError(what, where=f"{source}: line {count}", remedy="export it as CSV in UTF-8")
-            if len(raw) == _LONGEST_LINE and not raw.endswith(b"\n"):
-                raise InputError("a line longer than a table's", where=f"{source}: line {count}")
-            if count == 1:
-                raw = raw.removeprefix(b"\xef\xbb\xbf")
-            try:
-                yield count, raw.decode("utf-8").rstrip("\r\n")
-            except UnicodeDecodeError:
-                yield count, raw.decode("latin-1").rstrip("\r\n")
+            yield count, line
+
+
+def _decoded(raw: bytes, source: Path, before: int) -> list[str]:
+    if b"\x00" in raw:
+        line = before + 1 + raw[: raw.index(b"\x00")].count(b"\n")
+        what = "not a text: it holds zero bytes"
+        raise InputError(what, where=f"{source}: line {line}", remedy="export it as CSV in UTF-8")
+    try:
+        text = raw.decode("utf-8")
+    except UnicodeDecodeError:
+        text = raw.decode("latin-1")
+    return [line.rstrip("\r") for line in text.split("\n")]
 
 
 def is_remark(line: str) -> bool:

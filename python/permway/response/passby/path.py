@@ -10,7 +10,7 @@ from numpy.polynomial.legendre import leggauss, legvander
 
 from permway.arrays import Complexes, Reals
 from permway.errors import InputError
-from permway.model.bodies import Beam
+from permway.model.bodies import Beam, Shaft
 from permway.model.line import Line, Segment
 from permway.response.receptance import Place
 
@@ -181,6 +181,7 @@ def path_of(
     ramps = _ramps(segments, start, stop, ramp_m)
     kinks = [start, stop, start + ramps[0], stop - ramps[1], *joints.tolist(), *kinks_m]
     kinks += [x for _, s in segments for x in (s.start, s.stop) if np.isfinite(x)]
+    kinks += [x for beam, _ in segments for change in beam.changes for x in (change.from_m, change.to_m)]
     longest = _QUARTER_WAVE * _wavelength(segments[0][0], highest_Hz)
     edges = _edges(np.array(kinks), start, stop, longest)
     if (edges.size - 1) * order > MOST_NODES:
@@ -193,7 +194,7 @@ def path_of(
 
 
 def _ramps(
-    segments: list[tuple[Beam, Segment]], start: float, stop: float, given: float | None
+    segments: list[tuple[Beam | Shaft, Segment]], start: float, stop: float, given: float | None
 ) -> tuple[float, float]:
     if given is not None:
         if not (np.isfinite(given) and 0.0 <= given <= 0.5 * (stop - start)):
@@ -225,8 +226,10 @@ def _given(name: str, value: float | None, otherwise: float) -> float:
     return float(value)
 
 
-def _wavelength(beam: Beam, frequency_Hz: float) -> float:
+def _wavelength(beam: Beam | Shaft, frequency_Hz: float) -> float:
     omega = 2.0 * np.pi * frequency_Hz
+    if isinstance(beam, Shaft):
+        return float(2.0 * np.pi / (omega * (beam.mass_kg_per_m / abs(beam.shear_N)) ** 0.5))
     wavenumber = (beam.mass_kg_per_m * omega**2 / abs(beam.bending_Nm2)) ** 0.25
     return float(2.0 * np.pi / wavenumber)
 

@@ -7,7 +7,8 @@ use crate::{
     error::CoreError,
     field::Field,
     lanes::{Fuse, LANES, Lanes},
-    line::{Beam, Body, Line},
+    line::{Beam, Body, Line, Shaft},
+    shaft::Twist,
     small::{self, M2},
     waves::Waves,
 };
@@ -78,6 +79,10 @@ impl<F: Fuse> Factor<F> {
             match op {
                 Op::StartBeam { own, body, endless, pinned } => {
                     self.clear(*own);
+                    if matches!(line.bodies[*body], Body::Shaft(_)) {
+                        // Its idle rotation must not be free to turn.
+                        self.z[(own + 1) * self.width + own + 1] = Lanes::real(1.0);
+                    }
                     self.add_end(line, *own, *body, [*endless, *pinned], true);
                 }
                 Op::StartMass { own, body, weightless } => {
@@ -136,8 +141,10 @@ impl<F: Fuse> Factor<F> {
         let omega2 = self.frequencies.map(|f| (std::f64::consts::TAU * f).powi(2));
         self.pieces.clear();
         for p in &tape.pieces {
-            if let Body::Beam(beam) = &line.bodies[p.body] {
-                self.pieces.push(Transfer::over(&section(beam, &omega2), p.length, p.terms));
+            match line.section(p.body, p.stretch) {
+                Body::Beam(beam) => self.pieces.push(Transfer::over(&section(beam, &omega2), p.length, p.terms)),
+                Body::Shaft(shaft) => self.pieces.push(shaft_transfer(shaft, &omega2, p.length, p.terms)),
+                Body::Mass(_) => {}
             }
         }
     }
@@ -177,7 +184,6 @@ impl<F: Fuse> Factor<F> {
 
     /// What lies beyond an end of a beam: the beam itself without end, or a pin.
     fn add_end(&mut self, line: &Line, own: usize, body: usize, [endless, pinned]: [bool; 2], left: bool) {
-        let Body::Beam(beam) = &line.bodies[body] else { return };
         let w = self.width;
         if pinned && !endless {
             self.z[own * w + own] = self.z[own * w + own] + Lanes::real(PINNED);
@@ -187,7 +193,15 @@ impl<F: Fuse> Factor<F> {
         }
         for i in 0..LANES {
             let omega = std::f64::consts::TAU * self.frequencies[i];
-            match Waves::new(beam, omega).half_infinite(left) {
+            let impedance = match &line.bodies[body] {
+                Body::Beam(beam) => Waves::new(beam, omega).half_infinite(left),
+                Body::Shaft(shaft) => {
+                    let z = Twist::new(shaft, omega).half_infinite();
+                    Some([[z, c64::ZERO], [c64::ZERO; 2]])
+                }
+                Body::Mass(_) => return,
+            };
+            match impedance {
                 Some(k) => {
                     for (place, v) in [(own * w + own, k[0][0]), ((own + 1) * w + own, k[1][0])] {
                         self.z[place].re[i] += v.re;
@@ -385,4 +399,21 @@ pub fn section<F: Fuse>(beam: &Beam, omega2: &[f64; LANES]) -> Section<Lanes<F>>
         mu: real(beam.mass),
         rotary: real(beam.rotary),
     }
+}
+
+/// Transfer over a length of shaft at squared angular frequencies.
+#[inline(always)]
+pub fn shaft_transfer<F: Fuse>(
+    shaft: &Shaft,
+    omega2: &[f64; LANES],
+    length: f64,
+    terms: usize,
+) -> Transfer<Lanes<F>> {
+    let compliance = shaft.stiffness.inv();
+    Transfer::of_shaft(
+        Lanes::new([compliance.re; LANES], [compliance.im; LANES]),
+        Lanes::new(omega2.map(|o| o * shaft.mass), [0.0; LANES]),
+        length,
+        terms,
+    )
 }

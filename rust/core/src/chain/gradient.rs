@@ -1,18 +1,19 @@
 //! Derivatives of responses, summed while the displacements come back along the line.
 
 use super::{
-    factor::{Factor, section},
+    factor::Factor,
     solve::{Length, Watch},
     tape::Tape,
 };
 use crate::{
     c64,
-    energy::{M4, over_half_infinite, over_length},
+    element::Section,
+    energy::{M4, over_half_infinite, over_half_infinite_shaft, over_length, over_shaft},
     field::Field,
     lanes::{Fuse, LANES, Lanes},
     line::{Body, Line},
     sensitivity::{OF_A_BEAM, Sensitivity},
-    small::M2,
+    shaft::Twist,
     waves::Waves,
 };
 
@@ -78,26 +79,73 @@ impl<F: Fuse> Sums<F> {
         self.pieces.clear();
         if wanted.bodies {
             for p in &tape.pieces {
-                if let Body::Beam(beam) = &line.bodies[p.body] {
-                    let s = section(beam, &omega2);
-                    let mut n = over_length(&s, p.length, p.terms);
-                    for (matrix, factor) in n.iter_mut().zip(chain_rule(&s, &omega2)) {
-                        matrix.iter_mut().flatten().for_each(|v| *v = *v * factor);
-                    }
-                    self.pieces.push(n);
+                let (here, base) = (line.section(p.body, p.stretch), &line.bodies[p.body]);
+                let mut n = [[[Lanes::ZERO; 4]; 4]; OF_A_BEAM];
+                for (lane, squared) in omega2.iter().enumerate() {
+                    fill(&mut n, lane, &over_piece(here, base, *squared, p.length, p.terms));
                 }
+                self.pieces.push(n);
             }
         }
         Gradient { sums: self, wanted, line, frequencies: factor.frequencies, omega2, out: out.0, used: out.1 }
     }
 }
 
-/// From the parameters of the integrals (1/B, 1/S, mu, J) to those of a beam (B, S, mass, rotary).
-#[inline(always)]
-fn chain_rule<F: Fuse>(s: &crate::element::Section<Lanes<F>>, omega2: &[f64; LANES]) -> [Lanes<F>; OF_A_BEAM] {
-    let squared = Lanes::new(*omega2, [0.0; LANES]);
-    let stiff = |flexible: Lanes<F>| -(flexible * flexible);
-    [stiff(s.flexibility), stiff(s.shear_compliance), squared, squared]
+/// Bending stiffness, shear stiffness, mass and rotary inertia of a section; 0 for what it has not.
+fn properties(body: &Body) -> [c64; OF_A_BEAM] {
+    let real = |v| c64::new(v, 0.0);
+    match body {
+        Body::Beam(b) => [b.bending, b.shear.unwrap_or(c64::ZERO), real(b.mass), real(b.rotary)],
+        Body::Shaft(s) => [c64::ZERO, s.stiffness, real(s.mass), c64::ZERO],
+        Body::Mass(_) => [c64::ZERO; OF_A_BEAM],
+    }
+}
+
+/// By how much a property here moves with that of the body.
+fn share(here: &Body, base: &Body, property: usize) -> c64 {
+    let (here, base) = (properties(here)[property], properties(base)[property]);
+    if base == c64::ZERO || here == base { c64::ONE } else { here / base }
+}
+
+/// The integrals over a piece by the properties of its body. One frequency at a time, and once for all kinds of processor:
+/// pieces are few, and the code is long.
+#[inline(never)]
+fn over_piece(here: &Body, base: &Body, omega2: f64, length: f64, terms: usize) -> [M4<c64>; OF_A_BEAM] {
+    let mu = |mass: f64| c64::new(omega2 * mass, 0.0);
+    let mut n = match here {
+        Body::Beam(b) => {
+            let section = Section {
+                flexibility: b.bending.inv(),
+                shear_compliance: b.shear.map_or(c64::ZERO, |s| s.inv()),
+                mu: mu(b.mass),
+                rotary: mu(b.rotary),
+            };
+            over_length(&section, length, terms)
+        }
+        Body::Shaft(s) => over_shaft(s.stiffness.inv(), mu(s.mass), length, terms),
+        Body::Mass(_) => [[[c64::ZERO; 4]; 4]; OF_A_BEAM],
+    };
+    for (k, (matrix, slope)) in n.iter_mut().zip(chain_rule(here, omega2)).enumerate() {
+        let by = slope * share(here, base, k);
+        matrix.iter_mut().flatten().for_each(|v| *v *= by);
+    }
+    n
+}
+
+/// Sets one lane.
+#[inline(never)]
+fn fill<F: Fuse>(n: &mut [M4<Lanes<F>>; OF_A_BEAM], lane: usize, from: &[M4<c64>; OF_A_BEAM]) {
+    for (to, from) in n.iter_mut().flatten().flatten().zip(from.iter().flatten().flatten()) {
+        to.re[lane] = from.re;
+        to.im[lane] = from.im;
+    }
+}
+
+/// From the parameters of the integrals (1/B, 1/S, mu, J) to those of a section (B, S, mass, rotary).
+fn chain_rule(body: &Body, omega2: f64) -> [c64; OF_A_BEAM] {
+    let [bending, shear, ..] = properties(body);
+    let stiff = |k: c64| if k == c64::ZERO { k } else { -(k * k).inv() };
+    [stiff(bending), stiff(shear), c64::new(omega2, 0.0), c64::new(omega2, 0.0)]
 }
 
 /// Derivatives of one set of frequencies while they are summed.
@@ -131,11 +179,15 @@ impl<'o, F: Fuse> Gradient<'_, 'o, F> {
         let start = self.sums.slots[self.sums.first[body] + parameter].unwrap_or(0);
         &mut self.sums.values[start..start + self.wanted.pairs()]
     }
+}
 
-    /// Whether a beam has that parameter: Euler-Bernoulli beams have neither shear stiffness nor rotary inertia.
-    fn has(&self, body: usize, parameter: usize) -> bool {
-        let Body::Beam(beam) = &self.line.bodies[body] else { return false };
-        beam.shear.is_some() || parameter == 0 || parameter == 2
+/// Whether a body has that property: Euler-Bernoulli beams and shafts have not all four.
+#[inline(always)]
+fn has(body: &Body, property: usize) -> bool {
+    match body {
+        Body::Beam(beam) => beam.shear.is_some() || property == 0 || property == 2,
+        Body::Shaft(_) => property == 1 || property == 2,
+        Body::Mass(_) => false,
     }
 }
 
@@ -192,9 +244,9 @@ impl<F: Fuse> Watch<F> for Gradient<'_, '_, F> {
             *state = [u0, u1, force, moment];
         }
         let (pairs, forces) = (self.wanted.pairs(), self.wanted.forces);
-        let shear = matches!(&self.line.bodies[rows.body], Body::Beam(b) if b.shear.is_some());
+        let body = &self.line.bodies[rows.body];
         for (p, matrix) in pieces[at.piece].iter().enumerate() {
-            if !shear && p % 2 == 1 {
+            if !has(body, p) {
                 continue;
             }
             let start = slots[first[rows.body] + p].unwrap_or(0);
@@ -214,32 +266,36 @@ impl<F: Fuse> Watch<F> for Gradient<'_, '_, F> {
     }
 
     fn endless(&mut self, body: usize, left: bool, ends: &[Lanes<F>], columns: usize) {
-        let Body::Beam(beam) = &self.line.bodies[body] else { return };
         if !self.wanted.bodies {
             return;
         }
+        let whole = &self.line.bodies[body];
         let mut matrices = [[[Lanes::<F>::ZERO; 2]; 2]; OF_A_BEAM];
         for i in 0..LANES {
-            let waves = Waves::new(beam, std::f64::consts::TAU * self.frequencies[i]);
+            let omega = std::f64::consts::TAU * self.frequencies[i];
+            let parts = match whole {
+                Body::Beam(beam) => over_half_infinite(&Waves::new(beam, omega), left),
+                Body::Shaft(shaft) => Some(over_half_infinite_shaft(&Twist::new(shaft, omega))),
+                Body::Mass(_) => None,
+            };
             // Where its waves merge the march itself has failed and said so.
-            let Some(parts) = over_half_infinite(&waves, left) else { continue };
-            for (m, part) in matrices.iter_mut().zip(parts) {
+            let Some(parts) = parts else { continue };
+            let slopes = chain_rule(whole, self.omega2[i]);
+            for (m, (part, slope)) in matrices.iter_mut().zip(parts.iter().zip(slopes)) {
                 for k in 0..4 {
-                    let part: &M2 = &part;
-                    m[k / 2][k % 2].re[i] = part[k / 2][k % 2].re;
-                    m[k / 2][k % 2].im[i] = part[k / 2][k % 2].im;
+                    let v = part[k / 2][k % 2] * slope;
+                    (m[k / 2][k % 2].re[i], m[k / 2][k % 2].im[i]) = (v.re, v.im);
                 }
             }
         }
-        let factors = chain_rule(&section::<F>(beam, &self.omega2), &self.omega2);
         let (forces, sensors) = (self.wanted.forces, self.wanted.sensors);
-        for (p, (m, factor)) in matrices.iter().zip(factors).enumerate() {
-            if !self.has(body, p) {
+        for (p, m) in matrices.iter().enumerate() {
+            if !has(whole, p) {
                 continue;
             }
             let block = self.block(body, p);
             for (row, s) in block.chunks_exact_mut(forces.len().max(1)).zip(sensors) {
-                let (s0, s1) = (ends[*s] * factor, ends[columns + s] * factor);
+                let (s0, s1) = (ends[*s], ends[columns + s]);
                 let v = [(m[0][0] * s0).plus(m[1][0], s1), (m[0][1] * s0).plus(m[1][1], s1)];
                 for (sum, f) in row.iter_mut().zip(forces) {
                     *sum = sum.plus(v[0], ends[*f]).plus(v[1], ends[columns + f]);

@@ -2,15 +2,18 @@
 
 use crate::{
     element::{LONGEST, terms},
-    line::{Beam, Body, End, Line, Point, SAME_PLACE},
+    line::{Body, End, Line, Point, SAME_PLACE},
+    shaft::Twist,
     waves::Waves,
 };
 
-/// A length of a beam for which the transfer is computed once per frequency.
+/// A length of a beam or shaft for which the transfer is computed once per frequency.
 #[derive(Debug, Clone, Copy)]
 pub struct Piece {
     /// Index of the body.
     pub body: usize,
+    /// The stretch of the body whose section it has; `None` for the body's own.
+    pub stretch: Option<usize>,
     /// Length in m.
     pub length: f64,
     /// Terms of the series that it needs at the highest frequency.
@@ -33,7 +36,7 @@ pub struct Rows {
 /// One operation of the march.
 #[derive(Debug, Clone)]
 pub enum Op {
-    /// A beam enters: row, body, whether it comes from infinity, whether its end is pinned.
+    /// A beam or shaft enters: row, body, whether it comes from infinity, whether its end is pinned.
     StartBeam { own: usize, body: usize, endless: bool, pinned: bool },
     /// A mass enters; weightless where its other half, marched from the other side, brings the weight.
     StartMass { own: usize, body: usize, weightless: bool },
@@ -45,7 +48,7 @@ pub enum Op {
     Force { row: usize, index: usize },
     /// A sensor reads a row.
     Sense { row: usize, index: usize },
-    /// A beam leaves: whether it runs on to infinity, whether its end is pinned.
+    /// A beam or shaft leaves: whether it runs on to infinity, whether its end is pinned.
     EndBeam { rows: Rows, endless: bool, pinned: bool },
     /// A mass leaves.
     EndMass { rows: Rows },
@@ -155,24 +158,31 @@ impl Compiler<'_> {
         Rows { own: self.front.rows[body][0], others, record, body }
     }
 
-    fn piece(&mut self, body: usize, length: f64, steepest: f64) -> usize {
+    fn piece(&mut self, body: usize, stretch: Option<usize>, length: f64, steepest: f64) -> usize {
         // Lengths that differ by rounding of the coordinates are one piece.
-        let same = |p: &Piece| p.body == body && (p.length - length).abs() < 1e-12;
+        let same = |p: &Piece| p.body == body && p.stretch == stretch && (p.length - length).abs() < 1e-12;
         self.tape.pieces.iter().position(same).unwrap_or_else(|| {
-            self.tape.pieces.push(Piece { body, length, terms: terms(steepest * length) });
+            self.tape.pieces.push(Piece { body, stretch, length, terms: terms(steepest * length) });
             self.tape.pieces.len() - 1
         })
     }
 
     fn advance(&mut self, body: usize, x: f64) {
-        let Body::Beam(beam) = &self.line.bodies[body] else { return };
         let length = x - self.place[body];
-        if length <= SAME_PLACE {
+        if matches!(self.line.bodies[body], Body::Mass(_)) || length <= SAME_PLACE {
             return;
         }
-        let steepest = Waves::new(beam, std::f64::consts::TAU * self.highest).steepest();
+        // The march stops wherever the section changes, so the middle tells for all of it.
+        let middle = self.place[body] + 0.5 * length;
+        let stretch = self.line.stretch_at(body, if self.mirrored { -middle } else { middle });
+        let omega = std::f64::consts::TAU * self.highest;
+        let steepest = match self.line.section(body, stretch) {
+            Body::Beam(beam) => Waves::new(beam, omega).steepest(),
+            Body::Shaft(shaft) => Twist::new(shaft, omega).exponent().norm(),
+            Body::Mass(_) => return,
+        };
         let parts = (steepest * length / LONGEST).ceil().max(1.0);
-        let piece = self.piece(body, length / parts, steepest);
+        let piece = self.piece(body, stretch, length / parts, steepest);
         for _ in 0..parts as usize {
             let rows = self.record(body, 8, self.tape.states);
             self.tape.ops.push(Op::March { rows, piece });
@@ -188,11 +198,11 @@ impl Compiler<'_> {
                 let weightless = self.mirrored && self.crossing[body];
                 self.tape.ops.push(Op::StartMass { own, body, weightless });
             }
-            Body::Beam(b) => {
+            b @ (Body::Beam(_) | Body::Shaft(_)) => {
                 let own = self.front.take(2, body);
                 let end = usize::from(self.mirrored);
-                let endless = b.interval[end].is_infinite();
-                self.tape.ops.push(Op::StartBeam { own, body, endless, pinned: b.ends[end] == End::Pinned });
+                let endless = b.interval().is_some_and(|i| i[end].is_infinite());
+                self.tape.ops.push(Op::StartBeam { own, body, endless, pinned: b.ends()[end] == End::Pinned });
             }
         }
     }
@@ -203,10 +213,10 @@ impl Compiler<'_> {
         let beyond = !self.crossing[body];
         let op = match &self.line.bodies[body] {
             Body::Mass(_) => Op::EndMass { rows: self.record(body, 1, false) },
-            Body::Beam(b) => Op::EndBeam {
+            b @ (Body::Beam(_) | Body::Shaft(_)) => Op::EndBeam {
                 rows: self.record(body, 4, false),
-                endless: beyond && b.interval[last].is_infinite(),
-                pinned: beyond && b.ends[last] == End::Pinned,
+                endless: beyond && b.interval().is_some_and(|i| i[last].is_infinite()),
+                pinned: beyond && b.ends()[last] == End::Pinned,
             },
         };
         self.tape.ops.push(op);
@@ -238,10 +248,10 @@ type Happening = (f64, Event, [Option<usize>; 2]);
 /// All that happens, sorted from left to right.
 fn events(line: &Line, forces: &[Point], sensors: &[Point]) -> Vec<Happening> {
     let mut all = Vec::new();
-    for (i, body) in line.bodies.iter().enumerate() {
-        if let Body::Beam(Beam { interval, .. }) = body {
-            all.extend(interval.iter().filter(|x| x.is_finite()).map(|&x| (x, Event::Touch, [Some(i), None])));
-        }
+    let own = line.bodies.iter().enumerate();
+    for (i, body) in own.chain(line.stretches.iter().map(|s| (s.body, &s.section))) {
+        let finite = body.interval().into_iter().flatten().filter(|x| x.is_finite());
+        all.extend(finite.map(|x| (x, Event::Touch, [Some(i), None])));
     }
     all.extend(line.joints.iter().enumerate().map(|(i, j)| (j.x, Event::Join(i), [Some(j.a), j.b])));
     all.extend(forces.iter().enumerate().map(|(i, p)| (p.x, Event::Force(i), [Some(p.body), None])));

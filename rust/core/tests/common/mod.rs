@@ -1,8 +1,9 @@
+#![allow(dead_code)]
 //! A line that the tests share.
 
 use permway_core::{
     c64,
-    line::{Beam, Body, End, Joint, Line, Point},
+    line::{Beam, Body, End, Joint, Line, Point, Shaft, Stretch},
 };
 
 pub fn beam(bending: f64, shear: Option<f64>, mass: f64, interval: [f64; 2], end: End) -> Body {
@@ -36,7 +37,43 @@ pub fn line() -> Line {
     joints.push(Joint { x: -3.0, a: 0, b: Some(3), law: 0, scale: 0.5 });
     joints.push(Joint { x: -3.0, a: 3, b: None, law: 0, scale: 0.7 });
     joints.push(Joint { x: 5.0, a: 2, b: None, law: 0, scale: 30.0 });
-    Line { bodies, joints, names: ["rail", "slab", "girder", "block"].map(String::from).to_vec() }
+    Line {
+        bodies,
+        joints,
+        names: ["rail", "slab", "girder", "block"].map(String::from).to_vec(),
+        ..Line::default()
+    }
+}
+
+/// Stiffness where the varied line is weak, over that elsewhere.
+pub const WEAK: f64 = 0.55;
+
+/// The same with weak stretches of rail and girder, and an endless shaft beside.
+pub fn varied() -> Line {
+    let mut line = line();
+    for (body, interval) in [(0, [3.0, 3.4]), (2, [5.5, 7.1])] {
+        let mut section = line.bodies[body];
+        if let Body::Beam(b) = &mut section {
+            b.interval = interval;
+            b.bending *= WEAK;
+            b.shear = b.shear.map(|s| s * WEAK);
+        }
+        line.stretches.push(Stretch { body, section });
+    }
+    let shaft = Shaft {
+        stiffness: c64::new(3e8, 1.5e7),
+        mass: 90.0,
+        interval: [f64::NEG_INFINITY, f64::INFINITY],
+        ends: [End::Free; 2],
+    };
+    line.bodies.push(Body::Shaft(shaft));
+    line.names.push("shaft".into());
+    for i in 0..5 {
+        let x = 1.3 * f64::from(i);
+        line.joints.push(Joint { x, a: 0, b: Some(4), law: 0, scale: 0.2 });
+        line.joints.push(Joint { x, a: 4, b: None, law: 0, scale: 0.1 });
+    }
+    line
 }
 
 /// Stiffness of the line's two laws.

@@ -1,0 +1,1 @@
+"""Where model and recordings part: likelihood, recalibration, location, names, decisions."""

@@ -1,0 +1,61 @@
+"""Deviations of records that are tables: decay rates, swept sines, moduli."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from scipy import sparse
+
+from permway.arrays import Reals
+from permway.diagnosis.blocks import Basis, Rows, Smooth
+from permway.recordings.campaign_load import Dataset
+
+SCATTER_DB = {"decay_rate": 1.0, "transmissibility": 0.3, "modulus": 0.5}
+"""One standard deviation of a value, where the record says none: 10 lg of a decay rate, 20 lg of the others."""
+
+
+class TableBlock:
+    """Values of a table, each with the same scatter in its logarithm.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Of "decay", "transmissibility" or "material".
+    scatter_dB : float, optional
+        By default :data:`SCATTER_DB`.
+    """
+
+    log_determinant = 0.0
+
+    def __init__(self, dataset: Dataset, *, scatter_dB: float | None = None) -> None:
+        self.dataset = dataset
+        data = dataset.data
+        self.name = next(name for name in SCATTER_DB if name in data)
+        self.measured = data[self.name].values
+        scatter = SCATTER_DB[self.name] if scatter_dB is None else scatter_dB
+        self.complex = np.iscomplexobj(self.measured)
+        self.sigma = scatter / (8.686 if self.complex else 4.343)
+        frequency = np.asarray(data["band" if "band" in data.dims else "frequency"].values, dtype=np.float64)
+        channels = (
+            data["channel"].values.astype(str) if "channel" in data.dims else np.array([dataset.record.name])
+        )
+        count = 2 if self.complex else 1
+        self.frequency = np.broadcast_to(frequency, (channels.size, frequency.size)).reshape(-1)
+        label = np.repeat(channels, frequency.size)
+        text = np.tile(label, count)
+        self.rows = Rows(
+            text, text, np.full(text.size, ""), np.tile(self.frequency, count), np.full(text.size, scatter)
+        )
+        self._basis = Basis(float(self.frequency.min()), float(self.frequency.max()) * 1.0001)
+
+    def deviations(self, predicted: xr.Dataset) -> Reals:
+        """Logarithms of measured over predicted; of complex values modulus, then phase."""
+        ratio = np.log((self.measured / predicted[self.name].values).reshape(-1)) / self.sigma
+        return np.concatenate([ratio.real, ratio.imag]) if self.complex else np.asarray(ratio)
+
+    def smooth(self, predicted: xr.Dataset) -> list[Smooth]:
+        """Of the rig, or of the method: a smooth error of the logarithm."""
+        basis = self._basis.values(self.frequency) / self.sigma
+        zero = np.zeros_like(basis)
+        columns = np.block([[-basis, zero], [zero, -basis]]) if self.complex else -basis
+        return [Smooth(f"record {self.dataset.record.name}", sparse.csr_array(columns))]

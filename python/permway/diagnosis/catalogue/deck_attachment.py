@@ -1,0 +1,81 @@
+"""Something on the deck: a mass on a spring, tuned or not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from permway.diagnosis.catalogue._change import with_body
+from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free, log_free
+from permway.laws import Hysteretic
+from permway.model.bodies import Mass
+from permway.model.joints import Joints
+from permway.recordings.campaign import Campaign
+
+ID = "deck_attachment"
+DOMAIN: Domain = "path"
+FAMILY = "resonator"
+SUMMARY = "A mass m on a spring of loss factor eta, resonant at f0, hung on the girder at x."
+PARAMETERS = {
+    "x_m": "m: where it stands",
+    "mass_kg": "kg, 100 to 30000",
+    "frequency_Hz": "Hz, 2 to 300: of the mass on its spring, the girder held",
+    "loss_factor": "1, 0.005 to 0.5",
+}
+SIGNATURE = "A dip and a peak in all responses of the deck around one frequency that no speed and no load moves."
+CONFUSED_WITH = {
+    "girder_local_modes": "responses across the deck's width",
+    "rail_absorber": "the effect is the same at every fastener",
+    "span_coupling": "a hammer test on the neighbouring span",
+}
+SOURCE = "Den Hartog, Mechanical Vibrations (1956), chapter 3"
+BODY = "girder"
+
+
+def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
+    """At the most telling place of the girder, at frequencies over the records' range."""
+    yield from resonators(situation, BODY, ID)
+
+
+def resonators(situation: Situation, body: str, entry: str) -> Iterator[Hypothesis]:
+    """On any beam, at its most telling place."""
+    best = situation.bodies(body, most=1)
+    if not best:
+        return
+    centre = best[0].spot.x_m[0]
+    name = best[0].spot.name
+    segment = next(s for s in situation.campaign.model.line.segments() if s.name == name)
+    low, high = max(segment.start, centre - 12.0), min(segment.stop, centre + 12.0)
+
+    def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
+        stiffness = values["mass_kg"] * (2.0 * np.pi * values["frequency_Hz"]) ** 2
+        return with_body(
+            campaign,
+            "attachment",
+            Mass(mass_kg=values["mass_kg"]),
+            Joints(between=("attachment", name), law="attachment", at=(values["x_m"],)),
+            laws={"attachment": Hysteretic(stiffness=stiffness, loss_factor=values["loss_factor"])},
+        )
+
+    # The dissipative part of a resonator's stiffness peaks at its frequency.
+    shown = best[0].by_band
+    peaks = best[0].frequency_Hz[np.argsort(-shown)[:1]]
+    octaves = np.log(np.concatenate([peaks, [5.0, 12.0, 25.0, 50.0, 120.0]]) / 25.0) / np.log(2.5)
+    yield Hypothesis(
+        entry=entry,
+        domain=DOMAIN,
+        family=FAMILY,
+        free=(
+            linear_free("x_m", "m", centre, 3.0, low, high),
+            log_free("mass_kg", "kg", 2000.0, 2.5),
+            log_free("frequency_Hz", "Hz", 25.0, 2.5),
+            log_free("loss_factor", "1", 0.05, 2.0),
+        ),
+        amend=amend,
+        locate=lambda v: Where(what=name, x_m=(v["x_m"], v["x_m"])),
+        starts=tuple((0.0, 0.0, float(z), 0.3) for z in octaves),
+        law=lambda v: (
+            f"{v['mass_kg']:.3g} kg on a spring, {v['frequency_Hz']:.3g} Hz, loss factor {v['loss_factor']:.2g}"
+        ),
+    )

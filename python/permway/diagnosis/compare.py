@@ -1,0 +1,325 @@
+"""Predicted against measured, with the owner's values and recalibrated: all numbers, none of them drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from permway.arrays import Reals
+from permway.diagnosis.blocks import Block, FrfBlock
+from permway.diagnosis.evidence import Evidence, Solved, gather
+from permway.diagnosis.recalibrate import STEP, Fit, Free, free_parameters, recalibrate
+from permway.diagnosis.residuals import standardised
+from permway.errors import InputError
+from permway.recordings.campaign import Campaign
+from permway.recordings.compare import NEPER_DB, POWER_DB, POWERS, VARIABLE, curves, flat, third_octaves
+from permway.recordings.predict import why_not
+
+RAW, RECALIBRATED, CLEAN = "raw", "recalibrated", "smooth errors out"
+
+KIND = {
+    "frf": "hammer responses",
+    "csd": "spectra of runs",
+    "psd": "spectra of runs",
+    "decay": "decay rates",
+    "transmissibility": "transmissibilities",
+    "material": "moduli",
+}
+
+SAYS_NOTHING = 0.9
+"""A posterior that is wider than this share of the prior: the records say nothing of the parameter."""
+
+LEFT = 2.0
+"""Standard deviations of the prior beyond which a value has left its tolerance."""
+
+Progress = Callable[[int, int], object]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A campaign's records beside what its model predicts of them.
+
+    Attributes
+    ----------
+    campaign : Campaign
+        With its owner's values.
+    fit : Fit or None
+        None if nothing was recalibrated.
+    records : tuple of Dataset
+        See :func:`permway.recordings.compare.curves`; beside that `predicted_dB` (model, channel, frequency), one
+        standard deviation of the predicted level, by the priors for the raw model and what the records left of
+        them for the recalibrated one.
+    bands : tuple of Dataset
+        Record by record, see :func:`permway.recordings.compare.third_octaves`.
+    deviations : tuple of Dataset
+        Record by record `z` (model, part, row, frequency): see :func:`permway.diagnosis.residuals.standardised`.
+    parameters : Dataset
+        By `parameter`.
+    smooth : Dataset
+        By `origin`: the size of the smooth errors that were allowed.
+    left_out : mapping of str to str
+        Records that cannot be predicted, and why.
+    """
+
+    campaign: Campaign
+    fit: Fit | None
+    records: tuple[xr.Dataset, ...]
+    bands: tuple[xr.Dataset, ...]
+    deviations: tuple[xr.Dataset, ...]
+    parameters: xr.Dataset
+    smooth: xr.Dataset
+    left_out: Mapping[str, str]
+
+    @property
+    def models(self) -> list[str]:
+        """Names of the models that are beside each other."""
+        return [RAW] if self.fit is None else [RAW, RECALIBRATED]
+
+    def fits(self) -> list[dict[str, Any]]:
+        """How well each model fits, by kind of record.
+
+        Returns
+        -------
+        list of dict
+            `kind`, `records`, `channels`; `noise_dB_rms`, what noise alone would leave of levels in one-third
+            octaves; of each model `MODEL_dB_rms` of these, and `MODEL_within_2_sigma`, the share of standardised
+            deviations, of which 95 % would be if there were noise alone.
+        """
+        rows = []
+        for kind in dict.fromkeys(KIND[record.attrs["statistic"]] for record in self.records):
+            mine = [i for i, record in enumerate(self.records) if KIND[record.attrs["statistic"]] == kind]
+            row: dict[str, Any] = {
+                "kind": kind,
+                "records": len(mine),
+                "channels": sum(self.records[i].sizes["channel"] for i in mine),
+            }
+            noise = np.concatenate([self.bands[i]["scatter_dB"].values.ravel() for i in mine])
+            noise = noise[np.isfinite(noise)]
+            row["noise_dB_rms"] = float(np.sqrt(np.mean(noise**2))) if noise.size else None
+            for model in self.models:
+                level = np.concatenate(
+                    [self.bands[i]["deviation_dB"].sel(model=model).values.ravel() for i in mine]
+                )
+                z = np.concatenate([self.deviations[i]["z"].sel(model=model).values.ravel() for i in mine])
+                z, level = z[np.isfinite(z)], level[np.isfinite(level)]
+                row[f"{model}_dB_rms"] = float(np.sqrt(np.mean(level**2))) if level.size else None
+                row[f"{model}_within_2_sigma"] = float(np.mean(np.abs(z) <= 2.0)) if z.size else None
+            rows.append(row)
+        return rows
+
+    def summary(self) -> dict[str, Any]:
+        """For people and machines."""
+        found: dict[str, Any] = {"campaign": self.campaign.said.title, "fits": self.fits()}
+        if self.fit is not None:
+            table = self.parameters
+            found["parameters"] = table.sizes["parameter"]
+            found["left_tolerance"] = table["parameter"].values[table["left"].values].tolist()
+            found["not_informed"] = table["parameter"].values[table["not_informed"].values].tolist()
+        found["left_out"] = [{"record": name, "why": why} for name, why in self.left_out.items()]
+        return found
+
+
+def compare(
+    campaign: Campaign, *, raw_only: bool = False, threads: int | None = None, progress: Progress | None = None
+) -> Comparison:
+    """Hold what a campaign's model predicts against what was measured.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    raw_only : bool
+        Whether to leave recalibration out, which takes all of the time.
+    threads : int, optional
+        Of the solver.
+    progress : callable, optional
+        Called with steps done and how many there may be.
+
+    Raises
+    ------
+    InputError
+        If no record can be predicted, or a file cannot be read.
+    """
+    steps = _Steps(progress, 3 if raw_only else 34)
+    datasets = campaign.load()
+    reasons = {d.record.name: why_not(campaign, d) for d in datasets}
+    left_out = {name: str(why) for name, why in reasons.items() if why is not None}
+    kept = [d for d in datasets if reasons[d.record.name] is None]
+    if not kept:
+        name, why = next(iter(left_out.items()))
+        raise InputError("no record can be predicted", where=f"records.{name}", remedy=why)
+    steps.one()
+    evidence = gather(campaign, kept, threads=threads)
+    steps.one()
+    fit = None if raw_only else recalibrate(evidence, progress=steps.one)
+    return assemble(evidence, fit, left_out=left_out, finished=steps.all)
+
+
+def assemble(
+    evidence: Evidence,
+    fit: Fit | None,
+    *,
+    left_out: Mapping[str, str] | None = None,
+    finished: Callable[[], object] | None = None,
+) -> Comparison:
+    """The comparison of records that are read, and of a model that is recalibrated, already.
+
+    Deviations are counted in the noise and the smooth errors of pairs of the fit, for both models.
+    """
+    campaign = evidence.campaign
+    measure = evidence if fit is None else fit.evidence
+    free = free_parameters(campaign)
+    solved = {RAW: measure.predicted(campaign)}
+    spreads: dict[str, list[Reals] | None] = {
+        RAW: _spread(measure, free, np.zeros(len(free)), np.eye(len(free)), solved[RAW])
+    }
+    rows = {RAW: measure.deviations(solved[RAW].datasets)}
+    if fit is not None:
+        solved[RECALIBRATED] = measure.predicted(fit.campaign)
+        # An amendment may have brought parameters of its own, which a campaign's values do not hold.
+        own = fit.free == free or [f.name for f in fit.free] == [f.name for f in free]
+        spreads[RECALIBRATED] = (
+            _spread(measure, free, fit.z, fit.covariance, solved[RECALIBRATED]) if own else None
+        )
+        rows |= {RECALIBRATED: fit.deviations, CLEAN: fit.clean}
+    block_of = measure.block_of
+    records, bands, deviations = [], [], []
+    for index, block in enumerate(measure.blocks):
+        predictions = {name: s.datasets[index] for name, s in solved.items()}
+        record = curves(campaign, block.dataset, predictions, _scatter_dB(block))
+        unknown = np.full(record["scatter_dB"].shape, np.nan)
+        spread = np.stack([unknown if s is None else s[index] for s in spreads.values()])
+        attrs = {"long_name": "standard deviation of the predicted level", "units": "dB"}
+        record["predicted_dB"] = (("model", "channel", "frequency"), spread, attrs)
+        records.append(record)
+        bands.append(third_octaves(record))
+        mine = {name: values[block_of == index] for name, values in rows.items()}
+        if fit is not None:
+            predictions[CLEAN] = predictions[RECALIBRATED]
+        deviations.append(standardised(block, mine, predictions))
+    found = Comparison(
+        campaign=campaign,
+        fit=fit,
+        records=tuple(records),
+        bands=tuple(bands),
+        deviations=tuple(deviations),
+        parameters=_parameters(campaign, fit),
+        smooth=_smooth(measure),
+        left_out=dict(left_out or {}),
+    )
+    if finished is not None:
+        finished()
+    return found
+
+
+def _scatter_dB(block: Block) -> Reals:
+    """One standard deviation of every line's level, (channel, frequency)."""
+    data = block.dataset.data
+    shape = flat(block.dataset, data).shape
+    statistic = block.dataset.record.statistic
+    if isinstance(block, FrfBlock):
+        return np.asarray(block.rows.scale_dB[: block.rows.scale_dB.size // 2].reshape(shape))
+    if statistic in ("csd", "psd"):
+        return np.full(shape, POWER_DB / np.sqrt(float(data.attrs["averages"])))
+    return np.full(shape, float(block.rows.scale_dB[0]))
+
+
+def _spread(evidence: Evidence, free: Sequence[Free], z: Reals, covariance: Reals, solved: Solved) -> list[Reals]:
+    """Standard deviation of predicted levels by that of the parameters, dB; by block, (channel, frequency)."""
+    slopes: list[list[Reals]] = [[] for _ in evidence.blocks]
+    for place, parameter in enumerate(free):
+        step = STEP if z[place] + STEP <= parameter.limits[1] else -STEP
+        moved = z.copy()
+        moved[place] += step
+        values = {f.name: f.value(float(v)) for f, v in zip(free, moved, strict=True)}
+        near = evidence.predicted(evidence.campaign.with_values(values), solved)
+        for slope, dataset, one, other in zip(
+            slopes, evidence.datasets, near.datasets, solved.datasets, strict=True
+        ):
+            change = np.abs(flat(dataset, one)) / np.abs(flat(dataset, other))
+            slope.append(np.asarray(np.log(change) / step))
+    found = []
+    for slope, dataset in zip(slopes, evidence.datasets, strict=True):
+        scale = POWER_DB if VARIABLE[dataset.record.statistic] in POWERS else NEPER_DB
+        if not slope:
+            found.append(np.zeros(flat(dataset, dataset.data).shape))
+            continue
+        jacobian = np.stack(slope, axis=-1)
+        variance = np.einsum("cfp,pq,cfq->cf", jacobian, covariance, jacobian, optimize=True)
+        found.append(scale * np.sqrt(np.maximum(variance, 0.0)))
+    return found
+
+
+def _parameters(campaign: Campaign, fit: Fit | None) -> xr.Dataset:
+    """Owner's value and tolerance of every parameter; recalibrated, beside them, what was found."""
+    known = list(campaign.parameters.known.values())
+    nominal = np.array([k.nominal for k in known])
+    columns: dict[str, Any] = {
+        "nominal": nominal,
+        "low_2sigma": np.array([k.value(-2.0) for k in known]),
+        "high_2sigma": np.array([k.value(2.0) for k in known]),
+    }
+    if fit is not None:
+        values, intervals = fit.values(), fit.intervals()
+        sigma = dict(zip((f.name for f in fit.free), np.sqrt(np.diag(fit.covariance)), strict=True))
+        z = dict(zip((f.name for f in fit.free), fit.z, strict=True))
+        names = [k.name for k in known]
+        columns |= {
+            "value": np.array([values[n] for n in names]),
+            "low": np.array([intervals[n][0] for n in names]),
+            "high": np.array([intervals[n][1] for n in names]),
+            "z": np.array([z[n] for n in names]),
+            "sigma_over_prior": np.array([sigma[n] for n in names]),
+        }
+        columns["left"] = np.abs(columns["z"]) > LEFT
+        columns["not_informed"] = columns["sigma_over_prior"] > SAYS_NOTHING
+    return xr.Dataset(
+        {name: ("parameter", values) for name, values in columns.items()},
+        coords={
+            "parameter": np.array([k.name for k in known], dtype=str),
+            "unit": ("parameter", np.array([k.parameter.unit for k in known], dtype=str)),
+        },
+        attrs={"interval": "low to high hold 90 %", "z": "standard deviations of the owner's prior"},
+    )
+
+
+def _smooth(evidence: Evidence) -> xr.Dataset:
+    """Sizes of the smooth errors that were allowed, dB of the level they act on."""
+    decay = {f"record {d.record.name}" for d in evidence.datasets if VARIABLE[d.record.statistic] in POWERS}
+    sizes = {
+        origin: size * (POWER_DB if origin == "irregularity" or origin in decay else NEPER_DB)
+        for origin, size in evidence.sizes.items()
+    }
+    for block in evidence.blocks:
+        if isinstance(block, FrfBlock):
+            sizes[f"pairs of {block.dataset.record.name}"] = block.pair * NEPER_DB
+    return xr.Dataset(
+        {
+            "size_dB": (
+                "origin",
+                np.array(list(sizes.values())),
+                {"long_name": "standard deviation", "units": "dB"},
+            )
+        },
+        coords={"origin": np.array(list(sizes), dtype=str)},
+    )
+
+
+class _Steps:
+    """Counts steps for a bar; more than were thought of stay at the last but one."""
+
+    def __init__(self, progress: Progress | None, total: int) -> None:
+        self._progress, self._total, self._done = progress, total, 0
+
+    def one(self, _words: str = "") -> None:
+        self._done = min(self._done + 1, self._total - 1)
+        if self._progress is not None:
+            self._progress(self._done, self._total)
+
+    def all(self) -> None:
+        self._done = self._total
+        if self._progress is not None:
+            self._progress(self._total, self._total)

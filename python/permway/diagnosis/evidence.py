@@ -1,0 +1,235 @@
+"""All records of a campaign together: deviations, what smooth errors explain of them, and what is left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+from scipy import linalg, sparse
+
+from permway.arrays import Reals
+from permway.diagnosis.blocks import Block, FrfBlock, Rows, SpectraBlock
+from permway.diagnosis.blocks_tabular import TableBlock
+from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_load import Dataset
+from permway.recordings.predict import Answer, Need, need_of, plan, predict, predict_one, solve
+
+SMALLEST_SMOOTH, LARGEST_SMOOTH = 0.001, 0.3
+"""Between which the size of smooth errors is learnt, neper or rad: 0.009 and 2.6 dB."""
+
+LINES_PER_FREQUENCY = 40.0
+"""Lines of a frequency response within its own frequency, at most."""
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Predictions, and what they were made from."""
+
+    campaign: Campaign
+    needs: tuple[Need | None, ...]
+    answers: Mapping[float | None, Answer]
+    datasets: list[xr.Dataset]
+
+
+def _same_needs(one: Sequence[Need | None], other: Sequence[Need | None]) -> bool:
+    def key(need: Need | None) -> object:
+        return None if need is None else (need.temperature_C, need.rows, need.columns)
+
+    return all(
+        key(a) == key(b) and (a is None or b is None or np.array_equal(a.frequency_Hz, b.frequency_Hz))
+        for a, b in zip(one, other, strict=True)
+    )
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """The records of a campaign as one vector of standardised deviations.
+
+    Attributes
+    ----------
+    campaign : Campaign
+        As its owner believes it; its values are what is varied.
+    blocks : tuple of Block
+    sizes : mapping of origin to float
+        Standard deviation of each origin's smooth errors, neper or rad.
+    threads : int, optional
+        Of the solver.
+    """
+
+    campaign: Campaign
+    blocks: tuple[Block, ...]
+    sizes: Mapping[str, float]
+    threads: int | None = None
+
+    @property
+    def datasets(self) -> list[Dataset]:
+        """The datasets, block by block."""
+        return [block.dataset for block in self.blocks]
+
+    @property
+    def rows(self) -> Rows:
+        """Labels of all rows."""
+        parts = [block.rows for block in self.blocks]
+        names = ("channel", "sensor", "force", "frequency_Hz", "scale_dB")
+        return Rows(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+    @property
+    def block_of(self) -> np.ndarray:
+        """Index of each row's block."""
+        return np.repeat(np.arange(len(self.blocks)), [block.rows.channel.size for block in self.blocks])
+
+    def predicted(self, campaign: Campaign, near: Solved | None = None) -> Solved:
+        """What a model of the same records predicts.
+
+        Parameters
+        ----------
+        near : Solved, optional
+            Of a campaign that may have the same line: it is then not solved again.
+        """
+        needs = [need_of(campaign, dataset) for dataset in self.datasets]
+        same = near is not None and campaign.model.line is near.campaign.model.line
+        if near is not None and same and _same_needs(needs, near.needs):
+            answers = near.answers
+        else:
+            sweeps = plan(need for need in needs if need is not None)
+            solved = [solve(sweep, campaign.model, threads=self.threads) for sweep in sweeps]
+            answers = {answer.sweep.temperature_C: answer for answer in solved}
+        datasets = [
+            predict_one(campaign, dataset, need, None if need is None else answers[need.temperature_C])
+            for dataset, need in zip(self.datasets, needs, strict=True)
+        ]
+        return Solved(campaign, tuple(needs), answers, datasets)
+
+    def deviations(self, predicted: Sequence[xr.Dataset]) -> Reals:
+        """Standardised deviations of all rows."""
+        return np.concatenate([b.deviations(p) for b, p in zip(self.blocks, predicted, strict=True)])
+
+    def smooth(self, predicted: Sequence[xr.Dataset]) -> tuple[sparse.csr_array, list[str]]:
+        """Columns of all smooth errors, and the origin of each: one origin met by two records is one."""
+        columns: dict[str, list[sparse.csr_array | None]] = {}
+        for index, (block, prediction) in enumerate(zip(self.blocks, predicted, strict=True)):
+            for part in block.smooth(prediction):
+                columns.setdefault(part.origin, [None] * len(self.blocks))[index] = part.columns
+        rows = [block.rows.channel.size for block in self.blocks]
+        whole, origins = [], []
+        for origin, parts in columns.items():
+            width = next(part.shape[1] for part in parts if part is not None)
+            filled = [
+                sparse.csr_array((n, width)) if part is None else part for n, part in zip(rows, parts, strict=True)
+            ]
+            whole.append(sparse.vstack(filled))
+            origins.extend([origin] * width)
+        return sparse.csr_array(sparse.hstack(whole)), origins
+
+    @property
+    def log_determinant(self) -> float:
+        """Of the covariance by which the blocks' own smooth errors are taken out."""
+        return sum(block.log_determinant for block in self.blocks)
+
+    def with_sizes(self, sizes: Mapping[str, float]) -> Evidence:
+        """The same with other sizes of smooth errors."""
+        return replace(self, sizes=dict(sizes))
+
+    def learnt_pairs(self, predicted: Sequence[xr.Dataset]) -> Evidence:
+        """The same with the size of the errors of pairs of sensor and point learnt."""
+        blocks = []
+        for block, prediction in zip(self.blocks, predicted, strict=True):
+            if isinstance(block, FrfBlock):
+                size = float(np.clip(block.learnt_pair(prediction), SMALLEST_SMOOTH, LARGEST_SMOOTH))
+                block = block.with_pair(size) if abs(np.log(size / block.pair)) > 0.02 else block
+            blocks.append(block)
+        return replace(self, blocks=tuple(blocks))
+
+    def selected(self, keep: Sequence[int]) -> Evidence:
+        """Of some blocks only."""
+        return replace(self, blocks=tuple(self.blocks[i] for i in keep))
+
+
+def gather(
+    campaign: Campaign, datasets: Sequence[Dataset] | None = None, *, threads: int | None = None
+) -> Evidence:
+    """Read a campaign's records and make them ready to be held against models.
+
+    Raises
+    ------
+    InputError
+        From reading, or for a record that cannot be predicted.
+    """
+    loaded = [thinned(dataset) for dataset in (campaign.load() if datasets is None else datasets)]
+    predicted = predict(campaign, loaded, threads=threads)
+    blocks = tuple(_block(dataset, prediction) for dataset, prediction in zip(loaded, predicted, strict=True))
+    evidence = Evidence(campaign, blocks, {}, threads)
+    _, origins = evidence.smooth(predicted)
+    return evidence.with_sizes({origin: _first_size(campaign, origin) for origin in dict.fromkeys(origins)})
+
+
+def thinned(dataset: Dataset) -> Dataset:
+    """Frequency responses on lines no closer than 1/LINES_PER_FREQUENCY of their frequency.
+
+    What lies closer says nothing new of a structure with loss factors above that.
+    """
+    if dataset.record.statistic != "frf":
+        return dataset
+    frequency = dataset.data["frequency"].values
+    kept, last = [], -np.inf
+    for index, value in enumerate(frequency):
+        if value - last >= value / LINES_PER_FREQUENCY * (1.0 - 1e-9):
+            kept.append(index)
+            last = value
+    return replace(dataset, data=dataset.data.isel(frequency=kept))
+
+
+def _first_size(campaign: Campaign, origin: str) -> float:
+    known = campaign.said.irregularity
+    if origin == "irregularity":
+        # Two standard deviations, of a power.
+        return {"known": 0.01, "unknown": 1.0}.get(known.knowledge, 0.5 * (known.within_dB or 2.0) / 4.343)
+    return 0.02
+
+
+def _block(dataset: Dataset, predicted: xr.Dataset) -> Block:
+    match dataset.record.statistic:
+        case "frf":
+            return FrfBlock(dataset)
+        case "csd" | "psd":
+            return SpectraBlock(dataset, predicted)
+        case _:
+            return TableBlock(dataset)
+
+
+@dataclass(frozen=True)
+class Whitener:
+    """Takes out of deviations what smooth errors of known sizes would explain.
+
+    With columns B of prior variance D the covariance of the deviations is I + B D B'. Its inverse is applied by
+    Woodbury's identity, and quadratic forms come out as those of independent deviations less what is explained.
+    """
+
+    columns: sparse.csr_array
+    scale: Reals
+    factor: np.ndarray
+
+    @staticmethod
+    def of(columns: sparse.csr_array, origins: Sequence[str], sizes: Mapping[str, float]) -> Whitener:
+        """From the columns and the sizes of their origins."""
+        scale = np.array([sizes[origin] for origin in origins])
+        scaled = sparse.csr_array(columns.multiply(scale[None, :]))
+        inner = (scaled.T @ scaled).toarray() + np.eye(scale.size)
+        return Whitener(scaled, scale, linalg.cholesky(inner, lower=True))
+
+    def reduce(self, values: Reals) -> Reals:
+        """`L^-1 B' v`, of which the squares are what is explained; values (n,) or (n, k)."""
+        return np.asarray(linalg.solve_triangular(self.factor, self.columns.T @ values, lower=True))
+
+    def explained(self, values: Reals) -> tuple[Reals, Reals]:
+        """The coefficients that explain most, in units of their sizes, and their posterior variances."""
+        coefficients = linalg.cho_solve((self.factor, True), self.columns.T @ values)
+        inverse = linalg.cho_solve((self.factor, True), np.eye(self.scale.size))
+        return np.asarray(coefficients), np.asarray(np.diag(inverse))
+
+    @property
+    def log_determinant(self) -> float:
+        """Of I + B D B'."""
+        return float(2.0 * np.log(np.diag(self.factor)).sum())

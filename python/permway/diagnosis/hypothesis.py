@@ -1,0 +1,158 @@
+"""A hypothesis: one named change of a campaign's model at one place, with parameters and priors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+import numpy as np
+
+from permway.diagnosis.locate import Found
+from permway.diagnosis.recalibrate import Fit, Free
+from permway.recordings.campaign import Campaign
+
+Domain = Literal["path", "irregularity", "vehicle", "measurement"]
+Amend = Callable[[Campaign, Mapping[str, float]], Campaign]
+"""From a campaign, its own parameters set, and the effect's values to the amended campaign."""
+
+
+@dataclass(frozen=True)
+class Situation:
+    """What hypotheses are made from.
+
+    Attributes
+    ----------
+    fit : Fit
+        The recalibrated base.
+    found : sequence of Found
+        Places by what a free stiffness there explains, the most telling first; empty without hammer tests.
+    """
+
+    fit: Fit
+    found: tuple[Found, ...]
+
+    @property
+    def campaign(self) -> Campaign:
+        """The base, recalibrated."""
+        return self.fit.campaign
+
+    def joints(self, law: str, most: int = 3) -> list[Found]:
+        """The most telling joints of a law."""
+        mine = [f for f in self.found if f.spot.kind == "joint" and f.spot.name == law]
+        return mine[:most]
+
+    def bodies(self, body: str, most: int = 3) -> list[Found]:
+        """The most telling places of a body."""
+        mine = [f for f in self.found if f.spot.kind == "body" and f.spot.name.split("[")[0] == body]
+        return mine[:most]
+
+
+@dataclass(frozen=True)
+class Where:
+    """The place of an effect.
+
+    Attributes
+    ----------
+    what : str
+        Body, or law of a joint, or "" for none in particular.
+    x_m : (float, float), optional
+    channels : tuple of str
+        Of a fault in the measurement, or of one wheelset.
+    """
+
+    what: str = ""
+    x_m: tuple[float, float] | None = None
+    channels: tuple[str, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """For people."""
+        parts = [self.what] if self.what else []
+        if self.x_m is not None:
+            low, high = self.x_m
+            parts.append(f"at {low:.3g} m" if low == high else f"from {low:.4g} to {high:.4g} m")
+        parts.extend(self.channels)
+        return " ".join(parts)
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """A change of the model that may be the missing physics.
+
+    Attributes
+    ----------
+    entry : str
+        Identifier in the catalogue.
+    domain : "path", "irregularity", "vehicle" or "measurement"
+    family : str
+        Effects that are near twins share one.
+    free : tuple of Free
+        The effect's parameters, each a priori normal with unit variance in its coordinate z.
+    amend : callable
+    locate : callable
+        From values to the place.
+    starts : tuple of tuple of float
+        Coordinates z to begin at.
+    law : callable
+        From values to the mechanics, in words.
+    """
+
+    entry: str
+    domain: Domain
+    family: str
+    free: tuple[Free, ...]
+    amend: Amend
+    locate: Callable[[Mapping[str, float]], Where]
+    starts: tuple[tuple[float, ...], ...]
+    law: Callable[[Mapping[str, float]], str] = field(default=lambda _: "")
+
+    def build(self, campaign: Campaign) -> Callable[[Mapping[str, float]], Campaign]:
+        """From values of the campaign's parameters and of the effect to the amended campaign."""
+        own = {f.name for f in self.free}
+
+        def made(values: Mapping[str, float]) -> Campaign:
+            base = campaign.with_values({k: v for k, v in values.items() if k not in own})
+            return self.amend(base, {k: v for k, v in values.items() if k in own})
+
+        return made
+
+
+class Entry(Protocol):
+    """An effect of the catalogue: a module with these names.
+
+    `ID`, `DOMAIN`, `FAMILY`; `SUMMARY` (one sentence: the law or change), `PARAMETERS` (name to unit, range and
+    meaning), `SIGNATURE` (channels, bands, how it scales), `CONFUSED_WITH` (identifier to what separates them),
+    `SOURCE`.
+    """
+
+    ID: str
+    DOMAIN: Domain
+    FAMILY: str
+    SUMMARY: str
+    PARAMETERS: Mapping[str, str]
+    SIGNATURE: str
+    CONFUSED_WITH: Mapping[str, str]
+    SOURCE: str
+
+    def hypotheses(self, situation: Situation) -> Iterable[Hypothesis]:
+        """What of this kind may be in the situation at hand; none if the model has no such part."""
+
+
+def log_free(name: str, unit: str, centre: float, factor: float, *, lowest: float = 0.0) -> Free:
+    """A positive number known to a factor: one standard deviation is a multiplication by it."""
+    spread = float(np.log(factor))
+    low = max(-5.0, float(np.log(lowest / centre)) / spread) if lowest > 0.0 else -5.0
+    return Free(name, unit, lambda z: centre * float(np.exp(spread * z)), (low, 5.0))
+
+
+def linear_free(name: str, unit: str, centre: float, sigma: float, low: float, high: float) -> Free:
+    """A number between two bounds, known to a standard deviation."""
+    return Free(name, unit, lambda z: centre + sigma * z, ((low - centre) / sigma, (high - centre) / sigma))
+
+
+def between_free(name: str, unit: str, low: float, high: float) -> Free:
+    """A number evenly likely between two bounds: by the normal distribution function."""
+    from scipy.special import ndtr
+
+    return Free(name, unit, lambda z: low + (high - low) * float(ndtr(z)), (-4.0, 4.0))
