@@ -31,6 +31,8 @@ pub struct Factor<F> {
     pub width: usize,
     pieces: Vec<Transfer<Lanes<F>>>,
     laws: Vec<Lanes<F>>,
+    /// Impedance of what runs on without end, by body.
+    ends: Vec<(usize, [Option<M2>; LANES])>,
     /// The frequencies at hand, Hz.
     pub frequencies: [f64; LANES],
 }
@@ -57,6 +59,7 @@ impl<F: Fuse> Factor<F> {
             width: tape.width,
             pieces: Vec::with_capacity(tape.pieces.len()),
             laws: Vec::new(),
+            ends: Vec::new(),
             frequencies: [0.0; LANES],
         }
     }
@@ -127,6 +130,7 @@ impl<F: Fuse> Factor<F> {
     fn prepare(&mut self, tape: &Tape, group: &Group<'_>) {
         self.failed = [const { None }; LANES];
         self.frequencies = group.frequencies;
+        self.ends.clear();
         let rows = group.laws.len().checked_div(group.n_laws).unwrap_or(0);
         self.laws.clear();
         for law in 0..group.n_laws {
@@ -191,19 +195,17 @@ impl<F: Fuse> Factor<F> {
         if !endless {
             return;
         }
+        let known = self.ends.iter().position(|(b, _)| *b == body).unwrap_or_else(|| {
+            let lanes = self.frequencies.map(|f| half_infinite(&line.bodies[body], std::f64::consts::TAU * f));
+            self.ends.push((body, lanes));
+            self.ends.len() - 1
+        });
+        // Mirrored, rotation and force change sign: the coupling does.
+        let turn = if left { -1.0 } else { 1.0 };
         for i in 0..LANES {
-            let omega = std::f64::consts::TAU * self.frequencies[i];
-            let impedance = match &line.bodies[body] {
-                Body::Beam(beam) => Waves::new(beam, omega).half_infinite(left),
-                Body::Shaft(shaft) => {
-                    let z = Twist::new(shaft, omega).half_infinite();
-                    Some([[z, c64::ZERO], [c64::ZERO; 2]])
-                }
-                Body::Mass(_) => return,
-            };
-            match impedance {
+            match self.ends[known].1[i] {
                 Some(k) => {
-                    for (place, v) in [(own * w + own, k[0][0]), ((own + 1) * w + own, k[1][0])] {
+                    for (place, v) in [(own * w + own, k[0][0]), ((own + 1) * w + own, k[1][0] * turn)] {
                         self.z[place].re[i] += v.re;
                         self.z[place].im[i] += v.im;
                     }
@@ -364,6 +366,18 @@ impl<F: Fuse> Factor<F> {
             }
             Some(_) => None,
         };
+    }
+}
+
+/// Impedance of a body that runs on towards +x without end; `None` where its waves merge.
+fn half_infinite(body: &Body, omega: f64) -> Option<M2> {
+    match body {
+        Body::Beam(beam) => Waves::new(beam, omega).half_infinite(false),
+        Body::Shaft(shaft) => {
+            let z = Twist::new(shaft, omega).half_infinite();
+            Some([[z, c64::ZERO], [c64::ZERO; 2]])
+        }
+        Body::Mass(_) => None,
     }
 }
 

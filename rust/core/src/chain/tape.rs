@@ -108,6 +108,8 @@ struct Front {
     free: Vec<usize>,
     next: usize,
     rows: Vec<Vec<usize>>,
+    /// Bodies in the front, ascending.
+    live: Vec<usize>,
 }
 
 impl Front {
@@ -118,11 +120,14 @@ impl Front {
             self.next - 2
         });
         self.rows[body] = (own..own + slots).collect();
+        if let Err(place) = self.live.binary_search(&body) {
+            self.live.insert(place, body);
+        }
         own
     }
 
     fn others(&self, body: usize) -> Vec<usize> {
-        self.rows.iter().enumerate().filter(|(i, _)| *i != body).flat_map(|(_, r)| r.iter().copied()).collect()
+        self.live.iter().filter(|i| **i != body).flat_map(|i| self.rows[*i].iter().copied()).collect()
     }
 }
 
@@ -222,6 +227,7 @@ impl Compiler<'_> {
         self.tape.ops.push(op);
         let own = self.front.rows[body][0];
         self.front.rows[body].clear();
+        self.front.live.retain(|other| *other != body);
         self.front.free.push(own);
     }
 

@@ -1,0 +1,87 @@
+"""Writes a comparison: `report.html`, `comparison.nc` and `pictures/`."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from permway.diagnosis.compare import Comparison
+from permway.files import prepare_folder, write_bytes, write_text
+
+PAGE, NUMBERS, PICTURES = "report.html", "comparison.nc", "pictures"
+
+
+def write_comparison(comparison: Comparison, output: Path, *, dpi: int = 140) -> dict[str, Any]:
+    """Write page, numbers and pictures.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    output : Path
+        Folder; made if its parent exists.
+    dpi : int
+        Of the pictures.
+
+    Returns
+    -------
+    dict
+        Paths, and the comparison's summary.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
+    """
+    # Drawing is slow to import.
+    from permway.report.compare.page import render
+    from permway.report.compare.pictures import pictures
+
+    output = Path(output)
+    prepare_folder(output, (PAGE, NUMBERS))
+    folder = prepare_folder(output / PICTURES)
+    drawn: dict[str, bytes] = {}
+    for name, figure in pictures(comparison):
+        buffer = io.BytesIO()
+        # No date and no version inside: the same data give the same file.
+        figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
+        drawn[name] = buffer.getvalue()
+        write_bytes(folder / f"{name}.png", drawn[name])
+    return {
+        "report": str(write_text(output / PAGE, render(comparison, drawn))),
+        "numbers": str(write_bytes(output / NUMBERS, netcdf(comparison))),
+        "pictures": len(drawn),
+        **comparison.summary(),
+    }
+
+
+def netcdf(comparison: Comparison) -> bytes:
+    """All numbers as NetCDF: groups `parameters`, `smooth_errors`, and of each record `records/NAME/...`.
+
+    Records' groups are `curves`, `third_octaves` and `standardised`.
+    """
+    groups: dict[str, xr.Dataset] = {
+        "parameters": comparison.parameters,
+        "smooth_errors": comparison.smooth,
+    }
+    for record, bands, z in zip(comparison.records, comparison.bands, comparison.deviations, strict=True):
+        base = f"records/{file_name(str(record.attrs['record']))}"
+        groups |= {f"{base}/curves": record, f"{base}/third_octaves": bands, f"{base}/standardised": z}
+    summary = json.dumps(comparison.summary(), allow_nan=False, ensure_ascii=False)
+    with tempfile.TemporaryDirectory(prefix="permway-") as folder:
+        # h5netcdf warns of complex numbers by the name's end.
+        path = Path(folder) / "comparison.part"
+        xr.Dataset(attrs={"summary": summary}).to_netcdf(path, engine="h5netcdf", invalid_netcdf=True)
+        for group, data in groups.items():
+            data.to_netcdf(path, mode="a", group=group, engine="h5netcdf", invalid_netcdf=True)
+        return path.read_bytes()
+
+
+def file_name(label: str) -> str:
+    """A label as a name that any file system takes."""
+    return re.sub(r"[^A-Za-z0-9.+]+", "-", label).strip("-.") or "record"
