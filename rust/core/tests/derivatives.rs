@@ -130,7 +130,7 @@ fn derivatives_by_bodies_are_those_of_differences() {
                 let sizes = [beam.bending.re, beam.shear.map_or(0.0, |s| s.re), beam.mass, beam.rotary];
                 for (p, size) in sizes.into_iter().enumerate() {
                     let change = |line: &mut Line, h: f64| {
-                        let mut change = |body: &mut Body, share: f64| {
+                        let change = |body: &mut Body, share: f64| {
                             if let Body::Beam(b) = body {
                                 match p {
                                     0 => b.bending += size * h * share,
