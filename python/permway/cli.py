@@ -167,9 +167,7 @@ def compare(
     campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
     output: Annotated[
         Path | None,
-        typer.Option(
-            "--output", "-o", help="Folder for page, numbers, pictures; by default beside the campaign."
-        ),
+        typer.Option("--output", "-o", help="Folder for page, numbers, pictures; by default beside the campaign."),
     ] = None,
     raw_only: Annotated[bool, typer.Option("--raw-only", help="With the owner's values only.")] = False,
     threads: Threads = None,
