@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from typing import NamedTuple
 
@@ -21,7 +22,7 @@ GRID_BAYS = (
 )
 """EN 15461:2008+A1:2010, figure 2: the 29 places of the blow, in sleeper bays from the accelerometer."""
 
-_TEN_LG_E = 10.0 * np.log10(np.e)
+_TEN_LG_E = 10.0 / math.log(10.0)
 """4.343, unrounded."""
 
 _FAR_DROP_DB = 10.0
