@@ -156,20 +156,10 @@ class Scan:
         )
         table, laws = line.joint_table(), list(line.laws)
         sensor, force = data["sensor_extension"].values, data["force_extension"].values
-        self._extensions = (sensor, force)
         for j in range(table.x.size):
             x = float(table.x[j])
-            yield Spot("joint", laws[table.law[j]], (x, x), (j,)), self._product((j,))
-
-    def _product(self, joints: Sequence[int]) -> Complexes:
-        sensor, force = self._extensions
-        return np.asarray(np.einsum("fjs,fjp->spf", sensor[:, joints], force[:, joints]))
-
-    def together(self, spots: Sequence[Spot]) -> tuple[Spot, Complexes]:
-        """Several joints of one law that change alike."""
-        joints = tuple(j for spot in spots for j in spot.joints)
-        x = [spot.x_m[0] for spot in spots]
-        return Spot("joint", spots[0].name, (min(x), max(x)), joints), self._product(joints)
+            product = np.einsum("fs,fp->spf", sensor[:, j], force[:, j])
+            yield Spot("joint", laws[table.law[j]], (x, x), (j,)), product
 
     def bodies(self) -> Iterator[tuple[Spot, Complexes]]:
         """Places along each beam between its finite ends, or where the line is."""

@@ -12,12 +12,11 @@ from pydantic import Field, model_validator
 from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.laws.base import Law
+from permway.laws.frequency_table import check_columns, check_inside
 from permway.laws.textfile import number, read_lines
 from permway.records import FloatTuple
 
 # A frequency that differs from the table's end by rounding only is still inside.
-_EDGE = 1e-9
-
 Quantity = Literal["dynamic_stiffness", "impedance", "apparent_mass"]
 """Force over displacement (N/m), over velocity (N s/m), over acceleration (kg)."""
 
@@ -57,32 +56,12 @@ class Measured(Law):
 
     @model_validator(mode="after")
     def _columns_fit(self) -> Measured:
-        rows = len(self.frequency_Hz)
-        if rows < 2:
-            raise ValueError(f"a table needs at least two frequencies, not {rows}")
-        for name, column in (("real", self.real), ("imaginary", self.imaginary)):
-            if len(column) != rows:
-                raise ValueError(f"{name} has {len(column)} rows, frequency_Hz has {rows}; they must match")
-        previous = 0.0
-        for index, frequency in enumerate(self.frequency_Hz):
-            if frequency <= previous:
-                raise ValueError(
-                    f"frequency_Hz[{index}] = {frequency:g} must rise strictly, from above {previous:g}"
-                )
-            previous = frequency
+        check_columns(self.frequency_Hz, real=self.real, imaginary=self.imaginary)
         return self
 
     def _at(self, omega: Reals, temperature_C: Reals | None) -> Complexes:
         frequency = omega / (2.0 * np.pi)
-        low, high = self.frequency_Hz[0], self.frequency_Hz[-1]
-        outside = (frequency < low * (1.0 - _EDGE)) | (frequency > high * (1.0 + _EDGE))
-        if outside.any():
-            raise InputError(
-                f"outside the table, which runs from {low:g} to {high:g} Hz; it does not extrapolate",
-                where="frequency_Hz",
-                value=float(np.atleast_1d(frequency)[np.atleast_1d(outside)][0]),
-                remedy="narrow the band, or measure wider",
-            )
+        check_inside(frequency, self.frequency_Hz, "narrow the band, or measure wider")
         place, nodes = np.log(frequency), np.log(self.frequency_Hz)
         values = np.interp(place, nodes, self.real) + 1j * np.interp(place, nodes, self.imaginary)
         return _to_stiffness(np.asarray(values), omega, self.quantity)

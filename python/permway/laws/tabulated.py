@@ -8,14 +8,12 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from permway.arrays import Complexes, Reals
-from permway.errors import InputError
 from permway.laws.base import Law
+from permway.laws.frequency_table import check_columns, check_inside
 from permway.records import FloatTuple
 
+
 # A frequency that differs from the table's end by rounding only is still inside.
-_EDGE = 1e-9
-
-
 class Tabulated(Law):
     """Measured storage and loss factor, linear between the points over the logarithm of frequency.
 
@@ -42,32 +40,16 @@ class Tabulated(Law):
 
     @model_validator(mode="after")
     def _columns_fit(self) -> Tabulated:
-        rows = len(self.frequency_Hz)
-        if rows < 2:
-            raise ValueError(f"a table needs at least two frequencies, not {rows}")
-        for name, column in (("storage", self.storage_values), ("loss_factor", self.loss_factor_values)):
-            if len(column) != rows:
-                raise ValueError(f"{name} has {len(column)} rows, frequency_Hz has {rows}; they must match")
-        previous = 0.0
-        for index, frequency in enumerate(self.frequency_Hz):
-            if frequency <= previous:
-                raise ValueError(
-                    f"frequency_Hz[{index}] = {frequency:g} must rise strictly, from above {previous:g}"
-                )
-            previous = frequency
+        check_columns(self.frequency_Hz, storage=self.storage_values, loss_factor=self.loss_factor_values)
         return self
 
     def _at(self, omega: Reals, temperature_C: Reals | None) -> Complexes:
         frequency = omega / (2.0 * np.pi)
-        low, high = self.frequency_Hz[0], self.frequency_Hz[-1]
-        outside = (frequency < low * (1.0 - _EDGE)) | (frequency > high * (1.0 + _EDGE))
-        if outside.any():
-            raise InputError(
-                f"outside the table, which runs from {low:g} to {high:g} Hz; it does not extrapolate",
-                where="frequency_Hz",
-                value=float(np.atleast_1d(frequency)[np.atleast_1d(outside)][0]),
-                remedy="narrow the band, measure wider, or identify a closed-form law from the table",
-            )
+        check_inside(
+            frequency,
+            self.frequency_Hz,
+            "narrow the band, measure wider, or identify a closed-form law from the table",
+        )
         place, nodes = np.log(frequency), np.log(self.frequency_Hz)
         storage = np.interp(place, nodes, self.storage_values)
         return np.asarray(storage * (1.0 + 1j * np.interp(place, nodes, self.loss_factor_values)))
