@@ -16,7 +16,6 @@ from permway.laws.frequency_table import check_columns, check_inside
 from permway.laws.textfile import number, read_lines
 from permway.records import FloatTuple
 
-# A frequency that differs from the table's end by rounding only is still inside.
 Quantity = Literal["dynamic_stiffness", "impedance", "apparent_mass"]
 """Force over displacement (N/m), over velocity (N s/m), over acceleration (kg)."""
 

@@ -13,7 +13,6 @@ from permway.laws.frequency_table import check_columns, check_inside
 from permway.records import FloatTuple
 
 
-# A frequency that differs from the table's end by rounding only is still inside.
 class Tabulated(Law):
     """Measured storage and loss factor, linear between the points over the logarithm of frequency.
 
