@@ -14,7 +14,14 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
 from permway.errors import InputError, PermwayError
 
@@ -64,6 +71,26 @@ def _progress(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
     ) as bar:
         task = bar.add_task(title, total=None)
         yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+@contextmanager
+def _stages(title: str, quiet: bool) -> Iterator[Callable[[str, int, int], None]]:
+    """A bar that names the stage it is in; of a stage whose length is not known it only shows that it moves."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    with Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TimeElapsedColumn(),
+        console=_stderr,
+        transient=True,
+        disable=quiet or not _stderr.is_terminal,
+    ) as bar:
+        task = bar.add_task(title, total=None)
+
+        def progress(stage: str, done: int, total: int) -> None:
+            bar.update(task, description=f"{title}: {stage}", completed=done, total=total or None)
+
+        yield progress
 
 
 def _say(result: dict[str, Any], as_json: bool) -> None:
@@ -184,6 +211,49 @@ def compare(
     with _progress("comparing", as_json) as progress:
         result = run(described, raw_only=raw_only, threads=threads, progress=progress)
     _say(write_comparison(result, folder), as_json)
+
+
+@app.command()
+def diagnose(
+    campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", help="Folder for report, verdict and model; by default beside the campaign."
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Of simulated campaigns with nothing missing.")] = 0,
+    no_report: Annotated[bool, typer.Option("--no-report", help="Without report.html.")] = False,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """What a model leaves out: where, what, how surely, and how much better it fits with it."""
+    from permway.diagnosis.diagnose import diagnose as run
+    from permway.files import prepare_folder
+    from permway.recordings.campaign import read_campaign
+    from permway.report.diagnosis import write_diagnosis
+
+    described = read_campaign(campaign)
+    folder = prepare_folder(output or campaign.parent / "diagnosis")
+    with _stages("diagnosing", as_json) as progress:
+        result = run(described, seed=seed, threads=threads, progress=progress)
+    _say(write_diagnosis(result, folder, page=not no_report), as_json)
+
+
+@app.command()
+def separability(
+    campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """What a campaign's sensors can and cannot tell apart, whatever they read."""
+    from permway.diagnosis.separability import separability as run
+    from permway.recordings.campaign import read_campaign
+
+    described = read_campaign(campaign)
+    with _stages("separability", as_json) as progress:
+        result = run(described, threads=threads, progress=progress)
+    _say(result.summary(), as_json)
 
 
 @app.command()

@@ -28,7 +28,7 @@ HUNG = {"x_m": 4.0, "mass_kg": 900.0, "frequency_Hz": 40.0, "loss_factor": 0.05}
 def base_of(case: Simulated) -> tuple[Fit, list[Found], Ring]:
     evidence = gather(case.campaign, threads=1)
     fit = recalibrate(evidence, learn=False)
-    return fit, scan(fit), Ring(case.campaign, fit)
+    return fit, scan(fit), Ring(fit)
 
 
 def lost(campaign: Campaign) -> Campaign:

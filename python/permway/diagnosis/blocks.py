@@ -144,7 +144,9 @@ class FrfBlock:
         fine = Basis(float(self.frequency[0]), float(self.frequency[-1]), self.KNOTS_PER_OCTAVE)
         errors = (self._measured * self.weight)[..., None] * fine.values(self.frequency)
         self._directions, singular, _ = np.linalg.svd(errors, full_matrices=False)
+        self._across = np.ascontiguousarray(self._directions.conj().swapaxes(-1, -2))
         self._singular = singular
+        self._last: tuple[xr.Dataset, Reals] | None = None
         self._shrink = 1.0 - 1.0 / np.sqrt(1.0 + (pair * singular) ** 2)
         names = [data["sensor"].values.astype(str), data["force"].values.astype(str)]
         sensor, force, frequency = (
@@ -166,18 +168,20 @@ class FrfBlock:
 
     def white(self, values: Complexes) -> Complexes:
         """Takes out of weighted values (sensor, force, frequency) what the pairs' smooth errors would explain."""
-        within = np.einsum("spfk,spf->spk", self._directions.conj(), values)
-        return np.asarray(values - np.einsum("spfk,spk->spf", self._directions, self._shrink * within))
+        within = self._across @ values[..., None]
+        return np.asarray(values - (self._directions @ (self._shrink[..., None] * within))[..., 0])
 
     def deviations(self, predicted: xr.Dataset) -> Reals:
         """Real parts, then imaginary parts."""
-        d = self.white((self._measured - predicted["frf"].values) * self.weight).reshape(-1)
-        return np.concatenate([d.real, d.imag])
+        if self._last is None or self._last[0] is not predicted:
+            d = self.white((self._measured - predicted["frf"].values) * self.weight).reshape(-1)
+            self._last = predicted, np.concatenate([d.real, d.imag])
+        return self._last[1]
 
     def learnt_pair(self, predicted: xr.Dataset) -> float:
         """The size of the pairs' errors after one step of expectation maximisation."""
         d = (self._measured - predicted["frf"].values) * self.weight
-        within = np.einsum("spfk,spf->spk", self._directions.conj(), d)
+        within = (self._across @ d[..., None])[..., 0]
         variance = (self.pair * self._singular) ** 2
         share = variance / (1.0 + variance)
         # Coefficients along the directions, in units of their size: posterior mean and variance.

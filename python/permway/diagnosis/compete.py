@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import linalg
@@ -11,7 +11,7 @@ from scipy import linalg
 from permway.arrays import Reals
 from permway.diagnosis.evidence import Evidence, Solved, Whitener
 from permway.diagnosis.hypothesis import Hypothesis
-from permway.diagnosis.recalibrate import STEP, Fit, free_parameters, recalibrate
+from permway.diagnosis.recalibrate import STEP, Build, Fit, Free, recalibrate
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
 
@@ -30,13 +30,48 @@ class Quick:
     base_z : ndarray
         Of the base's parameters, moved along.
     gain : float
-        Of the heated objective.
+        Of the heated objective; minus infinity if the amended model cannot be solved.
+    columns : ndarray of float32, shape (n, p), optional
+        Derivative of the deviations by z, where it was last taken.
+    direction : ndarray of float32, shape (n,), optional
+        What the start that it was screened from does to the deviations.
+    start : ndarray, optional
+        Coordinates of that start.
     """
 
     hypothesis: Hypothesis
     z: Reals
     base_z: Reals
     gain: float
+    columns: np.ndarray | None = None
+    direction: np.ndarray | None = None
+    start: Reals | None = None
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Of the effect's parameters, by name."""
+        return {f.name: f.value(float(v)) for f, v in zip(self.hypothesis.free, self.z, strict=True)}
+
+
+def stacked(build: Build, hypothesis: Hypothesis, prefix: str) -> tuple[Build, tuple[Free, ...]]:
+    """A base with an effect on top: from values to the campaign, and the effect's parameters by their new names.
+
+    Parameters
+    ----------
+    build : callable
+        The base's.
+    hypothesis : Hypothesis
+    prefix : str
+        Before the names of the effect's parameters, as "1.": two effects may be of one kind.
+    """
+    names = {prefix + f.name: f.name for f in hypothesis.free}
+
+    def made(values: Mapping[str, float]) -> Campaign:
+        base = build({k: v for k, v in values.items() if k not in names})
+        return hypothesis.amend(base, {names[k]: v for k, v in values.items() if k in names})
+
+    free = tuple(Free(prefix + f.name, f.unit, f.value, f.limits) for f in hypothesis.free)
+    return made, free
 
 
 class Ring:
@@ -44,64 +79,109 @@ class Ring:
 
     Parameters
     ----------
-    owner : Campaign
-        With the model as its owner believes it, or as earlier effects amended it.
     fit : Fit
-        The recalibrated base.
+        The recalibrated base, with earlier effects in it or not.
     """
 
-    def __init__(self, owner: Campaign, fit: Fit) -> None:
-        self.owner, self.fit = owner, fit
+    def __init__(self, fit: Fit) -> None:
+        self.fit = fit
         self.evidence: Evidence = fit.evidence
-        self._base = {f.name: f.value(float(z)) for f, z in zip(fit.free, fit.z, strict=True)}
         solved = self.evidence.predicted(fit.campaign)
         self._solved: Solved = solved
-        self._whitener = Whitener.of(*self.evidence.smooth(solved.datasets), self.evidence.sizes)
-        self._reduced = self._whitener.reduce(fit.jacobian)
-        normal = (fit.jacobian.T @ fit.jacobian - self._reduced.T @ self._reduced) / fit.heat
-        self._factor = linalg.cho_factor(normal + np.eye(fit.z.size))
+        self.whitener = Whitener.of(*self.evidence.smooth(solved.datasets), self.evidence.sizes)
+        self.reduced = self.whitener.reduce(fit.jacobian)
+        normal = (fit.jacobian.T @ fit.jacobian - self.reduced.T @ self.reduced) / fit.heat
+        self.factor = linalg.cho_factor(normal + np.eye(fit.z.size))
         self.start = self._objective(fit.deviations)[0]
 
     def _objective(self, deviations: Reals) -> tuple[float, Reals]:
         """The least heated objective over linear moves of the base, and the move."""
-        reduced = self._whitener.reduce(deviations)
+        reduced = self.whitener.reduce(deviations)
         square = float(deviations @ deviations - reduced @ reduced) / self.fit.heat
-        slope = (self.fit.jacobian.T @ deviations - self._reduced.T @ reduced) / self.fit.heat + self.fit.z
-        move = -linalg.cho_solve(self._factor, slope)
+        slope = (self.fit.jacobian.T @ deviations - self.reduced.T @ reduced) / self.fit.heat + self.fit.z
+        move = -linalg.cho_solve(self.factor, slope)
         return square + float(self.fit.z @ self.fit.z) + float(slope @ move), move
 
     def _deviations(self, hypothesis: Hypothesis, z: Reals) -> Reals | None:
         values = {f.name: f.value(float(v)) for f, v in zip(hypothesis.free, z, strict=True)}
         try:
-            campaign = hypothesis.build(self.owner)({**self._base, **values})
+            campaign = hypothesis.amend(self.fit.campaign, values)
             deviations = self.evidence.deviations(self.evidence.predicted(campaign, self._solved).datasets)
         except (InputError, SolveError):
             return None
         return deviations if np.isfinite(deviations).all() else None
 
-    def quick(self, hypothesis: Hypothesis, *, steps: int = 6) -> Quick:
-        """Find the effect's values while the base moves linearly, from each of the hypothesis' starts."""
-        best = Quick(hypothesis, np.zeros(len(hypothesis.free)), self.fit.z, -np.inf)
-        for start in hypothesis.starts:
-            found = self._from(hypothesis, np.array(start, dtype=np.float64), steps)
-            if found.gain > best.gain:
-                best = found
-        return best
+    def screen(self, hypothesis: Hypothesis, *, least: float = 0.0) -> Quick:
+        """One step from the most promising of the hypothesis' starts.
 
-    def _from(self, hypothesis: Hypothesis, z: Reals, steps: int) -> Quick:
+        A start promises what the change that it makes to the deviations would gain, if it could be taken in any
+        measure.
+
+        Parameters
+        ----------
+        hypothesis : Hypothesis
+        least : float
+            Promised gain below which the step is not taken, and the promise is what it is said to gain.
+        """
+        best: tuple[float, float, Reals, Reals, Reals] | None = None
         low, high = np.array([f.limits for f in hypothesis.free]).T
-        z = np.clip(z, low, high)
-        deviations = self._deviations(hypothesis, z)
-        if deviations is None:
-            return Quick(hypothesis, z, self.fit.z, -np.inf)
-        objective, move = self._objective(deviations)
-        objective += float(z @ z)
+        for start in hypothesis.starts:
+            z = np.clip(np.array(start, dtype=np.float64), low, high)
+            deviations = self._deviations(hypothesis, z)
+            if deviations is None:
+                continue
+            curvature, slope = self._projected((deviations - self.fit.deviations)[:, None], self.fit.deviations)
+            promise = max(-float(slope[0]), 0.0) ** 2 / max(float(curvature[0, 0]), 1e-12)
+            if best is None or promise > best[0]:
+                objective, move = self._objective(deviations)
+                best = promise, objective + float(z @ z), z, deviations, move
+        if best is None:
+            return Quick(hypothesis, np.zeros(len(hypothesis.free)), self.fit.z, -np.inf)
+        promise, objective, z, deviations, move = best
+        direction = (deviations - self.fit.deviations).astype(np.float32)
+        found = Quick(hypothesis, z, self.fit.z + move, self.start - objective, None, direction, z)
+        if promise < least:
+            return replace(found, gain=promise)
+        return self._descend(found, deviations, 1)
+
+    def promise(self, old: Quick) -> float:
+        """Linear gain of a hypothesis by what it did to the deviations about an earlier base."""
+        columns = old.columns if old.columns is not None else old.direction
+        if columns is None:
+            return float("inf")
+        slopes = np.asarray(columns, dtype=np.float64).reshape(self.fit.deviations.size, -1)
+        normal, slope = self._projected(slopes, self.fit.deviations)
+        return float(slope @ linalg.solve(normal + np.eye(slope.size), slope, assume_a="pos"))
+
+    def effect(self, hypothesis: Hypothesis) -> tuple[Reals, Reals, Reals] | None:
+        """The first start that can be solved: its coordinates, its change of the deviations, the slopes there."""
+        low, high = np.array([f.limits for f in hypothesis.free]).T
+        plain = self.evidence.deviations(self._solved.datasets)
+        for start in hypothesis.starts:
+            z = np.clip(np.array(start, dtype=np.float64), low, high)
+            deviations = self._deviations(hypothesis, z)
+            columns = None if deviations is None else self._columns(hypothesis, z, deviations, high)
+            if deviations is not None and columns is not None:
+                return z, deviations - plain, columns
+        return None
+
+    def quick(self, hypothesis: Hypothesis, *, after: Quick | None = None, steps: int = 6) -> Quick:
+        """Follow a hypothesis on from where screening ended, while the base moves linearly."""
+        found = self.screen(hypothesis) if after is None else after
+        deviations = self._deviations(hypothesis, found.z)
+        return found if deviations is None else self._descend(found, deviations, steps)
+
+    def _descend(self, found: Quick, deviations: Reals, steps: int) -> Quick:
+        hypothesis, z, objective = found.hypothesis, found.z, self.start - found.gain
+        move, columns = found.base_z - self.fit.z, found.columns
+        low, high = np.array([f.limits for f in hypothesis.free]).T
         damping = 1e-2
         for _ in range(steps):
-            columns = self._columns(hypothesis, z, deviations, high)
-            if columns is None:
+            slopes = self._columns(hypothesis, z, deviations, high)
+            if slopes is None:
                 break
-            normal, slope = self._projected(columns, deviations)
+            columns = slopes.astype(np.float32)
+            normal, slope = self._projected(slopes, deviations)
             normal, slope = normal + np.eye(z.size), slope + z
             gained = 0.0
             for _ in range(5):
@@ -119,7 +199,7 @@ class Ring:
                 damping *= 6.0
             if gained < 0.2:
                 break
-        return Quick(hypothesis, z, self.fit.z + move, self.start - objective)
+        return replace(found, z=z, base_z=self.fit.z + move, gain=self.start - objective, columns=columns)
 
     def _columns(self, hypothesis: Hypothesis, z: Reals, at: Reals, high: Reals) -> Reals | None:
         columns = []
@@ -133,31 +213,47 @@ class Ring:
             columns.append((new - at) / step)
         return np.column_stack(columns)
 
+    def projected(self, columns: Reals, other: Reals) -> Reals:
+        """Products of columns, (n, p) and (n, q), smooth errors and all moves of the base taken out."""
+        mine, theirs = self.whitener.reduce(columns), self.whitener.reduce(other)
+        inner = (columns.T @ other - mine.T @ theirs) / self.fit.heat
+        left = (columns.T @ self.fit.jacobian - mine.T @ self.reduced) / self.fit.heat
+        right = (other.T @ self.fit.jacobian - theirs.T @ self.reduced) / self.fit.heat
+        return np.asarray(inner - left @ linalg.cho_solve(self.factor, right.T))
+
+    def pull(self, columns: Reals) -> Reals:
+        """Slope of half the objective along columns at the base, smooth errors and moves of the base taken out."""
+        return self._projected(columns, self.fit.deviations)[1]
+
     def _projected(self, columns: Reals, deviations: Reals) -> tuple[Reals, Reals]:
         """Curvature and slope over the effect's parameters, the base moving along."""
         heat, jacobian = self.fit.heat, self.fit.jacobian
-        reduced, left = self._whitener.reduce(columns), self._whitener.reduce(deviations)
+        reduced, left = self.whitener.reduce(columns), self.whitener.reduce(deviations)
         inner = (columns.T @ columns - reduced.T @ reduced) / heat
-        cross = (columns.T @ jacobian - reduced.T @ self._reduced) / heat
+        cross = (columns.T @ jacobian - reduced.T @ self.reduced) / heat
         own = (columns.T @ deviations - reduced.T @ left) / heat
-        base = (jacobian.T @ deviations - self._reduced.T @ left) / heat + self.fit.z
-        return inner - cross @ linalg.cho_solve(self._factor, cross.T), own - cross @ linalg.cho_solve(
-            self._factor, base
+        base = (jacobian.T @ deviations - self.reduced.T @ left) / heat + self.fit.z
+        return inner - cross @ linalg.cho_solve(self.factor, cross.T), own - cross @ linalg.cho_solve(
+            self.factor, base
         )
 
     def full(
-        self, quick: Quick, *, learn: bool = False, most_steps: int = 15, progress: Progress | None = None
+        self,
+        quick: Quick,
+        *,
+        prefix: str = "",
+        most_steps: int = 15,
+        progress: Progress | None = None,
     ) -> Fit:
         """Fit base and effect together, from where the quick look ended."""
-        hypothesis = quick.hypothesis
-        base = free_parameters(self.owner)
-        low, high = np.array([f.limits for f in base]).T
+        build, free = stacked(self.fit.build, quick.hypothesis, prefix)
         return recalibrate(
             self.evidence,
-            build=hypothesis.build(self.owner),
-            free=(*base, *hypothesis.free),
-            start=np.concatenate([np.clip(quick.base_z, low, high), quick.z]),
-            learn=learn,
+            build=build,
+            free=(*self.fit.free, *free),
+            start=np.concatenate([quick.base_z, quick.z]),
+            learn=False,
+            slopes=None if quick.columns is None else np.hstack([self.fit.jacobian, quick.columns]),
             most_steps=most_steps,
             progress=progress,
         )

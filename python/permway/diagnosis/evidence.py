@@ -14,10 +14,13 @@ from permway.diagnosis.blocks import Block, FrfBlock, Rows, SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import Answer, Need, need_of, plan, predict, predict_one, solve
+from permway.recordings.predict import Answer, Need, State, need_of, plan, predict, predict_one, solve
 
-SMALLEST_SMOOTH, LARGEST_SMOOTH = 0.001, 0.3
-"""Between which the size of smooth errors is learnt, neper or rad: 0.009 and 2.6 dB."""
+SMALLEST_SMOOTH, LARGEST_SMOOTH = 0.001, 0.2
+"""Between which the size of smooth errors is learnt, neper or rad: 0.009 and 1.7 dB."""
+
+LARGEST_PAIR = 0.03
+"""Of the errors of a pair of sensor and point, 0.26 dB: what is larger is not of where a hammer fell."""
 
 LINES_PER_FREQUENCY = 40.0
 """Lines of a frequency response within its own frequency, at most."""
@@ -29,18 +32,44 @@ class Solved:
 
     campaign: Campaign
     needs: tuple[Need | None, ...]
-    answers: Mapping[float | None, Answer]
+    answers: Mapping[State, Answer]
     datasets: list[xr.Dataset]
 
 
-def _same_needs(one: Sequence[Need | None], other: Sequence[Need | None]) -> bool:
-    def key(need: Need | None) -> object:
-        return None if need is None else (need.temperature_C, need.rows, need.columns)
+def _answered(needs: Sequence[Need | None], campaign: Campaign, near: Solved | None) -> dict[State, Answer]:
+    """What a campaign of the same line had solved, of all states in which nothing else is needed."""
+    if near is None or campaign.model.line != near.campaign.model.line:
+        return {}
+    others = {
+        need.state
+        for need, old in zip(needs, near.needs, strict=True)
+        if need is not None and (old is None or not _same(need, old))
+    }
+    return {state: answer for state, answer in near.answers.items() if state not in others}
 
-    return all(
-        key(a) == key(b) and (a is None or b is None or np.array_equal(a.frequency_Hz, b.frequency_Hz))
-        for a, b in zip(one, other, strict=True)
-    )
+
+def _kept(
+    datasets: Sequence[Dataset],
+    needs: Sequence[Need | None],
+    answers: Mapping[State, Answer],
+    campaign: Campaign,
+    near: Solved,
+) -> list[bool]:
+    """Which frequency responses are those of a campaign near by: of the same answer, read by the same chains."""
+    one, other = campaign.said, near.campaign.said
+    chains = one.sensors == other.sensors and one.forces == other.forces
+    return [
+        chains
+        and dataset.record.statistic == "frf"
+        and need is not None
+        and answers[need.state] is near.answers.get(need.state)
+        for dataset, need in zip(datasets, needs, strict=True)
+    ]
+
+
+def _same(one: Need, other: Need) -> bool:
+    alike = (one.state, one.rows, one.columns) == (other.state, other.rows, other.columns)
+    return alike and np.array_equal(one.frequency_Hz, other.frequency_Hz)
 
 
 @dataclass(frozen=True)
@@ -89,16 +118,16 @@ class Evidence:
             Of a campaign that may have the same line: it is then not solved again.
         """
         needs = [need_of(campaign, dataset) for dataset in self.datasets]
-        same = near is not None and campaign.model.line is near.campaign.model.line
-        if near is not None and same and _same_needs(needs, near.needs):
-            answers = near.answers
-        else:
-            sweeps = plan(need for need in needs if need is not None)
-            solved = [solve(sweep, campaign.model, threads=self.threads) for sweep in sweeps]
-            answers = {answer.sweep.temperature_C: answer for answer in solved}
+        answers = _answered(needs, campaign, near)
+        sweeps = plan(need for need in needs if need is not None and need.state not in answers)
+        for sweep in sweeps:
+            answers[sweep.state] = solve(sweep, campaign.model, threads=self.threads)
+        kept = [] if near is None else _kept(self.datasets, needs, answers, campaign, near)
         datasets = [
-            predict_one(campaign, dataset, need, None if need is None else answers[need.temperature_C])
-            for dataset, need in zip(self.datasets, needs, strict=True)
+            near.datasets[index]
+            if near is not None and kept[index]
+            else predict_one(campaign, dataset, need, None if need is None else answers[need.state])
+            for index, (dataset, need) in enumerate(zip(self.datasets, needs, strict=True))
         ]
         return Solved(campaign, tuple(needs), answers, datasets)
 
@@ -132,12 +161,20 @@ class Evidence:
         """The same with other sizes of smooth errors."""
         return replace(self, sizes=dict(sizes))
 
+    def reweighed(self, predicted: Sequence[xr.Dataset]) -> Evidence:
+        """The same with spectra weighed by what a fit predicts, and not by what the owner's values do."""
+        blocks = tuple(
+            SpectraBlock(b.dataset, p) if isinstance(b, SpectraBlock) else b
+            for b, p in zip(self.blocks, predicted, strict=True)
+        )
+        return replace(self, blocks=blocks)
+
     def learnt_pairs(self, predicted: Sequence[xr.Dataset]) -> Evidence:
         """The same with the size of the errors of pairs of sensor and point learnt."""
         blocks = []
         for block, prediction in zip(self.blocks, predicted, strict=True):
             if isinstance(block, FrfBlock):
-                size = float(np.clip(block.learnt_pair(prediction), SMALLEST_SMOOTH, LARGEST_SMOOTH))
+                size = float(np.clip(block.learnt_pair(prediction), SMALLEST_SMOOTH, LARGEST_PAIR))
                 block = block.with_pair(size) if abs(np.log(size / block.pair)) > 0.02 else block
             blocks.append(block)
         return replace(self, blocks=tuple(blocks))
@@ -163,6 +200,17 @@ def gather(
     evidence = Evidence(campaign, blocks, {}, threads)
     _, origins = evidence.smooth(predicted)
     return evidence.with_sizes({origin: _first_size(campaign, origin) for origin in dict.fromkeys(origins)})
+
+
+def evidence_of(campaign: Campaign, datasets: Sequence[Dataset], like: Evidence) -> Evidence:
+    """Datasets that need not be of the campaign's files, with the sizes of smooth errors that another has."""
+    loaded = [thinned(dataset) for dataset in datasets]
+    predicted = predict(campaign, loaded, threads=like.threads)
+    blocks = tuple(_block(dataset, prediction) for dataset, prediction in zip(loaded, predicted, strict=True))
+    evidence = Evidence(campaign, blocks, {}, like.threads)
+    _, origins = evidence.smooth(predicted)
+    usual = float(np.median(list(like.sizes.values()))) if like.sizes else _first_size(campaign, "")
+    return evidence.with_sizes({origin: like.sizes.get(origin, usual) for origin in dict.fromkeys(origins)})
 
 
 def thinned(dataset: Dataset) -> Dataset:
@@ -210,6 +258,7 @@ class Whitener:
     columns: sparse.csr_array
     scale: Reals
     factor: np.ndarray
+    origins: tuple[str, ...]
 
     @staticmethod
     def of(columns: sparse.csr_array, origins: Sequence[str], sizes: Mapping[str, float]) -> Whitener:
@@ -217,7 +266,7 @@ class Whitener:
         scale = np.array([sizes[origin] for origin in origins])
         scaled = sparse.csr_array(columns.multiply(scale[None, :]))
         inner = (scaled.T @ scaled).toarray() + np.eye(scale.size)
-        return Whitener(scaled, scale, linalg.cholesky(inner, lower=True))
+        return Whitener(scaled, scale, linalg.cholesky(inner, lower=True), tuple(origins))
 
     def reduce(self, values: Reals) -> Reals:
         """`L^-1 B' v`, of which the squares are what is explained; values (n,) or (n, k)."""

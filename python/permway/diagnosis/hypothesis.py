@@ -96,6 +96,10 @@ class Hypothesis:
         Coordinates z to begin at.
     law : callable
         From values to the mechanics, in words.
+    size : str
+        The parameter that says how strong the effect is; "" if none does.
+    none : float
+        The value of `size` at which there is no effect.
     """
 
     entry: str
@@ -106,16 +110,8 @@ class Hypothesis:
     locate: Callable[[Mapping[str, float]], Where]
     starts: tuple[tuple[float, ...], ...]
     law: Callable[[Mapping[str, float]], str] = field(default=lambda _: "")
-
-    def build(self, campaign: Campaign) -> Callable[[Mapping[str, float]], Campaign]:
-        """From values of the campaign's parameters and of the effect to the amended campaign."""
-        own = {f.name for f in self.free}
-
-        def made(values: Mapping[str, float]) -> Campaign:
-            base = campaign.with_values({k: v for k, v in values.items() if k not in own})
-            return self.amend(base, {k: v for k, v in values.items() if k in own})
-
-        return made
+    size: str = ""
+    none: float = 0.0
 
 
 class Entry(Protocol):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 from scipy import linalg
@@ -17,6 +18,7 @@ from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks import Basis, FrfBlock
 from permway.diagnosis.recalibrate import Fit
 from permway.errors import InputError
+from permway.recordings.campaign_factors import campaign_under
 from permway.recordings.predict.hammer import read, temperature
 from permway.response.receptance import Place, receptance
 from permway.response.sensitivity import sensitivity
@@ -26,6 +28,12 @@ KNOTS_PER_OCTAVE = 1.5
 
 STEP_M = 1.0
 """Between the places of a body, about."""
+
+COARSE, BESIDE = 3, 2
+"""Of how many spots in a row one is looked at first, and beside how many of the best all are."""
+
+Motion = tuple[Complexes, Complexes]
+"""Motion of a spot by unit forces at the sensors and at the points, each of shape (F, places)."""
 
 FITS = 2.0
 """Mean square of the deviations below which a base nearly fits."""
@@ -79,6 +87,8 @@ class Found:
         Standard deviation of its real and of its imaginary part.
     by_band : ndarray, shape (F,)
         Share of each frequency in the gain.
+    total : float
+        Chi square of which the gain is a part.
     """
 
     spot: Spot
@@ -88,6 +98,7 @@ class Found:
     stiffness_N_per_m: Complexes
     sigma_N_per_m: Reals
     by_band: Reals
+    total: float
 
     @property
     def surplus(self) -> float:
@@ -116,12 +127,13 @@ class Scan:
         if index is None:
             raise InputError("is no block of the fit", where="block")
         self.fit, self.block = fit, block
-        self.campaign = fit.campaign
-        data, record = block.dataset.data, block.dataset
+        data = block.dataset.data
+        condition = fit.campaign.condition(block.dataset.condition.name)
+        self.campaign = campaign_under(fit.campaign, condition)
         self.frequency: Reals = data["frequency"].values
         sensors, points = ([str(v) for v in data[kind].values] for kind in ("sensor", "force"))
         self.read = np.moveaxis(read(self.campaign, sensors, points, self.frequency), 0, -1)
-        self.temperature = temperature(self.campaign, record.condition)
+        self.temperature = temperature(self.campaign, condition)
         self.sensors = [
             Place(body=str(s.body), x_m=float(s.x_m or 0.0), name=s.name)
             for s in map(self.campaign.sensor, sensors)
@@ -140,10 +152,12 @@ class Scan:
         self.slopes: Complexes = (jacobian[:half] + 1j * jacobian[half:]).reshape(*shape, -1)
         # What remains free is held by all other records, too: their curvature and the priors.
         self._normal = share**2 * fit.jacobian.T @ fit.jacobian + np.eye(fit.z.size)
+        self._slope = share**2 * fit.jacobian.T @ left + fit.z
+        self._total = share**2 * float(left @ left)
         self._basis = Basis(float(self.frequency[0]), float(self.frequency[-1]), KNOTS_PER_OCTAVE)
 
-    def joints(self) -> Iterator[tuple[Spot, Complexes]]:
-        """Each joint, with its extensions by a force at a sensor times those by a force at a point."""
+    def joints(self) -> Iterator[tuple[Spot, Motion]]:
+        """Each joint, with its extensions by forces at the sensors and at the points."""
         line = self.campaign.model.line
         data = sensitivity(
             line,
@@ -158,10 +172,9 @@ class Scan:
         sensor, force = data["sensor_extension"].values, data["force_extension"].values
         for j in range(table.x.size):
             x = float(table.x[j])
-            product = np.einsum("fs,fp->spf", sensor[:, j], force[:, j])
-            yield Spot("joint", laws[table.law[j]], (x, x), (j,)), product
+            yield Spot("joint", laws[table.law[j]], (x, x), (j,)), (sensor[:, j], force[:, j])
 
-    def bodies(self) -> Iterator[tuple[Spot, Complexes]]:
+    def bodies(self) -> Iterator[tuple[Spot, Motion]]:
         """Places along each beam between its finite ends, or where the line is."""
         line = self.campaign.model.line
         table = line.joint_table()
@@ -182,14 +195,12 @@ class Scan:
         sensor = moved[:, :, [at[p.body, p.x_m] for p in self.sensors]]
         force = moved[:, :, [at[p.body, p.x_m] for p in self.points]]
         for i, place in enumerate(places):
-            yield (
-                Spot("body", place.body, (place.x_m, place.x_m)),
-                np.einsum("fs,fp->spf", sensor[:, i], force[:, i]),
-            )
+            yield Spot("body", place.body, (place.x_m, place.x_m)), (sensor[:, i], force[:, i])
 
-    def of(self, spot: Spot, product: Complexes) -> Found:
+    def of(self, spot: Spot, motion: Motion) -> Found:
         """The dZ at a spot that explains most."""
         block, basis = self.block, self._basis.values(self.frequency)
+        product = motion[0].T[:, None, :] * motion[1].T[None, :, :]
         # Deviations are measured less predicted: an added stiffness lessens the prediction.
         effect = self._share * block.white(product * self.read * block.weight)
         columns = (effect[..., None] * basis).reshape(-1, basis.shape[1])
@@ -201,14 +212,15 @@ class Scan:
         # A real coefficient of i times a column: conj(i c) . v = -i conj(c) . v.
         coupling = np.vstack([cross.real, cross.imag])
         force = np.concatenate([pull.real, pull.imag])
-        normal = normal - coupling @ linalg.solve(self._normal, coupling.T, assume_a="pos")
+        moved = linalg.solve(self._normal, np.column_stack([coupling.T, self._slope]), assume_a="pos")
+        normal, force = normal - coupling @ moved[:, :-1], force - coupling @ moved[:, -1]
         normal = 0.5 * (normal + normal.T)
         scale = np.sqrt(np.maximum(np.diag(normal), 1e-300))
         scaled = normal / scale[:, None] / scale[None, :] + RIDGE * np.eye(scale.size)
         value, vectors = linalg.eigh(scaled)
         kept = value > 1e-7 * value[-1]
         parts = (vectors.T @ (force / scale))[kept]
-        gain = float((parts**2 / value[kept]).sum())
+        gain = min(float((parts**2 / value[kept]).sum()), self._total)
         solution = (vectors[:, kept] @ (parts / value[kept])) / scale
         spread = vectors[:, kept] / np.sqrt(value[kept]) / scale[:, None]
         # The model lacks what the deviations show: the coefficient is that of what must be added.
@@ -216,13 +228,12 @@ class Scan:
         stiffness = basis @ (solution[:count] + 1j * solution[count:])
         sigma = np.sqrt(((basis @ spread[:count]) ** 2).sum(axis=1))
         shown = (effect * stiffness).conj() * self.left
-        return Found(
-            spot, gain, int(kept.sum()), self.frequency, -stiffness, sigma, np.asarray(shown.real.sum(axis=(0, 1)))
-        )
+        by_band = np.asarray(shown.real.sum(axis=(0, 1)))
+        return Found(spot, gain, int(kept.sum()), self.frequency, -stiffness, sigma, by_band, self._total)
 
 
 def scan(fit: Fit) -> list[Found]:
-    """All single joints and places of bodies, the most telling first.
+    """Single joints and places of bodies, the most telling first: every third, and all beside the best.
 
     Raises
     ------
@@ -234,14 +245,30 @@ def scan(fit: Fit) -> list[Found]:
         raise InputError(
             "no frequency response to locate by", where="records", remedy="measure some with a hammer"
         )
-    total: dict[Spot, Found] = {}
-    for block in blocks:
-        one = Scan(fit, block)
-        for spot, product in (*one.joints(), *one.bodies()):
-            found = one.of(spot, product)
-            old = total.get(spot)
-            total[spot] = found if old is None else _both(old, found)
-    return sorted(total.values(), key=lambda f: -f.surplus)
+    scans = [Scan(fit, block) for block in blocks]
+    rows = [_rows(one) for one in scans]
+
+    def found(key: tuple[str, str], index: int) -> Found:
+        return reduce(_both, (one.of(*row[key][index]) for one, row in zip(scans, rows, strict=True)))
+
+    total: list[Found] = []
+    for key, row in rows[0].items():
+        known = {i: found(key, i) for i in range(0, len(row), COARSE)}
+        best = sorted(known, key=lambda i: -known[i].surplus)[:BESIDE]
+        beside = {i + d for i in best for d in range(1 - COARSE, COARSE)} - known.keys()
+        known |= {i: found(key, i) for i in sorted(beside) if 0 <= i < len(row)}
+        total.extend(known.values())
+    return sorted(total, key=lambda f: -f.surplus)
+
+
+def _rows(one: Scan) -> dict[tuple[str, str], list[tuple[Spot, Motion]]]:
+    """The spots of each layer and of each body, in order."""
+    rows: dict[tuple[str, str], list[tuple[Spot, Motion]]] = {}
+    for spot, motion in (*one.joints(), *one.bodies()):
+        rows.setdefault((spot.kind, spot.name), []).append((spot, motion))
+    for row in rows.values():
+        row.sort(key=lambda pair: pair[0].x_m)
+    return rows
 
 
 def _both(old: Found, new: Found) -> Found:
@@ -255,6 +282,7 @@ def _both(old: Found, new: Found) -> Found:
         better.stiffness_N_per_m,
         better.sigma_N_per_m,
         better.by_band,
+        old.total + new.total,
     )
 
 

@@ -27,6 +27,15 @@ USUAL, SEEN = 0.02, 4.0
 Z_LIMIT = 8.0
 """Beyond which no parameter is sought, in standard deviations of the prior."""
 
+REUSED = 5.0
+"""Gain of a step below which the slopes of the one before do for the next."""
+
+FORETOLD = 0.7
+"""Share of the gain foretold by the slopes that a step must bring, or else they are taken anew."""
+
+MOST_LEARNT, MAXIMISATIONS = 2, 5
+"""Times that the sizes of smooth errors are learnt, and steps of expectation maximisation each time."""
+
 Progress = Callable[[str], object]
 Build = Callable[[Mapping[str, float]], Campaign]
 """From values of the free parameters to a campaign."""
@@ -81,6 +90,8 @@ class Fit:
     heat : float
         Mean square of the deviations, at least 1: the records count so much less while no model fits.
     evaluations : int
+    build : callable
+        From values of `free` to a campaign.
     """
 
     free: tuple[Free, ...]
@@ -96,6 +107,7 @@ class Fit:
     jacobian: Reals
     heat: float
     evaluations: int
+    build: Build
 
     @property
     def objective(self) -> float:
@@ -142,7 +154,9 @@ def recalibrate(
     free: tuple[Free, ...] | None = None,
     start: Reals | None = None,
     learn: bool = True,
-    most_steps: int = 25,
+    reweigh: bool | None = None,
+    slopes: Reals | None = None,
+    most_steps: int = 30,
     progress: Progress | None = None,
 ) -> Fit:
     """Find the most probable values of the free parameters.
@@ -158,6 +172,11 @@ def recalibrate(
         Where to begin, in z; by default at the priors' centres.
     learn : bool
         Whether to learn the sizes of smooth errors.
+    reweigh : bool, optional
+        Whether to weigh spectra anew by what the fit predicts; by default if `build` is not given. Objectives
+        compare only between fits that weigh alike.
+    slopes : ndarray, shape (n, p), optional
+        Derivatives of the deviations near the start, to begin with.
     most_steps : int
     progress : callable, optional
         Told in words how far it is.
@@ -167,61 +186,99 @@ def recalibrate(
     InputError
         If the model cannot be predicted at the start.
     """
+    reweigh = build is None if reweigh is None else reweigh
     build = evidence.campaign.with_values if build is None else build
     free = free_parameters(evidence.campaign) if free is None else free
     problem = _Problem(evidence, build, free)
     z = np.zeros(len(free)) if start is None else np.asarray(start, dtype=np.float64).copy()
-    state = problem.at(z)
+    state = problem.at(_inside(z, free))
     if state is None:
         raise InputError("the model cannot be solved there", where="start", value=z.tolist())
-    damping, learnt = 1e-3, 0
+    tangent = problem.tangent(state, slopes)
+    exact = slopes is None
+    damping, rounds = 1e-3, 0
     for step in range(most_steps):
         # Far from the records the priors lead: the deviations count as if each were no better than all are.
-        heat = max(1.0, state.chi2 / max(1, state.deviations.size))
-        jacobian = problem.jacobian(state)
-        reduced = state.whitener.reduce(np.column_stack([state.deviations, jacobian]))
-        normal = (jacobian.T @ jacobian - reduced[:, 1:].T @ reduced[:, 1:]) / heat + np.eye(z.size)
-        slope = (jacobian.T @ state.deviations - reduced[:, 1:].T @ reduced[:, 0]) / heat + state.z
-        moved, gained = None, 0.0
-        for _ in range(8):
+        heat = max(1.0, tangent.chi2(state) / max(1, state.deviations.size))
+        normal, slope = tangent.normal(heat), tangent.slope(state, heat)
+        moved, gained, foreseen = None, 0.0, 0.0
+        for _ in range(8 if tangent.at is state else 2):
             shift = -linalg.solve(normal + damping * np.diag(np.diag(normal)), slope, assume_a="pos")
             tried = problem.at(_inside(state.z + shift, free))
-            gained = 0.0 if tried is None else state.heated(heat) - tried.heated(heat)
+            gained = 0.0 if tried is None else tangent.heated(state, heat) - tangent.heated(tried, heat)
             if tried is not None and gained > 0.0:
+                foreseen = -float(2.0 * slope @ shift + shift @ normal @ shift)
                 moved, damping = tried, max(damping / 5.0, 1e-9)
                 break
             damping = max(damping * 6.0, 1e-6)
+        fresh = tangent.at is state and exact
+        before, state = state, state if moved is None else moved
         if progress is not None:
-            progress(f"step {step + 1}, {state.objective:.1f}, heat {heat:.3g}")
-        state = state if moved is None else moved
-        if gained < 0.5:
-            if not learn or learnt >= 4:
-                break
-            change = problem.learn(state)
-            learnt += 1
+            progress(f"step {step + 1}, {tangent.heated(state, 1.0):.1f}, heat {heat:.3g}")
+        if gained >= REUSED:
+            # Where the step did what the slopes foretold, what it showed mends them well enough.
+            good = gained > FORETOLD * foreseen and moved is not None
+            tangent = tangent.mended(before, state) if good else problem.tangent(state)
+            exact = exact or not good
+        elif gained < 0.5 and not fresh:
+            tangent, exact = problem.tangent(state), True
+        elif (learn and rounds < MOST_LEARNT) or reweigh:
+            if reweigh:
+                problem.evidence, reweigh = problem.evidence.reweighed(state.solved.datasets), False
+            if learn:
+                problem.evidence, change = learnt(problem.evidence, state.solved)
+                rounds = rounds + 1 if change >= 0.1 else MOST_LEARNT
             state = problem.again(state)
-            if change < 0.1:
-                break
+            tangent, exact = problem.tangent(state), True
             damping = 1e-3
-    jacobian = problem.jacobian(state)
-    reduced = state.whitener.reduce(jacobian)
-    heat = max(1.0, state.chi2 / max(1, state.deviations.size))
-    normal = (jacobian.T @ jacobian - reduced.T @ reduced) / heat + np.eye(z.size)
-    coefficients, _ = state.whitener.explained(state.deviations)
+        elif gained < 0.5:
+            break
+    if tangent.at is not state or not exact:
+        tangent = problem.tangent(state)
+    chi2 = tangent.chi2(state)
+    heat = max(1.0, chi2 / max(1, state.deviations.size))
+    coefficients, _ = tangent.whitener.explained(state.deviations)
     return Fit(
         free=free,
         z=state.z,
-        covariance=np.asarray(linalg.inv(normal)),
+        covariance=np.asarray(linalg.inv(tangent.normal(heat))),
         campaign=state.solved.campaign,
         evidence=problem.evidence,
         deviations=state.deviations,
-        clean=state.deviations - state.whitener.columns @ coefficients,
-        chi2=state.chi2,
+        clean=state.deviations - tangent.whitener.columns @ coefficients,
+        chi2=chi2,
         prior=float(state.z @ state.z),
-        log_determinant=state.whitener.log_determinant,
-        jacobian=jacobian,
+        log_determinant=tangent.whitener.log_determinant,
+        jacobian=tangent.jacobian,
         heat=heat,
         evaluations=problem.evaluations,
+        build=build,
+    )
+
+
+def untouched(evidence: Evidence) -> Fit:
+    """The owner's values as if the records were what they predict: slopes and covariance, and no deviation."""
+    problem = _Problem(evidence, evidence.campaign.with_values, free_parameters(evidence.campaign))
+    state = problem.at(np.zeros(len(problem.free)))
+    if state is None:
+        raise InputError("the model cannot be solved", where="model")
+    tangent = problem.tangent(state)
+    nothing = np.zeros_like(state.deviations)
+    return Fit(
+        free=problem.free,
+        z=state.z,
+        covariance=np.asarray(linalg.inv(tangent.normal(1.0))),
+        campaign=state.solved.campaign,
+        evidence=evidence,
+        deviations=nothing,
+        clean=nothing,
+        chi2=0.0,
+        prior=0.0,
+        log_determinant=tangent.whitener.log_determinant,
+        jacobian=tangent.jacobian,
+        heat=1.0,
+        evaluations=problem.evaluations,
+        build=problem.build,
     )
 
 
@@ -235,16 +292,46 @@ class _State:
     z: Reals
     solved: Solved
     deviations: Reals
+
+
+@dataclass(frozen=True)
+class _Tangent:
+    """Slopes and smooth errors about a state, also used near it."""
+
+    at: _State
     whitener: Whitener
-    origins: list[str]
-    chi2: float
+    jacobian: Reals
+    curvature: Reals
+    """J' V^-1 J."""
+    reduced: Reals
+    blocks: float
+    """Log determinant of what the blocks take out themselves."""
 
-    @property
-    def objective(self) -> float:
-        return self.heated(1.0)
+    def chi2(self, state: _State) -> float:
+        reduced = self.whitener.reduce(state.deviations)
+        return float(state.deviations @ state.deviations - reduced @ reduced) + self.blocks
 
-    def heated(self, heat: float) -> float:
-        return self.chi2 / heat + float(self.z @ self.z) + self.whitener.log_determinant
+    def heated(self, state: _State, heat: float) -> float:
+        return self.chi2(state) / heat + float(state.z @ state.z) + self.whitener.log_determinant
+
+    def mended(self, old: _State, new: _State) -> _Tangent:
+        """With slopes that hold between two states (Broyden 1965)."""
+        step = new.z - old.z
+        missed = (new.deviations - old.deviations - self.jacobian @ step) / float(step @ step)
+        jacobian = self.jacobian + missed[:, None] * step[None, :]
+        return _tangent(self.at, self.whitener, jacobian, self.blocks)
+
+    def normal(self, heat: float) -> Reals:
+        return np.asarray(self.curvature / heat + np.eye(self.jacobian.shape[1]))
+
+    def slope(self, state: _State, heat: float) -> Reals:
+        reduced = self.whitener.reduce(state.deviations)
+        return np.asarray((self.jacobian.T @ state.deviations - self.reduced.T @ reduced) / heat + state.z)
+
+
+def _tangent(at: _State, whitener: Whitener, jacobian: Reals, blocks: float) -> _Tangent:
+    reduced = whitener.reduce(jacobian)
+    return _Tangent(at, whitener, jacobian, jacobian.T @ jacobian - reduced.T @ reduced, reduced, blocks)
 
 
 class _Problem:
@@ -254,31 +341,26 @@ class _Problem:
         self.evidence, self.build, self.free = evidence, build, free
         self.evaluations = 0
 
-    def deviations(self, z: Reals, near: Solved | None = None) -> tuple[Campaign, Reals, Solved]:
+    def deviations(self, z: Reals, near: Solved | None = None) -> tuple[Reals, Solved]:
         self.evaluations += 1
         campaign = self.build({f.name: f.value(float(v)) for f, v in zip(self.free, z, strict=True)})
         predicted = self.evidence.predicted(campaign, near)
-        return campaign, self.evidence.deviations(predicted.datasets), predicted
+        return self.evidence.deviations(predicted.datasets), predicted
 
     def at(self, z: Reals) -> _State | None:
         try:
-            _, deviations, predicted = self.deviations(z)
+            deviations, predicted = self.deviations(z)
         except (SolveError, InputError):
             return None
-        if not np.isfinite(deviations).all():
-            return None
-        return self._state(z, predicted, deviations)
+        return _State(z, predicted, deviations) if np.isfinite(deviations).all() else None
 
     def again(self, state: _State) -> _State:
         """The same with the sizes that were learnt."""
-        return self._state(state.z, state.solved, self.evidence.deviations(state.solved.datasets))
+        return _State(state.z, state.solved, self.evidence.deviations(state.solved.datasets))
 
-    def _state(self, z: Reals, solved: Solved, deviations: Reals) -> _State:
-        columns, origins = self.evidence.smooth(solved.datasets)
-        whitener = Whitener.of(columns, origins, self.evidence.sizes)
-        reduced = whitener.reduce(deviations)
-        chi2 = float(deviations @ deviations - reduced @ reduced)
-        return _State(z, solved, deviations, whitener, origins, chi2 + self.evidence.log_determinant)
+    def tangent(self, state: _State, slopes: Reals | None = None) -> _Tangent:
+        slopes = self.jacobian(state) if slopes is None else slopes
+        return _tangent(state, _whitener(self.evidence, state.solved), slopes, self.evidence.log_determinant)
 
     def jacobian(self, state: _State) -> Reals:
         """Derivative of the deviations by z, by forward differences."""
@@ -287,21 +369,37 @@ class _Problem:
             step = STEP if state.z[index] + STEP <= f.limits[1] else -STEP
             moved = state.z.copy()
             moved[index] += step
-            columns.append((self.deviations(moved, state.solved)[1] - state.deviations) / step)
+            columns.append((self.deviations(moved, state.solved)[0] - state.deviations) / step)
         return np.column_stack(columns) if columns else np.zeros((state.deviations.size, 0))
 
-    def learn(self, state: _State) -> float:
-        """Learn the sizes of smooth errors; returns the largest change of a logarithm."""
-        coefficients, variances = state.whitener.explained(state.deviations)
-        origins = np.array(state.origins)
-        sizes, change = dict(self.evidence.sizes), 0.0
-        for origin, old in self.evidence.sizes.items():
+
+def _whitener(evidence: Evidence, solved: Solved) -> Whitener:
+    return Whitener.of(*evidence.smooth(solved.datasets), evidence.sizes)
+
+
+def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
+    """Learn the sizes of smooth errors about a prediction.
+
+    Returns
+    -------
+    (Evidence, float)
+        And the largest change of a size's logarithm.
+    """
+    before = evidence.sizes
+    for _ in range(MAXIMISATIONS):
+        deviations, whitener = evidence.deviations(solved.datasets), _whitener(evidence, solved)
+        coefficients, variances = whitener.explained(deviations)
+        origins = np.array(whitener.origins)
+        sizes, change = dict(evidence.sizes), 0.0
+        for origin, old in evidence.sizes.items():
             mine = origins == origin
-            # As if so many more coefficients of the usual size had been seen: what does not fit is not all chain.
+            # As if so many more of the usual size had been seen: what does not fit is not all chain.
             power = float(np.sum(coefficients[mine] ** 2 + variances[mine])) * old**2
             new = float(np.sqrt((power + SEEN * USUAL**2) / (mine.sum() + SEEN)))
             highest = 1.5 if origin == "irregularity" else LARGEST_SMOOTH
             sizes[origin] = float(np.clip(new, SMALLEST_SMOOTH, highest))
             change = max(change, abs(np.log(sizes[origin] / old)))
-        self.evidence = self.evidence.with_sizes(sizes).learnt_pairs(state.solved.datasets)
-        return change
+        evidence = evidence.with_sizes(sizes).learnt_pairs(solved.datasets)
+        if change < 0.1:
+            break
+    return evidence, max((abs(np.log(evidence.sizes[o] / size)) for o, size in before.items()), default=0.0)

@@ -11,6 +11,8 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from permway.arrays import Complexes, Reals, check_frequency
 from permway.errors import InputError
+from permway.model.vehicle_additions import AnyAddition, check_additions, hung_mass_kg
+from permway.model.vehicle_condensed import condensed
 from permway.records import FrozenModel
 
 STANDARD_GRAVITY = 9.80665
@@ -56,6 +58,10 @@ class Vehicle(FrozenModel):
     share : float
         Share of everything that the model carries: 1 for the whole vehicle on two rails, 0.5 for the half
         model on one rail.
+    additions : sequence of Resonator, FlexibleMode, DamperSeries and AirSpring
+        What the ten degrees do not hold, the same in every car; see :mod:`permway.model.vehicle_additions`. They
+        act in the dynamic stiffness over frequency. Matrices, natural frequencies and poles are refused with
+        them, and with the matrices every march in time.
 
     Raises
     ------
@@ -77,6 +83,12 @@ class Vehicle(FrozenModel):
     car_length_m: PositiveFloat = 25.0
     cars: int = Field(default=1, ge=1, le=100)
     share: float = Field(default=1.0, gt=0.0, le=1.0)
+    additions: tuple[AnyAddition, ...] = ()
+
+    @model_validator(mode="after")
+    def _check_additions(self) -> Vehicle:
+        check_additions(self.additions)
+        return self
 
     @model_validator(mode="after")
     def _check_axles(self) -> Vehicle:
@@ -104,8 +116,9 @@ class Vehicle(FrozenModel):
 
     @property
     def static_wheel_load_N(self) -> float:
-        """Weight on one of the eight wheels of a car, N, whatever the share."""
+        """Weight on one of the eight wheels of a car, N, whatever the share; resonators' is spread evenly."""
         mass = self.car_body_mass_kg + 2.0 * self.bogie_mass_kg + 4.0 * self.wheelset_mass_kg
+        mass += hung_mass_kg(self.additions)
         return mass * STANDARD_GRAVITY / 8.0
 
     def lags_m(self) -> Reals:
@@ -125,14 +138,20 @@ class Vehicle(FrozenModel):
         """Mass, damping and stiffness matrices, each (10 n, 10 n) (paper, equation (2)).
 
         Rows in kg, N s/m, N/m for a displacement and times m (m^2) for a pitch.
+
+        Raises
+        ------
+        InputError
+            For a vehicle with additions.
         """
+        self._check_rigid()
         mass, damping, stiffness = (
             np.asarray(np.kron(np.eye(self.cars), matrix), dtype=np.float64) for matrix in self._car_matrices()
         )
         return mass, damping, stiffness
 
     def dynamic_stiffness(self, frequency_Hz: ArrayLike) -> Complexes:
-        """Dynamic stiffness K + i omega C - omega^2 M of the free vehicle.
+        """Dynamic stiffness K + i omega C - omega^2 M of the free vehicle, and what is added to it.
 
         Parameters
         ----------
@@ -227,7 +246,7 @@ class Vehicle(FrozenModel):
         Raises
         ------
         InputError
-            For a contact stiffness that is not above zero.
+            For a contact stiffness that is not above zero, and for a vehicle with additions.
         """
         mass, _, stiffness = self._car_on(on_contact)
         squares = scipy.linalg.eigh(stiffness, mass, eigvals_only=True)
@@ -252,7 +271,7 @@ class Vehicle(FrozenModel):
         Raises
         ------
         InputError
-            For a contact stiffness that is not above zero.
+            For a contact stiffness that is not above zero, and for a vehicle with additions.
         """
         mass, damping, stiffness = self._car_on(on_contact)
         n = mass.shape[0]
@@ -261,10 +280,22 @@ class Vehicle(FrozenModel):
         poles = np.tile(np.linalg.eigvals(companion).astype(np.complex128), self.cars)
         return poles[np.lexsort((poles.imag, np.abs(poles)))]
 
-    def _car_matrices(self) -> tuple[Reals, Reals, Reals]:
+    def _check_rigid(self) -> None:
+        if self.additions:
+            raise InputError(
+                "has parts that no mass, damping and stiffness matrix holds",
+                where="vehicle.additions",
+                value=[addition.type for addition in self.additions],
+                remedy="compute over frequency, or take the additions out",
+            )
+
+    def _car_masses(self) -> Reals:
         bogie = [self.bogie_mass_kg, self.bogie_inertia_kg_m2]
         masses = [self.car_body_mass_kg, self.car_body_inertia_kg_m2, *bogie, *bogie]
-        mass = np.diag([*masses, *[self.wheelset_mass_kg] * 4])
+        return np.array([*masses, *[self.wheelset_mass_kg] * 4])
+
+    def _car_matrices(self) -> tuple[Reals, Reals, Reals]:
+        mass = np.diag(self._car_masses())
         secondary, primary = self._stretches()
         secondary, primary = secondary.T @ secondary, primary.T @ primary
         damping = self.secondary_damping_Ns_per_m * secondary + self.primary_damping_Ns_per_m * primary
@@ -284,6 +315,7 @@ class Vehicle(FrozenModel):
         return secondary, primary
 
     def _car_on(self, on_contact: float | None) -> tuple[Reals, Reals, Reals]:
+        self._check_rigid()
         mass, damping, stiffness = self._car_matrices()
         if on_contact is None:
             return mass, damping, stiffness
@@ -305,6 +337,11 @@ class Vehicle(FrozenModel):
         omega = 2.0 * np.pi * np.atleast_1d(check_frequency(frequency_Hz))
         if omega.ndim != 1:
             raise InputError("must have one dimension", where="frequency_Hz", value=omega.shape)
+        if self.additions:
+            springs = (self.secondary_stiffness_N_per_m, self.primary_stiffness_N_per_m)
+            dashpots = (self.secondary_damping_Ns_per_m, self.primary_damping_Ns_per_m)
+            masses, stretches = self._car_masses(), self._stretches()
+            return self.share * condensed(omega, masses, stretches, springs, dashpots, self.additions)
         omega = omega[:, None, None]
         mass, damping, stiffness = self._car_matrices()
         return np.asarray(stiffness + 1j * omega * damping - omega**2 * mass)

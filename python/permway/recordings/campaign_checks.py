@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 from permway.errors import InputError
 from permway.laws.base import Law
 from permway.model.file import Model
+from permway.recordings.campaign_excitation import check_excitation
+from permway.recordings.campaign_factors import check_factors
 from permway.recordings.campaign_parts import KIND_OF, Condition, HeldOut, Record
 from permway.recordings.campaign_paths import parse_path, value_at
 from permway.recordings.channel import Sensor
@@ -36,11 +38,13 @@ def check_campaign(said: Said, model: Model) -> None:
         _check_place(model, point.body, point.x_m, f"forces[{index}]")
     for index, condition in enumerate(said.conditions):
         _check_condition(condition, model, f"conditions[{index}]")
+    check_factors(said.conditions, model)
     for index, record in enumerate(said.records):
         _check_record(record, said, model, f"records[{index}]")
     if said.irregularity.knowledge != "known" and model.irregularity is None:
         remedy = "name an irregularity in the model file"
         raise InputError("the model has no irregularity", where="irregularity.knowledge", remedy=remedy)
+    check_excitation(said.irregularity, said.conditions, model)
     for index, group in enumerate(said.held_out):
         _check_group(group, said, f"held_out[{index}]")
 

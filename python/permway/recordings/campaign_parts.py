@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, PositiveFloat, model_validator
 
 from permway.model.faults import fault
 from permway.model.irregularity_spectra import FASTEST_M_PER_S
+from permway.recordings.campaign_excitation import Push, RoughBand, TrackLines, WheelLines
 from permway.records import FrozenModel, Number
 
 Statistic = Literal["frf", "csd", "psd", "bands", "decay", "transmissibility", "material"]
@@ -40,6 +41,8 @@ class Condition(FrozenModel):
     wheels_m : sequence of float, optional
         Where the wheels stand in the model, the leading one first; by default as vehicle and `centre_m` say.
     load_N, date, note : optional
+    factors : dict of path to float
+        Numbers of the model file that are others under this condition, and what they are multiplied by.
     """
 
     name: str = Field(min_length=1)
@@ -51,6 +54,7 @@ class Condition(FrozenModel):
     load_N: Number | None = None
     date: str | None = None
     note: str = ""
+    factors: dict[str, Annotated[Number, Field(gt=0.0, le=1e6)]] = Field(default_factory=dict)
 
     @model_validator(mode="before")
     @classmethod
@@ -217,12 +221,29 @@ class IrregularityKnown(FrozenModel):
         Added to the model's density, 10 lg.
     slope_dB_per_octave : float
         Added per doubling of the wavenumber, about 1 rad/m.
+    level_by_condition_dB : dict of str to float
+        Added to the density under some conditions, by name.
+    contact_patch_m : float
+        Half length a of the patch that filters short waves: density over 1 + pi/4 (k a)^3, k the wavenumber.
+    bands : sequence of RoughBand
+    series : sequence of TrackLines
+    wheels : sequence of WheelLines
+    wheel_radius_m : float
+        Rolling radius, which sets where the lines of `wheels` lie.
+    pushes : sequence of Push
     """
 
     knowledge: Literal["known", "within", "unknown"] = "known"
     within_dB: PositiveFloat | None = None
     level_dB: Number = Field(default=0.0, ge=-60.0, le=60.0)
     slope_dB_per_octave: Number = Field(default=0.0, ge=-20.0, le=20.0)
+    level_by_condition_dB: dict[str, Annotated[Number, Field(ge=-60.0, le=60.0)]] = Field(default_factory=dict)
+    contact_patch_m: float = Field(default=0.0, ge=0.0, le=1.0)
+    bands: tuple[RoughBand, ...] = ()
+    series: tuple[TrackLines, ...] = ()
+    wheels: tuple[WheelLines, ...] = ()
+    wheel_radius_m: float = Field(default=0.43, gt=0.1, lt=1.5)
+    pushes: tuple[Push, ...] = ()
 
     @model_validator(mode="after")
     def _check(self) -> IrregularityKnown:

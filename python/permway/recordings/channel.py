@@ -24,6 +24,28 @@ UNITS: dict[str, dict[str, float]] = {
 """Units of each quantity, and what one of them is in SI."""
 
 
+class Mains(FrozenModel):
+    """Hum that a chain picks up: a line at the mains' frequency and at its multiples.
+
+    All channels with hum of one frequency have it from one source, in one phase.
+
+    Parameters
+    ----------
+    frequency_Hz : float
+    amplitude : float
+        Of the first line, in the sensor's unit.
+    harmonics : int
+        How many lines.
+    decay : float
+        The n-th line has the amplitude times n^-decay.
+    """
+
+    frequency_Hz: PositiveFloat = 50.0
+    amplitude: NonNegativeFloat
+    harmonics: int = Field(default=8, ge=1, le=100, strict=True)
+    decay: Number = Field(default=1.0, ge=0.0, le=10.0)
+
+
 class Chain(FrozenModel):
     """Transfer from the true quantity, in SI, to the record, in the sensor's unit and in SI.
 
@@ -41,6 +63,9 @@ class Chain(FrozenModel):
         Of the mount.
     noise_floor : float
         One-sided density of what is read with nothing there, unit squared per hertz.
+    noise_flicker : float
+        Noise that falls with frequency: its density times frequency, unit squared.
+    mains : Mains, optional
     """
 
     gain: PositiveFloat = 1.0
@@ -49,13 +74,22 @@ class Chain(FrozenModel):
     mount_Hz: PositiveFloat | None = None
     mount_loss_factor: NonNegativeFloat = 0.05
     noise_floor: NonNegativeFloat = 0.0
+    noise_flicker: NonNegativeFloat = 0.0
+    mains: Mains | None = None
+
+    @property
+    def flat(self) -> bool:
+        """Whether the transfer is the same at all frequencies."""
+        return not self.delay_s and self.mount_Hz is None
 
     def transfer(self, frequency_Hz: Reals) -> Complexes:
         """Read over true, shape of the frequencies.
 
         The mount is a mass on a spring k (1 + i eta): (1 + i eta) / (1 + i eta - (f/f0)^2).
         """
-        value = self.polarity * self.gain * np.exp(-2j * np.pi * frequency_Hz * self.delay_s)
+        value: Complexes = np.full(np.shape(frequency_Hz), self.polarity * self.gain, dtype=np.complex128)
+        if self.delay_s:
+            value = value * np.exp(-2j * np.pi * frequency_Hz * self.delay_s)
         if self.mount_Hz is not None:
             spring = 1.0 + 1j * self.mount_loss_factor
             value = value * (spring / (spring - (frequency_Hz / self.mount_Hz) ** 2))
@@ -116,11 +150,20 @@ class Sensor(FrozenModel):
         """One-sided density of the noise floor, SI unit squared per hertz."""
         return self.chain.noise_floor * self.to_SI**2
 
+    def noise(self, frequency_Hz: Reals) -> Reals:
+        """One-sided density of all noise of the chain, SI unit squared per hertz, shape (F,)."""
+        return np.asarray(self.noise_density + self.chain.noise_flicker * self.to_SI**2 / frequency_Hz)
+
+    def there(self, frequency_Hz: Reals) -> Complexes:
+        """What an ideal chain reads over the displacement down in m (over the force down in N), shape (F,)."""
+        sign = -1.0 if self.direction == "up" else 1.0
+        omega = 2.0 * np.pi * frequency_Hz
+        order = DERIVATIVES.get(self.quantity, 0)
+        return np.asarray(sign * 1j**order * omega**order, dtype=np.complex128)
+
     def transfer(self, frequency_Hz: Reals) -> Complexes:
         """What is read, in SI, over the displacement down in m (over the force down in N), shape (F,)."""
-        sign = -1.0 if self.direction == "up" else 1.0
-        order = DERIVATIVES.get(self.quantity, 0)
-        return np.asarray(sign * (2j * np.pi * frequency_Hz) ** order * self.chain.transfer(frequency_Hz))
+        return np.asarray(self.there(frequency_Hz) * self.chain.transfer(frequency_Hz))
 
 
 class Point(FrozenModel):

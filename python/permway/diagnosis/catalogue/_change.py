@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+import numpy as np
+
+from permway.arrays import Reals
+from permway.laws import Hysteretic, Measured, Series, StorageLossPair
 from permway.laws.base import Law
 from permway.model.bodies import AnyBody
+from permway.model.changes import Change
 from permway.model.joints import Joints
 from permway.model.line import Line
 from permway.recordings.campaign import Campaign
 from permway.recordings.channel import Chain
+
+REACH_M = 1e-6
+"""Half the length of a change that holds one joint."""
+
+EVERYWHERE_HZ = (1e-6, 1e9)
+"""Frequencies of a table that is constant."""
 
 
 def with_line(campaign: Campaign, **parts: Any) -> Campaign:
@@ -31,6 +42,17 @@ def with_joints(campaign: Campaign, *joints: Joints, laws: Mapping[str, Law] | N
     return with_line(campaign, joints=(*line.joints, *joints), laws={**line.laws, **(laws or {})})
 
 
+def with_loss(campaign: Campaign, name: str, law: Law, loss: Law) -> Campaign:
+    """The campaign with another law of a layer, and beside it a law of the part of its loss that it does not have.
+
+    A second layer rather than one law of two parts: what acts on the numbers of the first acts on.
+    """
+    line = campaign.model.line
+    added = fresh(f"{name}_loss", line.laws)
+    beside = [layer.model_copy(update={"law": added}) for layer in line.joints if layer.law == name]
+    return with_line(campaign, joints=(*line.joints, *beside), laws={**line.laws, name: law, added: loss})
+
+
 def with_body(campaign: Campaign, name: str, body: AnyBody, *joints: Joints, laws: Mapping[str, Law]) -> Campaign:
     """The campaign with a further body and the joints that hold it."""
     line = campaign.model.line
@@ -42,9 +64,89 @@ def with_body(campaign: Campaign, name: str, body: AnyBody, *joints: Joints, law
     )
 
 
+def with_fields(campaign: Campaign, name: str, **fields: Any) -> Campaign:
+    """The campaign with other fields of a body, checked again."""
+    bodies = campaign.model.line.bodies
+    body = bodies[name]
+    return with_line(campaign, bodies={**bodies, name: type(body)(**{**dict(body), **fields})})
+
+
+def with_factors(campaign: Campaign, law: str, factor: Callable[[Reals], Reals]) -> Campaign:
+    """The campaign with a factor on every joint of a law, by its place.
+
+    Parameters
+    ----------
+    law : str
+    factor : callable
+        From the places of joints, ascending, shape (J,), to the factors.
+    """
+    line = campaign.model.line
+    table = line.joint_table()
+    joints = list(line.joints)
+    for index, layer in enumerate(joints):
+        if layer.law == law:
+            x = np.unique(table.x[table.layer == index])
+            changes = (*layer.changes, *_changes(x, factor(x)))
+            joints[index] = layer.model_copy(update={"changes": changes})
+    return with_line(campaign, joints=tuple(joints))
+
+
+def _changes(x: Reals, factors: Reals) -> list[Change]:
+    """A change for each run of joints of one factor other than 1."""
+    starts = np.flatnonzero(np.concatenate([[True], np.diff(factors) != 0.0])) if x.size else np.zeros(0, int)
+    stops = np.concatenate([starts[1:], [x.size]])
+    return [
+        Change(from_m=float(x[a]) - REACH_M, to_m=float(x[b - 1]) + REACH_M, factor=float(factors[a]))
+        for a, b in zip(starts, stops, strict=True)
+        if factors[a] != 1.0
+    ]
+
+
 def with_chain(campaign: Campaign, sensor: str, chain: Chain) -> Campaign:
     """The campaign with another measuring chain of a sensor."""
     said = campaign.said
     sensors = tuple(s.model_copy(update={"chain": chain}) if s.name == sensor else s for s in said.sensors)
     changed = said.model_copy(update={"sensors": sensors})
     return Campaign(changed, campaign.model, campaign.folder, campaign.parameters)
+
+
+def hung_mass(mass_kg: float, frequency_Hz: float, loss_factor: float) -> Law:
+    """What a mass on a spring answers where it hangs: a joint to the ground of this law is the resonator.
+
+    Parameters
+    ----------
+    mass_kg : float
+        Of each joint, or per metre with `stiffness_is = "per_metre"`; 0 for none.
+    frequency_Hz : float
+        Of the mass on its spring, what it hangs on held.
+    loss_factor : float
+        Of the spring.
+    """
+    spring = Hysteretic(stiffness=max(mass_kg, 1e-9) * (2.0 * np.pi * frequency_Hz) ** 2, loss_factor=loss_factor)
+    return Series(first=spring, second=fixed_mass(mass_kg))
+
+
+def constant_loss(loss: float) -> Law:
+    """A loss that does not depend on frequency, N/m, without stiffness."""
+    return StorageLossPair(
+        storage_law=Hysteretic(stiffness=0.0), loss_law=Hysteretic(stiffness=loss, loss_factor=1.0)
+    )
+
+
+def fixed_mass(mass_kg: float) -> Law:
+    """What a mass answers that is fixed to a body: a joint to the ground of this law is the mass."""
+    return Measured(
+        quantity="apparent_mass",
+        frequency_Hz=EVERYWHERE_HZ,
+        real=(mass_kg, mass_kg),
+        imaginary=(0.0, 0.0),
+    )
+
+
+def fresh(name: str, taken: Iterable[str]) -> str:
+    """The name, with a number if it is taken."""
+    used, number, made = set(taken), 1, name
+    while made in used:
+        number += 1
+        made = f"{name}{number}"
+    return made

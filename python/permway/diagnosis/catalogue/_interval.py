@@ -4,41 +4,41 @@ from __future__ import annotations
 
 import numpy as np
 
-from permway.diagnosis.catalogue._change import with_line
-from permway.model.changes import Change
+from permway.arrays import Reals
+from permway.diagnosis.catalogue._change import with_factors
+from permway.diagnosis.catalogue._roles import spacing
 from permway.model.line import Line
 from permway.recordings.campaign import Campaign
 
+WHOLE, OUTSIDE = 0.25, 0.75
+"""Spacings outside the stretch up to which a joint is changed wholly, and from which it is not."""
 
-def layers_of(line: Line, law: str) -> list[int]:
-    """Indices of the layers that a law is the stiffness of."""
-    return [i for i, layer in enumerate(line.joints) if layer.law == law]
+
+def stations_of(line: Line, law: str) -> Reals:
+    """Where the joints of a law are, ascending, m."""
+    table = line.joint_table()
+    return np.unique(table.x[table.law == list(line.laws).index(law)])
 
 
 def spacing_of(line: Line, law: str) -> float:
     """Distance of neighbouring joints of a law, m; 1 where they have none."""
-    table = line.joint_table()
-    x = np.unique(table.x[table.law == list(line.laws).index(law)])
-    return float(np.median(np.diff(x))) if x.size > 1 else 1.0
+    return spacing(stations_of(line, law))
 
 
 def weakened(campaign: Campaign, law: str, centre_m: float, length_m: float, factor: float) -> Campaign:
-    """All layers of a law with a factor over a stretch, its edges a joint's spacing wide.
+    """All layers of a law with a factor over a stretch, from its first joint to its last.
 
-    A joint within `length_m` of the stretch has the factor, and the change fades out linearly over one spacing on
-    either side: so the model follows the ends smoothly, and a stretch that ends midway between two joints changes
-    the outer one by half.
+    A joint within a quarter of a spacing of the stretch has the factor, one three quarters away has none of it,
+    and between the change fades linearly. So some stretch changes any whole number of joints and nothing else, and
+    the model follows the ends from one such stretch to the next.
     """
-    line = campaign.model.line
-    step = spacing_of(line, law)
-    low, high = centre_m - 0.5 * length_m, centre_m + 0.5 * length_m
-    changes = [Change(from_m=low, to_m=high, factor=factor)]
-    changes.append(Change(from_m=low - step, to_m=low - 1e-6 * step, factor_from=1.0, factor_to=factor))
-    changes.append(Change(from_m=high + 1e-6 * step, to_m=high + step, factor_from=factor, factor_to=1.0))
-    table = line.joint_table()
-    joints = list(line.joints)
-    for index in layers_of(line, law):
-        layer, x = joints[index], table.x[table.layer == index]
-        mine = tuple(c for c in changes if c.holds(x).any())
-        joints[index] = layer.model_copy(update={"changes": (*layer.changes, *mine)})
-    return with_line(campaign, joints=tuple(joints))
+    step = spacing_of(campaign.model.line, law)
+    half = 0.5 * length_m
+
+    def factors(x: Reals) -> Reals:
+        away = (np.abs(x - centre_m) - half) / step
+        # A place on the border counts as within, whatever its last digit.
+        share = np.clip((OUTSIDE - away) / (OUTSIDE - WHOLE), 0.0, 1.0).round(12)
+        return np.asarray(1.0 - (1.0 - factor) * share)
+
+    return with_factors(campaign, law, factors)

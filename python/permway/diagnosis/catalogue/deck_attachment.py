@@ -6,11 +6,10 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from permway.diagnosis.catalogue._change import with_body
+from permway.diagnosis.catalogue._change import fresh, hung_mass, with_joints
+from permway.diagnosis.catalogue._roles import girders
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free, log_free
-from permway.laws import Hysteretic
-from permway.model.bodies import Mass
-from permway.model.joints import Joints
+from permway.model.joints import GROUND, Joints
 from permway.recordings.campaign import Campaign
 
 ID = "deck_attachment"
@@ -25,17 +24,17 @@ PARAMETERS = {
 }
 SIGNATURE = "A dip and a peak in all responses of the deck around one frequency that no speed and no load moves."
 CONFUSED_WITH = {
-    "girder_local_modes": "responses across the deck's width",
+    "girder_local_modes": "the effect is the same all along the girder",
     "rail_absorber": "the effect is the same at every fastener",
     "span_coupling": "a hammer test on the neighbouring span",
 }
 SOURCE = "Den Hartog, Mechanical Vibrations (1956), chapter 3"
-BODY = "girder"
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """At the most telling place of the girder, at frequencies over the records' range."""
-    yield from resonators(situation, BODY, ID)
+    for body in girders(situation.campaign.model.line):
+        yield from resonators(situation, body, ID)
 
 
 def resonators(situation: Situation, body: str, entry: str) -> Iterator[Hypothesis]:
@@ -49,19 +48,17 @@ def resonators(situation: Situation, body: str, entry: str) -> Iterator[Hypothes
     low, high = max(segment.start, centre - 12.0), min(segment.stop, centre + 12.0)
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
-        stiffness = values["mass_kg"] * (2.0 * np.pi * values["frequency_Hz"]) ** 2
-        return with_body(
+        law = fresh("attachment", campaign.model.line.laws)
+        return with_joints(
             campaign,
-            "attachment",
-            Mass(mass_kg=values["mass_kg"]),
-            Joints(between=("attachment", name), law="attachment", at=(values["x_m"],)),
-            laws={"attachment": Hysteretic(stiffness=stiffness, loss_factor=values["loss_factor"])},
+            Joints(between=(name, GROUND), law=law, at=(values["x_m"],)),
+            laws={law: hung_mass(values["mass_kg"], values["frequency_Hz"], values["loss_factor"])},
         )
 
     # The dissipative part of a resonator's stiffness peaks at its frequency.
     shown = best[0].by_band
     peaks = best[0].frequency_Hz[np.argsort(-shown)[:1]]
-    octaves = np.log(np.concatenate([peaks, [5.0, 12.0, 25.0, 50.0, 120.0]]) / 25.0) / np.log(2.5)
+    octaves = np.log(np.concatenate([peaks, np.geomspace(4.0, 150.0, 12)]) / 25.0) / np.log(2.5)
     yield Hypothesis(
         entry=entry,
         domain=DOMAIN,
@@ -78,4 +75,6 @@ def resonators(situation: Situation, body: str, entry: str) -> Iterator[Hypothes
         law=lambda v: (
             f"{v['mass_kg']:.3g} kg on a spring, {v['frequency_Hz']:.3g} Hz, loss factor {v['loss_factor']:.2g}"
         ),
+        size="mass_kg",
+        none=0.0,
     )

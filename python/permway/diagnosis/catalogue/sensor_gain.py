@@ -11,7 +11,7 @@ from permway.recordings.campaign import Campaign
 
 ID = "sensor_gain"
 DOMAIN: Domain = "measurement"
-FAMILY = "sensor level"
+FAMILY = "level"
 SUMMARY = "What one sensor reads is a constant factor off."
 PARAMETERS = {"gain": "1, 0.3 to 3: read over true"}
 SIGNATURE = "One row of all frequency responses, or one channel of all runs, by one factor at all frequencies."
@@ -43,4 +43,6 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             locate=partial(_at, sensor.name),
             starts=((0.3,), (-0.3,)),
             law=lambda v: f"reads {v['gain']:.3f} of what is there",
+            size="gain",
+            none=1.0,
         )

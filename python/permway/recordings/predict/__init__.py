@@ -3,17 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_factors import campaign_under, factors_of
 from permway.recordings.campaign_load import Dataset
+from permway.recordings.campaign_parts import Condition
 from permway.recordings.predict import decay, hammer, material, run, shaker
-from permway.recordings.predict.sweeps import Answer, Need, Sweep, plan, solve
+from permway.recordings.predict.sweeps import Answer, Need, State, Sweep, plan, solve
 
-__all__ = ["Answer", "Need", "PassBy", "Sweep", "need_of", "plan", "predict", "predict_one", "solve", "why_not"]
+__all__ = [
+    "Answer",
+    "Need",
+    "PassBy",
+    "State",
+    "Sweep",
+    "need_of",
+    "plan",
+    "predict",
+    "predict_one",
+    "solve",
+    "why_not",
+]
 
 PassBy = Callable[[Campaign, Dataset], xr.Dataset]
 """What predicts sensors beside the track under a passing train."""
@@ -22,14 +37,15 @@ PassBy = Callable[[Campaign, Dataset], xr.Dataset]
 def predict(
     campaign: Campaign, datasets: Sequence[Dataset], *, threads: int | None = None, passby: PassBy | None = None
 ) -> list[xr.Dataset]:
-    """Predict all datasets: one solve of the line for each temperature.
+    """Predict all datasets: one solve of the line for each temperature and each set of factors.
 
     Parameters
     ----------
     campaign : Campaign
         With the values to predict for: see :meth:`Campaign.with_values`.
     datasets : sequence of Dataset
-        What :meth:`Campaign.load` gives; only their coordinates are read.
+        What :meth:`Campaign.load` gives; only their coordinates are read. Their conditions are the campaign's
+        of the same name.
     threads : int, optional
     passby : callable, optional
         Predicts records whose sensors all stand beside the track while a train passes.
@@ -51,13 +67,14 @@ def predict(
     answers = [
         solve(sweep, campaign.model, threads=threads) for sweep in plan(need for need in needs if need is not None)
     ]
-    by_temperature = {answer.sweep.temperature_C: answer for answer in answers}
+    by_state = {answer.sweep.state: answer for answer in answers}
     found = []
     for dataset, need, apart in zip(datasets, needs, beside, strict=True):
         if apart and passby is not None:
-            found.append(passby(campaign, dataset))
+            condition = campaign.condition(dataset.condition.name)
+            found.append(passby(campaign_under(campaign, condition), replace(dataset, condition=condition)))
         else:
-            answer = None if need is None else by_temperature[need.temperature_C]
+            answer = None if need is None else by_state[need.state]
             found.append(predict_one(campaign, dataset, need, answer))
     return found
 
@@ -79,7 +96,14 @@ def need_of(campaign: Campaign, dataset: Dataset) -> Need | None:
     InputError
         For a statistic or a sensor that cannot be predicted.
     """
-    record, condition, data = dataset.record, dataset.condition, dataset.data
+    condition = campaign.condition(dataset.condition.name)
+    need = _need(campaign_under(campaign, condition), dataset, condition)
+    factors = tuple((path, factor) for path, factor in factors_of(condition) if path.startswith("line"))
+    return replace(need, factors=factors) if need is not None and factors else need
+
+
+def _need(campaign: Campaign, dataset: Dataset, condition: Condition) -> Need | None:
+    record, data = dataset.record, dataset.data
     temperature = hammer.temperature(campaign, condition)
     _check_directions(campaign, record.name, [*record.channels.values(), *record.responses.values()])
     match record.statistic:
@@ -108,7 +132,9 @@ def need_of(campaign: Campaign, dataset: Dataset) -> Need | None:
 
 def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer: Answer | None) -> xr.Dataset:
     """Predict one dataset from receptances that were solved for it; see :func:`predict`."""
-    record, condition, data = dataset.record, dataset.condition, dataset.data
+    record, data = dataset.record, dataset.data
+    condition = campaign.condition(dataset.condition.name)
+    campaign = campaign_under(campaign, condition)
     if need is None or answer is None:
         return material.predicted(campaign, record, data)
     values = answer.of(need)

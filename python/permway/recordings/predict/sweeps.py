@@ -10,15 +10,19 @@ import numpy as np
 from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.model.file import Model
+from permway.recordings.campaign_factors import Factors, model_under
 from permway.response.receptance import Place, receptance
 
 Spot = tuple[str, float]
 """Body and x in m."""
 
+State = tuple[float | None, Factors]
+"""Temperature, and factors on the model's numbers."""
+
 
 @dataclass(frozen=True)
 class Need:
-    """Receptances between all of some places and all of others, at some frequencies and a temperature.
+    """Receptances between all of some places and all of others, at some frequencies, under one condition.
 
     Attributes
     ----------
@@ -27,12 +31,20 @@ class Need:
         Ascending.
     rows, columns : tuple of (body, x)
         Where displacement is read and where the force acts; the line is reciprocal, so either may be the other.
+    factors : tuple of (path, factor)
+        Of the condition.
     """
 
     temperature_C: float | None
     frequency_Hz: Reals
     rows: tuple[Spot, ...]
     columns: tuple[Spot, ...]
+    factors: Factors = ()
+
+    @property
+    def state(self) -> State:
+        """What needs that one sweep serves have in common."""
+        return self.temperature_C, self.factors
 
 
 @dataclass(frozen=True)
@@ -44,12 +56,19 @@ class Sweep:
     temperature_C : float or None
     frequency_Hz : ndarray, shape (F,)
     forces, sensors : tuple of Place
+    factors : tuple of (path, factor)
     """
 
     temperature_C: float | None
     frequency_Hz: Reals
     forces: tuple[Place, ...]
     sensors: tuple[Place, ...]
+    factors: Factors = ()
+
+    @property
+    def state(self) -> State:
+        """Temperature and factors."""
+        return self.temperature_C, self.factors
 
     def lines(self, frequency_Hz: Reals) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
         """Places of frequencies in the sweep's.
@@ -103,15 +122,15 @@ class Answer:
 
 
 def plan(needs: Iterable[Need]) -> list[Sweep]:
-    """One sweep for each temperature, which serves all needs.
+    """One sweep for each temperature and each set of factors, which serves all needs.
 
     A force costs a solve, a sensor nearly nothing: of every need the shorter side becomes forces.
     """
-    grouped: dict[float | None, list[Need]] = {}
+    grouped: dict[State, list[Need]] = {}
     for need in needs:
-        grouped.setdefault(need.temperature_C, []).append(need)
+        grouped.setdefault(need.state, []).append(need)
     sweeps = []
-    for temperature, members in grouped.items():
+    for (temperature, factors), members in grouped.items():
         forces: dict[Spot, None] = {}
         sensors: dict[Spot, None] = {}
         for need in members:
@@ -119,18 +138,19 @@ def plan(needs: Iterable[Need]) -> list[Sweep]:
             forces.update(dict.fromkeys(few))
             sensors.update(dict.fromkeys(many))
         frequency = np.unique(np.concatenate([need.frequency_Hz for need in members]))
-        sweeps.append(Sweep(temperature, frequency, _places(forces), _places(sensors)))
+        sweeps.append(Sweep(temperature, frequency, _places(forces), _places(sensors), factors))
     return sweeps
 
 
 def solve(sweep: Sweep, model: Model, *, threads: int | None = None) -> Answer:
-    """The receptances of a sweep.
+    """The receptances of a sweep, of the model under the sweep's factors.
 
     Raises
     ------
     InputError, SolveError
         As :func:`permway.response.receptance.receptance`.
     """
+    model = model_under(model, sweep.factors)
     data = receptance(
         model.line,
         sweep.frequency_Hz,

@@ -1,0 +1,142 @@
+"""Hammer tests and runs of a plan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from permway.challenge.beams import Complexes, Reals
+from permway.challenge.errors_of_measurement import struck, wander
+from permway.challenge.irregularity import profile
+from permway.challenge.mesh import Mesh
+from permway.challenge.plan import FLOOR, Plan
+from permway.challenge.track import Spot
+
+GRID_HZ = ((0.25, 0.125), (24.0, 0.25), (40.0, 0.5), (100.0, 1.0))
+"""Where the track is solved: from, step. Between the lines its receptance, which holds no lag, is smooth."""
+
+TOP_HZ = 466.0
+FILTER_HZ = (412.0, 462.0)
+"""Where the recorder's filter goes from one to nothing."""
+
+SLOW_HZ = (0.25, 0.75)
+"""Where its high-pass goes from nothing to one."""
+
+SHARE = {"sensor": 0.8, "point": 0.6}
+"""Of the smooth errors; the squares add to one."""
+
+
+@dataclass(frozen=True)
+class HammerTest:
+    """H1 accelerance and coherence, (F, sensors, points)."""
+
+    temperature_C: float
+    frequency_Hz: Reals
+    frf: Complexes
+    coherence: Reals
+
+
+@dataclass(frozen=True)
+class Run:
+    """Accelerations on board, (N, channels), m/s2."""
+
+    speed_kmh: float
+    sampling_Hz: float
+    channels: tuple[str, ...]
+    values: Reals
+
+
+def measure(plan: Plan, random: np.random.Generator) -> tuple[list[HammerTest], list[Run]]:
+    """All hammer tests, and all runs at the first of their temperatures."""
+    tests = plan.tests
+    start, stop, step = tests.lines_Hz
+    lines = np.asarray(np.arange(start, stop + 0.5 * step, step))
+    wheels: list[Spot] = [("rail", x) for x in plan.layout.wheels_m(plan.values["vehicle"])]
+    rows = list(dict.fromkeys([*tests.sensors, *wheels]))
+    columns = list(dict.fromkeys([*tests.points, *wheels]))
+    mesh = Mesh(plan.track, [*rows, *columns])
+    grid = np.unique(np.concatenate([_grid(), lines]))
+    hammers = []
+    under = np.empty(0, dtype=np.complex128)
+    for index, written in enumerate(tests.temperatures_C):
+        at = grid if index == 0 else lines
+        moved = mesh.receptance(at, written + plan.chain.warmer_C[index], rows, columns)
+        if index == 0:
+            r, c = ([names.index(wheel) for wheel in wheels] for names in (rows, columns))
+            under = moved[:, r][:, :, c]
+        rates = moved[np.searchsorted(at, lines)] * -((2.0 * np.pi * lines[:, None, None]) ** 2)
+        r = [rows.index(spot) for spot in tests.sensors]
+        c = [columns.index(spot) for spot in tests.points]
+        hammers.append(_hammer(plan, random, written, lines, rates[:, r][:, :, c]))
+    return hammers, [_run(plan, random, index, grid, under) for index in range(len(tests.speeds_kmh))]
+
+
+def _grid() -> Reals:
+    ends = [start for start, _ in GRID_HZ[1:]] + [TOP_HZ + 0.5]
+    return np.concatenate([np.arange(start, end, step) for (start, step), end in zip(GRID_HZ, ends, strict=True)])
+
+
+def _hammer(
+    plan: Plan, random: np.random.Generator, written_C: float, lines: Reals, response: Complexes
+) -> HammerTest:
+    tests, chain = plan.tests, plan.chain
+    for index, spot in enumerate(tests.sensors):
+        response[:, index] *= plan.gain_of(plan.line_gain.get(spot, []), lines)[:, None]
+    if chain.clean:
+        return HammerTest(written_C, lines, response, np.ones(response.shape))
+    for index in range(len(tests.sensors)):
+        response[:, index] *= wander(random, lines, size_dB=chain.wander_dB * SHARE["sensor"])[:, None]
+    for index in range(len(tests.points)):
+        response[:, :, index] *= wander(random, lines, size_dB=chain.wander_dB * SHARE["point"])[:, None]
+    # Ground unrest below, and a hammer that loses force above.
+    tint = np.sqrt(1.0 + (6.0 / lines) ** 2) * np.sqrt(1.0 + (lines / 350.0) ** 2)
+    each = np.array([plan.line_noise.get(spot, 1.0) for spot in tests.sensors])
+    each = each * np.exp(0.3 * random.standard_normal(each.size)) * chain.noise
+    frf, coherence = struck(random, response, tint[:, None] * each, blows=tests.blows)
+    return HammerTest(written_C, lines, frf, coherence)
+
+
+def _run(plan: Plan, random: np.random.Generator, index: int, grid: Reals, under: Complexes) -> Run:
+    tests, chain = plan.tests, plan.chain
+    written = tests.speeds_kmh[index]
+    speed = written / 3.6 * plan.speed_factor[index]
+    samples = round(tests.seconds * tests.sampling_Hz)
+    times = np.arange(samples) / tests.sampling_Hz
+    frequency = np.asarray(np.fft.rfftfreq(samples, 1.0 / tests.sampling_Hz), dtype=np.float64)
+    kept = (frequency >= SLOW_HZ[0]) & (frequency < FILTER_HZ[1])
+    lines = frequency[kept]
+    met = profile(random, samples=samples, sampling_Hz=tests.sampling_Hz, speed=speed)[kept]
+    for shape in plan.shapes:
+        met = met * shape(lines, speed)
+    wheels = np.array(plan.layout.wheels_m(plan.values["vehicle"]))
+    late = np.exp(-2j * np.pi * lines[:, None] * (wheels[0] - wheels) / speed)
+    profiles = met[:, None] * late
+    for extra in plan.wheel_profiles:
+        profiles = profiles + np.fft.rfft(extra(times, speed), axis=1)[:, kept].T
+    track = CubicSpline(grid, under)(lines)
+    moved = plan.vehicle.respond(lines, track, profiles, bins=np.flatnonzero(kept), samples=samples)
+    rates = moved * (-((2.0 * np.pi * lines) ** 2) * _window(lines))[:, None]
+    names = list(plan.vehicle.channels)
+    spectrum = np.zeros((frequency.size, len(tests.channels)), dtype=np.complex128)
+    for column, channel in enumerate(tests.channels):
+        gain = plan.gain_of(plan.channel_gain.get(channel, []), lines)
+        if not chain.clean:
+            gain = gain * wander(random, lines, size_dB=chain.wander_dB * SHARE["sensor"])
+        spectrum[kept, column] = rates[:, names.index(channel)] * gain
+    values = np.fft.irfft(spectrum, n=samples, axis=0)
+    for column, channel in enumerate(tests.channels):
+        for hum in plan.hums:
+            values[:, column] += hum(channel, times)
+        if not chain.clean:
+            size = np.sqrt(0.5 * FLOOR * tests.sampling_Hz) * plan.channel_noise.get(channel, 1.0)
+            values[:, column] += size * random.standard_normal(samples)
+    return Run(written, tests.sampling_Hz, tests.channels, values)
+
+
+def _window(frequency_Hz: Reals) -> Reals:
+    """The recorder's high-pass and filter: raised cosines, without phase."""
+    rise = np.clip((frequency_Hz - SLOW_HZ[0]) / (SLOW_HZ[1] - SLOW_HZ[0]), 0.0, 1.0)
+    fall = np.clip((FILTER_HZ[1] - frequency_Hz) / (FILTER_HZ[1] - FILTER_HZ[0]), 0.0, 1.0)
+    return np.asarray(0.25 * (1.0 - np.cos(np.pi * rise)) * (1.0 - np.cos(np.pi * fall)))

@@ -1,0 +1,89 @@
+"""The next measurement: the one on the menu that would tell two rivals apart, for its cost."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy import linalg
+
+from permway.arrays import Reals
+from permway.diagnosis.evidence import Evidence, Whitener, evidence_of
+from permway.diagnosis.menu import Item, menu
+from permway.diagnosis.recalibrate import STEP, Fit
+from permway.diagnosis.verdict_parts import NextMeasurement
+from permway.errors import InputError, SolveError
+from permway.recordings.predict import predict
+
+MOST = 3
+"""Measurements that are advised."""
+
+Progress = Callable[[str, int, int], object]
+
+
+def advise(
+    right: Fit, other: Fit, names: tuple[str, str], *, progress: Progress | None = None
+) -> tuple[NextMeasurement, ...]:
+    """Which measurements would separate two rivals, the best for its cost first.
+
+    Parameters
+    ----------
+    right, other : Fit
+        Rivals fitted in full; the one is taken to be right, and the other may move its parameters.
+    names : (str, str)
+        Their names.
+    """
+    before = abs(other.objective - right.objective)
+    found: list[tuple[float, NextMeasurement]] = []
+    items = list(menu(right.evidence.campaign, right.evidence.datasets))
+    for index, item in enumerate(items):
+        if progress is not None:
+            progress("advise", index, len(items))
+        try:
+            more = separation(item, right, other)
+        except (InputError, SolveError):
+            # What the model cannot predict cannot be advised.
+            continue
+        advice = NextMeasurement(
+            measurement=item.words,
+            separates=names,
+            separation_before=before,
+            separation_after=before + more,
+        )
+        found.append((more / item.cost, advice))
+    found.sort(key=lambda pair: -pair[0])
+    return tuple(advice for _, advice in found[:MOST])
+
+
+def separation(item: Item, right: Fit, other: Fit) -> float:
+    """Deviance that a measurement is expected to add between two rivals."""
+    truth = item.planned(right.campaign)
+    (values,) = predict(truth, [item.dataset], threads=right.evidence.threads)
+    dataset = item.dataset
+    measured = dataset.data.assign({name: values[name] for name in values.data_vars if name in dataset.data})
+    evidence = evidence_of(truth, [type(dataset)(dataset.record, dataset.condition, measured)], right.evidence)
+
+    def deviations(z: Reals) -> Reals:
+        rival = item.planned(other.build({f.name: f.value(float(v)) for f, v in zip(other.free, z, strict=True)}))
+        return evidence.deviations(evidence.predicted(rival).datasets)
+
+    plain = deviations(other.z)
+    columns = []
+    for i, f in enumerate(other.free):
+        moved = other.z.copy()
+        step = STEP if moved[i] + STEP <= f.limits[1] else -STEP
+        moved[i] += step
+        columns.append((deviations(moved) - plain) / step)
+    jacobian = np.column_stack(columns)
+    whitener = _whitener(evidence, item, other)
+    reduced, left = whitener.reduce(jacobian), whitener.reduce(plain)
+    curvature = jacobian.T @ jacobian - reduced.T @ reduced
+    slope = jacobian.T @ plain - reduced.T @ left
+    known = np.linalg.inv(other.covariance)
+    square = float(plain @ plain - left @ left)
+    return max(square - float(slope @ linalg.solve(known + curvature, slope, assume_a="pos")), 0.0)
+
+
+def _whitener(evidence: Evidence, item: Item, other: Fit) -> Whitener:
+    rival = evidence.predicted(item.planned(other.campaign))
+    return Whitener.of(*evidence.smooth(rival.datasets), evidence.sizes)

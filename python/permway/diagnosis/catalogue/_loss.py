@@ -1,0 +1,116 @@
+"""Joints of a layer that carry little or nothing over a stretch: the hypotheses of any layer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from permway.diagnosis.catalogue._glance import Glance
+from permway.diagnosis.catalogue._interval import spacing_of, stations_of, weakened
+from permway.diagnosis.hypothesis import Hypothesis, Situation, Where, between_free, linear_free
+from permway.diagnosis.recalibrate import Free
+from permway.recordings.campaign import Campaign
+
+LONGEST = 12.0
+"""Of a stretch, in spacings."""
+
+LOOKED = 7
+"""Joints that a stretch is made of in the first look, at most."""
+
+LEFT = 0.05
+"""Of the stiffness, in the first look."""
+
+TELLING = 0.4
+"""Share of the most telling spot's surplus that a joint of the law must have for a first look."""
+
+FITS = 2.0
+"""Mean square of deviations below which a base nearly fits: a loss is then small, and gradients lead to it."""
+
+
+def local_loss(
+    situation: Situation, law: str, entry: str, family: str, *, most: int = 2, places: Sequence[float] = ()
+) -> Iterator[Hypothesis]:
+    """At the most telling joints of a law that do not lie within a few spacings of each other.
+
+    Parameters
+    ----------
+    situation : Situation
+    law, entry, family : str
+    most : int
+        Number of hypotheses.
+    places : sequence of float
+        Where to look if the scan names no joint of the law, m.
+    """
+    step = spacing_of(situation.campaign.model.line, law)
+    told = situation.joints(law, most=40)
+    taken: list[float] = []
+    for centre in [f.spot.x_m[0] for f in told] or places:
+        if all(abs(centre - other) >= 4.0 * step for other in taken):
+            taken.append(centre)
+    telling = bool(told) and told[0].surplus > TELLING * situation.found[0].surplus
+    glance = Glance(situation.fit) if situation.fit.heat > FITS and telling else None
+    for centre in taken[:most]:
+        found = None if glance is None else _looked(situation, glance, law, centre)
+        yield _hypothesis(law, step, centre, found, entry, family)
+        if found is not None:
+            return
+
+
+def _hypothesis(
+    law: str, step: float, centre: float, found: tuple[float, float] | None, entry: str, family: str
+) -> Hypothesis:
+    def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
+        return weakened(campaign, law, values["centre_m"], values["length_m"], values["factor"])
+
+    def locate(values: Mapping[str, float]) -> Where:
+        half = 0.5 * values["length_m"]
+        return Where(what=law, x_m=(values["centre_m"] - half, values["centre_m"] + half))
+
+    if found is None:
+        middle, length, sigma = centre, 3.0 * step, 2.0 * step
+        # Both ends midway between two joints, where the model follows them.
+        starts = tuple((z, w, -0.8) for z, w in ((0.0, 0.0), (0.0, 1.0), (0.0, 2.0), (-0.25, -0.5), (0.25, -0.5)))
+    else:
+        # The first look has told the joints; what remains open is how far the stretch reaches between two.
+        middle, length, sigma = 0.5 * (found[0] + found[1]), found[1] - found[0], 0.75 * step
+        # As looked at, and with the outer joints changed by half.
+        starts = ((0.0, 0.0, -1.6), (0.0, 0.0, -0.8), (0.0, 1.33, -1.6), (0.0, -1.33, -1.6))
+    free = (
+        linear_free("centre_m", "m", middle, sigma, middle - 6.0 * step, middle + 6.0 * step),
+        _length(length, sigma, step),
+        between_free("factor", "1", 0.0, 1.0),
+    )
+    return Hypothesis(
+        entry=entry,
+        domain="path",
+        family=family,
+        free=free,
+        amend=amend,
+        locate=locate,
+        starts=starts,
+        law=lambda v: f"{v['factor']:.2f} of the stiffness is left",
+        size="factor",
+        none=1.0,
+    )
+
+
+def _length(length: float, sigma: float, step: float) -> Free:
+    made = linear_free("length_m", "m", length, sigma, 0.0, LONGEST * step)
+    return replace(made, limits=(min(made.limits[0], 0.0), max(made.limits[1], 0.0)))
+
+
+def _looked(situation: Situation, glance: Glance, law: str, centre: float) -> tuple[float, float] | None:
+    """First and last joint of the stretch about a place whose loss explains most; none if no loss explains."""
+    campaign = situation.campaign
+    x = stations_of(campaign.model.line, law)
+    near = int(np.argmin(np.abs(x - centre)))
+    best, chosen = glance.objective(campaign), None
+    for first in range(max(0, near - LOOKED + 2), min(x.size, near + 2)):
+        for last in range(max(first, near - 1), min(x.size, first + LOOKED)):
+            low, high = float(x[first]), float(x[last])
+            value = glance.objective(weakened(campaign, law, 0.5 * (low + high), high - low, LEFT))
+            if value < best:
+                best, chosen = value, (low, high)
+    return chosen

@@ -1,0 +1,79 @@
+"""Pads that are others under one condition than under another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from permway.model.line import Line
+from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_factors import model_under
+from permway.recordings.campaign_parts import Condition
+
+Keys = tuple[str, ...]
+
+STIFFNESS: dict[str, Keys] = {
+    "hysteretic": ("stiffness",),
+    "kelvin_voigt": ("stiffness", "damping"),
+    "fractional_kelvin_voigt": ("stiffness", "coefficient"),
+}
+"""Numbers of a law that all scale with its stiffness."""
+
+LOSS: dict[str, Keys] = {
+    "hysteretic": ("loss_factor",),
+    "kelvin_voigt": ("damping",),
+    "fractional_kelvin_voigt": ("coefficient",),
+}
+"""Numbers that scale its loss, the stiffness at rest as it is."""
+
+REFERENCE_HZ = 60.0
+
+
+def pad_laws(line: Line) -> list[str]:
+    """Laws between a rail and what lies below, of which the numbers can be scaled."""
+    laws = dict.fromkeys(
+        layer.law for layer in line.joints if "rail" in (body.split("[")[0] for body in layer.between)
+    )
+    return [name for name in laws if line.laws[name].type in STIFFNESS]
+
+
+def loss_factor(line: Line, law: str) -> float:
+    """Of a law that does not depend on temperature, at 60 Hz."""
+    return float(line.laws[law].loss_factor(np.array([REFERENCE_HZ]))[0])
+
+
+def factors(line: Line, law: str, stiffness: float, loss: float = 1.0) -> dict[str, float]:
+    """Factors by path that multiply a law's stiffness, and its loss over its stiffness."""
+    kind = line.laws[law].type
+    found = {f"line.laws.{law}.{key}": stiffness for key in STIFFNESS[kind]}
+    for key in LOSS[kind]:
+        path = f"line.laws.{law}.{key}"
+        found[path] = found.get(path, 1.0) * loss
+    return found
+
+
+def scaled(campaign: Campaign, laws: Iterable[str], stiffness: float) -> Campaign:
+    """The campaign with the laws' stiffness multiplied under all conditions."""
+    if stiffness == 1.0:
+        return campaign
+    line = campaign.model.line
+    every = tuple(item for law in laws for item in factors(line, law, stiffness).items())
+    return campaign.with_model(model_under(campaign.model, every))
+
+
+def measured_under(campaign: Campaign) -> list[Condition]:
+    """Conditions that some record of line or train was taken under."""
+    used = {record.condition for record in campaign.said.records}
+    return [c for c in campaign.said.conditions if c.name in used and c.kind != "table"]
+
+
+def with_factors(campaign: Campaign, by_condition: Mapping[str, Mapping[str, float]]) -> Campaign:
+    """The campaign with further factors under some conditions, by their names."""
+    changed = []
+    for condition in campaign.said.conditions:
+        new = by_condition.get(condition.name, {})
+        merged = {**condition.factors, **{p: condition.factors.get(p, 1.0) * f for p, f in new.items()}}
+        changed.append(condition.model_copy(update={"factors": merged}) if new else condition)
+    said = campaign.said.model_copy(update={"conditions": tuple(changed)})
+    return Campaign(said, campaign.model, campaign.folder, campaign.parameters)

@@ -1,0 +1,66 @@
+"""Joints or dipped welds at the ends of rails."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from permway.diagnosis.catalogue._excite import stays
+from permway.diagnosis.catalogue._lines import FACTOR, coordinate, repeats
+from permway.diagnosis.catalogue._runs import combs, excesses
+from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, log_free
+
+ID = "rail_joint"
+DOMAIN: Domain = "irregularity"
+FAMILY = "tied to speed over length"
+SUMMARY = "Lines a n^-p in the profile at all multiples n of V / L, L the length of a rail."
+PARAMETERS = {
+    "length_m": "m, 5 to 120: L",
+    "amplitude_m": "m, 1e-8 to 1e-2: a, of the first line",
+    "decay": "1, 0 to 2: p; 0 for short dips, 2 for a kink",
+}
+SIGNATURE = "A comb of lines of all on-board channels that goes with the speed; no frequency response."
+CONFUSED_WITH = {
+    "span_camber": "the length is the span's there, and lines fall fast",
+    "wheel_flat": "one wheelset, and the length of its turn",
+    "parametric_support": "the length is the fasteners' spacing there",
+}
+SOURCE = (
+    "Jenkins and others, The effect of track and vehicle parameters on wheel/rail vertical dynamic forces (1974)"
+)
+CENTRE_M, LENGTH_FACTOR, AMPLITUDE_M = 25.0, 2.0, 1e-5
+USUAL_M = (12.5, 20.0, 25.0, 50.0, 100.0)
+
+
+def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
+    """At the lengths whose combs stand out most."""
+    runs = excesses(situation)
+    if not runs:
+        return
+    lengths = np.concatenate([np.geomspace(5.0, 120.0, 1600), USUAL_M])
+    found = combs(runs, (1.0 / lengths).tolist(), harmonics=None, decay=0.7, most=3)
+    yield Hypothesis(
+        entry=ID,
+        domain=DOMAIN,
+        family=FAMILY,
+        free=(
+            log_free("length_m", "m", CENTRE_M, LENGTH_FACTOR, lowest=1.0),
+            log_free("amplitude_m", "m", AMPLITUDE_M, FACTOR),
+            between_free("decay", "1", 0.0, 2.0),
+        ),
+        amend=repeats(),
+        locate=stays("rail"),
+        starts=tuple(
+            (
+                coordinate(1.0 / c.per_speed, CENTRE_M, LENGTH_FACTOR),
+                coordinate(c.amplitude_m, AMPLITUDE_M, FACTOR),
+                -0.4,
+            )
+            for c in found
+        ),
+        law=lambda v: (
+            f"{1e6 * v['amplitude_m']:.3g} um every {v['length_m']:.4g} m, line n lower by n^-{v['decay']:.2f}"
+        ),
+        size="amplitude_m",
+    )

@@ -1,0 +1,70 @@
+"""A second track on the girder that the model leaves out: mass, part of it on its own springs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from permway.diagnosis.catalogue._change import fixed_mass, hung_mass
+from permway.diagnosis.catalogue._hung import spread_over
+from permway.diagnosis.catalogue._roles import girders
+from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, between_free, log_free
+from permway.recordings.campaign import Campaign
+
+ID = "second_track"
+DOMAIN: Domain = "path"
+FAMILY = "girder"
+SUMMARY = "A mass per metre on the girder, of which a share stands on springs of one frequency."
+PARAMETERS = {
+    "mass_kg_per_m": "kg/m, 30 to 60000: of the second track, the model's share",
+    "sprung": "1, 0.01 to 0.9: of it that stands on springs",
+    "frequency_Hz": "Hz, 10 to 1500: of that part",
+}
+SIGNATURE = (
+    "All bending frequencies of the girder fall by one factor, beyond what its density may; around the other "
+    "track's own frequency a dip and a peak at all places."
+)
+CONFUSED_WITH = {
+    "girder_local_modes": "a sensor on the other track",
+    "girder_crack": "frequencies fall each by its own factor there",
+}
+SOURCE = "EN 1991-1-1, annex A: permanent load of tracks; Fryba, Dynamics of Railway Bridges (1996)"
+LOSS = 0.15
+"""Of the springs: a pad's."""
+
+
+def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
+    """One for each row of girders."""
+    for name in girders(situation.campaign.model.line):
+        yield _of(name)
+
+
+def _of(name: str) -> Hypothesis:
+    def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
+        mass, sprung = values["mass_kg_per_m"], values["sprung"]
+        return spread_over(
+            campaign,
+            name,
+            {
+                "second_track": fixed_mass(mass * (1.0 - sprung)),
+                "second_rails": hung_mass(mass * sprung, values["frequency_Hz"], LOSS),
+            },
+        )
+
+    return Hypothesis(
+        entry=ID,
+        domain=DOMAIN,
+        family=FAMILY,
+        free=(
+            log_free("mass_kg_per_m", "kg/m", 1500.0, 2.0),
+            between_free("sprung", "1", 0.01, 0.9),
+            log_free("frequency_Hz", "Hz", 120.0, 1.65),
+        ),
+        amend=amend,
+        locate=lambda _: Where(what=name),
+        starts=tuple((mass, -0.8, z) for mass in (-3.0, -1.5, 0.0) for z in (-1.6, -0.8, 0.0, 0.8)),
+        law=lambda v: (
+            f"{v['mass_kg_per_m']:.3g} kg/m more, {v['sprung']:.2f} of it on springs at {v['frequency_Hz']:.3g} Hz"
+        ),
+        size="mass_kg_per_m",
+        none=0.0,
+    )

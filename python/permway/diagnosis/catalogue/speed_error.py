@@ -1,0 +1,49 @@
+"""The train ran faster or slower than noted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from permway.diagnosis.catalogue._excite import stays, with_speed
+from permway.diagnosis.catalogue._runs import excesses
+from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, linear_free
+from permway.recordings.campaign import Campaign
+
+ID = "speed_error"
+DOMAIN: Domain = "measurement"
+FAMILY = "speed"
+SUMMARY = "The speed of all runs, or of one run, times a factor."
+PARAMETERS = {"factor": "1, 0.9 to 1.1: true speed over the one noted"}
+SIGNATURE = "Phases between wheelsets, straight over frequency; lines tied to length; hardly any level."
+CONFUSED_WITH = {
+    "sensor_delay": "one channel against all others",
+    "irregularity_level": "phases are right there",
+}
+SOURCE = "Brandt, Noise and Vibration Analysis (2011), chapter 12: order tracking"
+SIGMA = 0.015
+STARTS = tuple((sign * z,) for z in (0.02, 0.07, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5) for sign in (1.0, -1.0))
+"""So near each other that phases of wheels far apart are less than half a turn off at the nearest."""
+
+
+def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
+    """Of all runs; and of each run of several, three at most."""
+    names = list(dict.fromkeys(run.condition.name for run in excesses(situation)))
+    if not names:
+        return
+    for name in (None, *(names[:3] if len(names) > 1 else ())):
+
+        def amend(campaign: Campaign, values: Mapping[str, float], name: str | None = name) -> Campaign:
+            return with_speed(campaign, values["factor"], name)
+
+        yield Hypothesis(
+            entry=ID,
+            domain=DOMAIN,
+            family=FAMILY,
+            free=(linear_free("factor", "1", 1.0, SIGMA, 0.9, 1.1),),
+            amend=amend,
+            locate=stays("speed" if name is None else f"speed of {name}"),
+            starts=STARTS,
+            law=lambda v: f"{100 * (v['factor'] - 1):+.2f} % of the speed noted",
+            size="factor",
+            none=1.0,
+        )

@@ -1,0 +1,73 @@
+"""Fasteners that differ along the track, smoothly from one to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from permway.arrays import Reals
+from permway.diagnosis.catalogue._change import with_factors
+from permway.diagnosis.catalogue._roles import laws_of, pads
+from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free
+from permway.model.joints import GROUND
+from permway.recordings.campaign import Campaign
+
+ID = "support_scatter"
+DOMAIN: Domain = "path"
+FAMILY = "uneven support"
+SUMMARY = "The logarithm of the pads' stiffness is a sum of cosines of 1 to 4 half waves over the structure."
+PARAMETERS = {
+    f"wave{order}": f"1, -2 to 2: coefficient of {order} half wave{'s' if order > 1 else ''}"
+    for order in (1, 2, 3, 4)
+}
+SIGNATURE = "Responses of the rail differ from place to place as of softer and stiffer pads, with no place apart."
+CONFUSED_WITH = {
+    "support_gradient": "all but the first coefficient are small there",
+    "fastener_loss": "hammer points at every fastener nearby",
+}
+SOURCE = "Wu and Thompson (2000), Acta Acustica 86, 313-321; Oscarsson (2002), Vehicle System Dynamics 37, 59-79"
+ORDERS = (1, 2, 3, 4)
+SPREAD = 0.25
+"""Standard deviation of a coefficient."""
+
+STARTS = tuple(tuple(sign * float(other == order) for other in ORDERS) for order in ORDERS for sign in (1.5, -1.5))
+"""One wave at a time, up and down."""
+
+FEWEST = 8
+
+
+def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
+    """One for each law of pads, over the structure."""
+    found = pads(situation.campaign.model.line)
+    for law in laws_of(found):
+        mine = [layer for layer in found if layer.law == law]
+        carried = [layer for layer in mine if layer.lower != GROUND] or mine
+        x = np.concatenate([layer.x for layer in carried])
+        if x.size >= FEWEST:
+            yield _of(law, float(x.min()), float(x.max()))
+
+
+def _of(law: str, low: float, high: float) -> Hypothesis:
+    def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
+        def factors(x: Reals) -> Reals:
+            along = np.pi * (x - low) / (high - low)
+            inside = (x >= low - 1e-6) & (x <= high + 1e-6)
+            waves = sum(values[f"wave{order}"] * np.cos(order * along) for order in ORDERS)
+            return np.asarray(np.where(inside, np.exp(waves), 1.0))
+
+        return with_factors(campaign, law, factors)
+
+    return Hypothesis(
+        entry=ID,
+        domain=DOMAIN,
+        family=FAMILY,
+        free=tuple(linear_free(f"wave{order}", "1", 0.0, SPREAD, -2.0, 2.0) for order in ORDERS),
+        amend=amend,
+        locate=lambda _: Where(what=law, x_m=(low, high)),
+        starts=STARTS,
+        law=lambda v: (
+            "pads differ by a factor of e to the power of "
+            + " ".join(f"{v[f'wave{order}']:+.2f} cos({order} pi x/L)" for order in ORDERS)
+        ),
+    )

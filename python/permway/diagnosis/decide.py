@@ -1,0 +1,185 @@
+"""Whether physics is called missing, and which: four conditions, classes of rivals, detectable sizes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.heldout import Gain
+from permway.diagnosis.locate import Found
+from permway.diagnosis.recalibrate import Fit, Free
+from permway.diagnosis.search import Finalist, Round, lines, penalty
+from permway.diagnosis.verdict import NOVEL
+from permway.diagnosis.verdict_parts import ClassMember, Smallest
+
+E_VALUE = 20.0
+STANDARD_ERRORS = 2.0
+PLACEBO_SHARE = 0.5
+"""Share of the effect's gain that a placebo may not reach."""
+
+CLASS_DEVIANCE = 9.0
+"""Deviance between best fits below which rivals are one class."""
+
+NAMED = 0.9
+"""Probability from which an effect is named."""
+
+NOVEL_PRIOR = 0.05
+"""Of physics that the catalogue does not hold, before anything was seen."""
+
+MOST_TIMES = 5.0
+"""Times a usual size beyond which an effect is not said to be detectable."""
+
+EXPLAINED = 0.8
+"""Share of the gap to a free description that a named effect has to close."""
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """The four conditions under which physics is called missing.
+
+    Attributes
+    ----------
+    bic : bool
+        The gain of BIC is above the threshold.
+    e_value : bool
+        The split-likelihood e-value is above 20.
+    held_out : bool
+        The gain on records left out is above two standard errors on some axis, and below minus two on none.
+    placebo : bool
+        As many parameters elsewhere do not do half as well.
+    """
+
+    bic: bool
+    e_value: bool
+    held_out: bool
+    placebo: bool
+
+    @property
+    def hold(self) -> bool:
+        """Whether all do."""
+        return self.bic and self.e_value and self.held_out and self.placebo
+
+
+def conditions(
+    *, bic_gain: float, threshold: float, log_e: float, held_out: Sequence[Gain], gain: float, placebo: float
+) -> Conditions:
+    """Judge the effects that were found.
+
+    Parameters
+    ----------
+    bic_gain, threshold : float
+    log_e : float
+        Natural logarithm of the e-value.
+    held_out : sequence of Gain
+    gain, placebo : float
+        Of the objective, by the effect and by the placebo.
+    """
+    helps = any(g.nats > STANDARD_ERRORS * g.standard_error for g in held_out)
+    harms = any(g.nats < -STANDARD_ERRORS * g.standard_error for g in held_out)
+    return Conditions(
+        bic=bic_gain > threshold,
+        e_value=log_e > np.log(E_VALUE),
+        held_out=not held_out or (helps and not harms),
+        placebo=placebo < PLACEBO_SHARE * gain,
+    )
+
+
+def unexplained(amended: Fit, left: Sequence[Found]) -> float:
+    """What a free stiffness at one place would still gain, beyond what BIC asks for it."""
+    if not left:
+        return 0.0
+    return float((left[0].gain - left[0].degrees * np.log(lines(amended))) * amended.heat)
+
+
+def explained(base: Fit, amended: Fit, left: Sequence[Found]) -> float:
+    """Share of the gap between recalibrated base and free description that the amended model closes, 0 to 1."""
+    gained = max(base.objective - amended.objective, 1e-9)
+    return float(gained / (gained + max(unexplained(amended, left), 0.0)))
+
+
+def members(found: Round, *, unexplained: float) -> list[ClassMember]:
+    """The class of effects that the records allow, the most probable first.
+
+    Parameters
+    ----------
+    found : Round
+        Whose finalists rival each other.
+    unexplained : float
+        Gain of BIC of a free description over the best finalist.
+    """
+    best = found.finalists[0]
+    weight = {}
+    for finalist in found.finalists:
+        # While none fits, the records say less than they would.
+        less = (finalist.fit.log_evidence - best.fit.log_evidence) / best.fit.heat
+        weight[finalist.hypothesis.entry] = float(np.exp(min(less, 0.0)))
+    for quick in _twins(found, best):
+        behind = 0.5 * (quick.gain - best.quick.gain) - 0.5 * (
+            penalty(quick, found.ring) - penalty(best.quick, found.ring)
+        )
+        weight.setdefault(quick.hypothesis.entry, float(np.exp(min(behind, 0.0))))
+    weight.pop(NOVEL, None)
+    total = sum(weight.values()) or 1.0
+    odds = (
+        NOVEL_PRIOR / (1.0 - NOVEL_PRIOR) * float(np.exp(np.clip(0.5 * unexplained / best.fit.heat, -50.0, 50.0)))
+    )
+    novel = odds / (1.0 + odds)
+    found_members = [(name, (1.0 - novel) * w / total) for name, w in weight.items()]
+    found_members.append((NOVEL, novel))
+    found_members.sort(key=lambda pair: -pair[1])
+    kept = [(name, p) for name, p in found_members if p >= 1e-3]
+    return [ClassMember(name=name, probability=float(p)) for name, p in kept]
+
+
+def _twins(found: Round, best: Finalist) -> list[Quick]:
+    """Rivals that were followed and do as well as the best did then."""
+    return [
+        q
+        for q in found.followed
+        if q.hypothesis.entry != best.hypothesis.entry and best.quick.gain - q.gain < CLASS_DEVIANCE
+    ]
+
+
+def detectable(ring: Ring, screened: Sequence[Quick], threshold: float) -> dict[str, Smallest]:
+    """The smallest size of every effect that these records would have shown.
+
+    Its deviance, which grows with the square of its size, must pass the threshold and what BIC asks; it is known
+    at the size that the effect was screened at.
+
+    Returns
+    -------
+    dict
+        By effect, in the unit of the parameter that says how strong it is; those that no plausible size would show
+        are left out.
+    """
+    found: dict[str, Smallest] = {}
+    shown: dict[str, float] = {}
+    for quick in screened:
+        hypothesis = quick.hypothesis
+        if quick.direction is None or quick.start is None or not hypothesis.size:
+            continue
+        index = [f.name for f in hypothesis.free].index(hypothesis.size)
+        column = np.asarray(quick.direction[:, None], dtype=np.float64)
+        deviance = float(ring.projected(column, column)[0, 0])
+        if deviance <= 0.0:
+            continue
+        needed = float(np.sqrt((threshold + penalty(quick, ring)) / deviance))
+        size = _size(hypothesis.free[index], float(quick.start[index]), hypothesis.none, needed)
+        if size is not None and needed < shown.get(hypothesis.entry, MOST_TIMES):
+            shown[hypothesis.entry], found[hypothesis.entry] = needed, size
+    return found
+
+
+def _size(free: Free, start: float, none: float, times: float) -> Smallest | None:
+    """So many times as far from nothing as a start is; None beyond what the effect can be."""
+    usual = free.value(start)
+    if np.isinf(none):
+        return Smallest(parameter=free.name, value=usual / float(np.sqrt(times)), unit=free.unit, none=None)
+    value = none + times * (usual - none)
+    ends = sorted(free.value(z) for z in free.limits)
+    if usual == none or not ends[0] <= value <= ends[1]:
+        return None
+    return Smallest(parameter=free.name, value=value, unit=free.unit, none=none)

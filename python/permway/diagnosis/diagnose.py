@@ -1,0 +1,296 @@
+"""A whole diagnosis: recalibrate, locate, search round by round, decide, prove."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from time import perf_counter
+
+import numpy as np
+
+from permway.diagnosis import decide, grammar
+from permway.diagnosis.advise import advise
+from permway.diagnosis.blocks import FrfBlock
+from permway.diagnosis.catalogue import hypotheses
+from permway.diagnosis.compare import assemble
+from permway.diagnosis.compete import Quick, Ring, stacked
+from permway.diagnosis.decide import CLASS_DEVIANCE
+from permway.diagnosis.evidence import gather
+from permway.diagnosis.heldout import Rest, gains, log_e_value, parts
+from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.labels import mislabelled
+from permway.diagnosis.locate import Found, scan
+from permway.diagnosis.nulls import threshold
+from permway.diagnosis.recalibrate import Fit, recalibrate
+from permway.diagnosis.result import Diagnosis
+from permway.diagnosis.search import Finalist, Round, candidates, lines, penalty, search
+from permway.diagnosis.speak import Proof, mixed_up, verdict_of
+from permway.diagnosis.verdict_parts import NextMeasurement
+from permway.errors import InputError
+from permway.recordings.campaign import Campaign
+from permway.recordings.predict import why_not
+
+MOST_EFFECTS = 3
+
+ROUGH = 1.5
+"""Mean square of the deviations above which smooth errors of usual size do not explain what is left."""
+
+Progress = Callable[[str, int, int], object]
+"""Told a stage, how much of it is done, and of how much."""
+
+
+def diagnose(
+    campaign: Campaign, *, seed: int = 0, threads: int | None = None, progress: Progress | None = None
+) -> Diagnosis:
+    """Say what a campaign's model leaves out.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    seed : int
+        Of simulated nulls: the same seed gives the same verdict.
+    threads : int, optional
+        Of the solver.
+    progress : callable, optional
+        Called with the stage, and how much of it is done.
+
+    Raises
+    ------
+    InputError
+        If no record can be predicted, or a file cannot be read.
+    """
+    clock = _Clock(progress)
+    clock("read")
+    datasets = campaign.load()
+    reasons = {d.record.name: why_not(campaign, d) for d in datasets}
+    left_out = {name: str(why) for name, why in reasons.items() if why is not None}
+    kept = [d for d in datasets if reasons[d.record.name] is None]
+    if not kept:
+        name, why = next(iter(left_out.items()))
+        raise InputError("no record can be predicted", where=f"records.{name}", remedy=why)
+    evidence = gather(campaign, kept, threads=threads)
+    clock("recalibrate")
+    rough = recalibrate(evidence, learn=False, reweigh=True, progress=lambda _: clock.tick())
+    base = recalibrate(rough.evidence, start=rough.z, reweigh=False, progress=lambda _: clock.tick())
+    clock("locate")
+    found = _scanned(rough if rough.heat > ROUGH else base)
+    mixed = mislabelled(rough)
+    rounds, accepted = ([], []) if mixed is not None else _rounds(rough, base, found, seed, clock)
+    left = _left(accepted, clock)
+    described = None if mixed is not None else _described(base, found, rounds, accepted, left, clock)
+    if described is not None:
+        rounds, accepted = [described], [described.finalists[0]]
+        left = _left(accepted, clock)
+    amended = accepted[-1].fit if accepted else None
+    proof: Proof | None = None
+    advice: tuple[NextMeasurement, ...] = ()
+    if amended is not None:
+        clock("hold out")
+        proof = _proof(base, amended, rounds, accepted, clock)
+        advice = _advice(rounds, clock)
+    clock("compare")
+    return Diagnosis(
+        verdict=verdict_of(base, rounds, accepted, found, left, proof, advice)
+        if mixed is None
+        else mixed_up(base, mixed),
+        base=base,
+        amended=amended,
+        found=found,
+        left=left,
+        candidates=tuple(candidates(rounds[0])) if rounds else (),
+        comparison=assemble(base.evidence, base, left_out=left_out),
+        after=None if amended is None else assemble(amended.evidence, amended, left_out=left_out),
+        law_dZ={},
+        seconds=clock.seconds(),
+    )
+
+
+def _left(accepted: Sequence[Finalist], clock: _Clock) -> tuple[Found, ...]:
+    clock("scan what is left")
+    return _scanned(accepted[-1].fit) if accepted else ()
+
+
+def _described(
+    base: Fit,
+    found: tuple[Found, ...],
+    rounds: Sequence[Round],
+    accepted: Sequence[Finalist],
+    left: Sequence[Found],
+    clock: _Clock,
+) -> Round | None:
+    """Small elements, where no named effect explains what a free stiffness does; None unless they do it better."""
+    least = rounds[0].threshold
+    if accepted:
+        best = accepted[-1].fit
+        if accepted[0].hypothesis.domain != "path" or decide.explained(base, best, left) >= decide.EXPLAINED:
+            return None
+    else:
+        best = base
+        if not found or found[0].gain - found[0].degrees * np.log(lines(base)) <= least:
+            return None
+    offered = grammar.hypotheses(Situation(base, found))
+    result = search(
+        base, offered, learnt_base=base, prefix="1.", threshold=lambda _ring, _screened: least, progress=clock
+    )
+    if not result.finalists:
+        return None
+    one = result.finalists[0]
+    return result if best.objective - one.fit.objective > penalty(one.quick, result.ring) else None
+
+
+def _advice(rounds: Sequence[Round], clock: _Clock) -> tuple[NextMeasurement, ...]:
+    """What to measure next where two effects rival each other."""
+    for found in rounds:
+        if len(found.finalists) > 1:
+            best, rival = found.finalists[:2]
+            if rival.fit.objective - best.fit.objective < CLASS_DEVIANCE * best.fit.heat:
+                return advise(best.fit, rival.fit, (best.hypothesis.entry, rival.hypothesis.entry), progress=clock)
+    return ()
+
+
+def _scanned(fit: Fit) -> tuple[Found, ...]:
+    return tuple(scan(fit)) if any(isinstance(b, FrfBlock) for b in fit.evidence.blocks) else ()
+
+
+def _rounds(
+    rough: Fit, base: Fit, found: tuple[Found, ...], seed: int, clock: _Clock
+) -> tuple[list[Round], list[Finalist]]:
+    """Add effects while one passes; take out those that a later one made needless.
+
+    Where smooth errors of usual size do not explain what is left, the search begins from a base that has learnt no
+    larger ones, for these would hide what is sought; what it finds has to be better than the base that has.
+    """
+
+    def least(ring: Ring, screened: Sequence[Quick]) -> float:
+        return threshold(ring, screened, seed=seed)
+
+    rounds: list[Round] = []
+    accepted: list[Finalist] = []
+    fit = base
+    screened: tuple[Quick, ...] = ()
+    for order in range(MOST_EFFECTS):
+        result = None
+        for start in [rough, fit] if rough.heat > ROUGH else [fit]:
+            offered = hypotheses(Situation(start, found))
+            prefix = f"{order + 1}."
+            result = search(
+                start,
+                offered,
+                learnt_base=fit,
+                prefix=prefix,
+                threshold=least,
+                before=screened,
+                progress=clock,
+            )
+            screened = result.screened
+            if result.finalists:
+                break
+        assert result is not None
+        rounds.append(result)
+        if not result.finalists:
+            break
+        accepted.append(result.finalists[0])
+        if len(accepted) > 1:
+            accepted = _without_needless(base, accepted, result.threshold, clock)
+        rough, fit = accepted[-1].rough, accepted[-1].fit
+        if order + 1 < MOST_EFFECTS:
+            clock("locate")
+            found = _scanned(rough if rough.heat > ROUGH else fit)
+    return rounds, accepted
+
+
+def _without_needless(base: Fit, accepted: list[Finalist], least: float, clock: _Clock) -> list[Finalist]:
+    """Backward: earlier effects that the last one has made needless are dropped, and the rest fitted again."""
+    kept = list(accepted)
+    for one in accepted[:-1]:
+        rest = [f for f in kept if f is not one]
+        whole = kept[-1].fit
+        clock("drop")
+        build, free = base.build, base.free
+        for other in rest:
+            build, more = stacked(build, other.hypothesis, other.prefix)
+            free = (*free, *more)
+        at = {f.name: float(z) for f, z in zip(whole.free, whole.z, strict=True)}
+        start = np.array([at[f.name] for f in free])
+        without = recalibrate(whole.evidence, build=build, free=free, start=start, learn=False)
+        asked = len(one.hypothesis.free) * float(np.log(lines(base)))
+        if without.objective - whole.objective < least + asked:
+            kept = [*rest[:-1], _with_fit(rest[-1], without)]
+    return kept
+
+
+def _with_fit(finalist: Finalist, fit: Fit) -> Finalist:
+    return replace(finalist, rough=fit, fit=fit)
+
+
+def _proof(base: Fit, amended: Fit, rounds: list[Round], accepted: list[Finalist], clock: _Clock) -> Proof:
+    """Records left out, e-value and placebo."""
+    chosen = list(parts(base.evidence))
+    before, after = Rest(base), Rest(amended)
+    held_out = gains(before, after, chosen)
+    log_e = log_e_value(before, after)
+    clock("placebo")
+    sham = _placebo(rounds[0], accepted[0])
+    placebo_gain, placebo_held_out = 0.0, []
+    if sham is not None:
+        fit = rounds[0].ring.full(sham, prefix="placebo.", most_steps=6)
+        placebo_gain = base.objective - fit.objective
+        placebo_held_out = gains(before, Rest(fit), chosen)
+    bic = sum(f.gain - penalty(f.quick, rounds[0].ring) for f in accepted)
+    return Proof(
+        held_out=held_out,
+        log_e=log_e,
+        placebo=placebo_held_out,
+        bic_gain=bic,
+        conditions=decide.conditions(
+            bic_gain=bic,
+            threshold=rounds[0].threshold,
+            log_e=log_e,
+            held_out=held_out,
+            gain=accepted[0].gain,
+            placebo=placebo_gain,
+        ),
+    )
+
+
+def _placebo(found: Round, best: Finalist) -> Quick | None:
+    """As many parameters, nearly, of another family; of those the one of middling gain."""
+    count = len(best.hypothesis.free)
+    others = [q for q in found.screened if q.hypothesis.family != best.hypothesis.family]
+    if not others:
+        return None
+    near = min(abs(len(q.hypothesis.free) - count) for q in others)
+    alike = sorted((q for q in others if abs(len(q.hypothesis.free) - count) == near), key=lambda q: q.gain)
+    return alike[len(alike) // 2]
+
+
+@dataclass
+class _Clock:
+    """Times the stages and says where it is."""
+
+    progress: Progress | None
+    _times: dict[str, float] = field(default_factory=dict)
+    _stage: str = ""
+    _since: float = 0.0
+    _ticks: int = 0
+
+    def __call__(self, stage: str, done: int = 0, total: int = 0) -> None:
+        now = perf_counter()
+        if self._stage:
+            self._times[self._stage] = self._times.get(self._stage, 0.0) + now - self._since
+        if stage != self._stage:
+            self._ticks = 0
+        self._stage, self._since = stage, now
+        if self.progress is not None:
+            self.progress(stage, done, total)
+
+    def tick(self) -> None:
+        """A step of a stage whose length is not known."""
+        self._ticks += 1
+        if self.progress is not None:
+            self.progress(self._stage, self._ticks, 0)
+
+    def seconds(self) -> dict[str, float]:
+        """By stage."""
+        self(self._stage)
+        return dict(self._times)

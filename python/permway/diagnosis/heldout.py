@@ -1,0 +1,265 @@
+"""What an amendment gains on records that it was not fitted to.
+
+Parts of the records are left out in turn, base and amended model fitted to the rest, and both held against what
+was left out. A fit to the rest starts from the fit to all of them and keeps its slopes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg, sparse
+
+from permway.arrays import Reals
+from permway.diagnosis.blocks import FrfBlock
+from permway.diagnosis.evidence import Evidence, Whitener
+from permway.diagnosis.recalibrate import Fit
+from permway.errors import InputError, SolveError
+from permway.recordings.campaign_parts import HeldOut
+
+STEPS = 4
+SURE_DB = 1.0
+"""A row of larger standard deviation says nothing of a level in dB."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """Rows that are left out together.
+
+    Attributes
+    ----------
+    axis : str
+        What they differ in from the rest: "speed", "temperature", "place", "channel", "band".
+    name : str
+    rows : ndarray of bool, shape (n,)
+    """
+
+    axis: str
+    name: str
+    rows: np.ndarray
+
+
+@dataclass(frozen=True)
+class Scored:
+    """How well a fit to the rest predicts a part.
+
+    Attributes
+    ----------
+    log_density : float
+        Of the part given the rest, nats.
+    by_line : ndarray
+        Half the square of each of the part's deviations, smooth errors as the rest has them.
+    error_dB : float
+        Root mean square of levels, smooth errors not taken out, where the record knows them to 1 dB.
+    """
+
+    log_density: float
+    by_line: Reals
+    error_dB: float
+
+
+def parts(evidence: Evidence) -> Iterator[Part]:
+    """What may be left out: the campaign's own groups, or else speeds, temperatures, blows, sensors and a band."""
+    own = [Part(g.axis, g.name, _of_group(evidence, g)) for g in evidence.campaign.said.held_out]
+    yield from (p for p in (own or list(_usual(evidence))) if p.rows.any() and not p.rows.all())
+
+
+def _usual(evidence: Evidence) -> Iterator[Part]:
+    rows, block_of, blocks = evidence.rows, evidence.block_of, evidence.blocks
+    conditions = [b.dataset.condition for b in blocks]
+    speeds = sorted({c.speed_m_per_s for c in conditions if c.speed_m_per_s is not None})
+    for speed in speeds[-1:] if len(speeds) > 1 else []:
+        mine = [i for i, c in enumerate(conditions) if c.speed_m_per_s == speed]
+        yield Part("speed", f"{3.6 * speed:.0f} km/h", np.isin(block_of, mine))
+    temperatures = sorted(
+        {c.temperature_C for c in conditions if c.temperature_C is not None and c.kind != "train"}
+    )
+    for value in temperatures[:1] if len(temperatures) > 1 else []:
+        mine = [i for i, c in enumerate(conditions) if c.temperature_C == value]
+        yield Part("temperature", f"{value:g} degC", np.isin(block_of, mine))
+    points = list(dict.fromkeys(rows.force[rows.force != ""]))
+    if len(points) > 2:
+        yield Part("place", "every third point", np.isin(rows.force, points[1::3]))
+    hammer = np.isin(block_of, [i for i, b in enumerate(blocks) if isinstance(b, FrfBlock)])
+    sensors = list(dict.fromkeys(rows.sensor[hammer]))
+    if len(sensors) > 2:
+        yield Part("channel", "every third sensor", hammer & np.isin(rows.sensor, sensors[1::3]))
+    low, high = rows.frequency_Hz.min(), rows.frequency_Hz.max()
+    edges = np.geomspace(low, high * 1.0001, 13)
+    # Every third of a dozen bands: what lies between is known on either side.
+    inside = (np.searchsorted(edges, rows.frequency_Hz, side="right") - 1) % 3 == 1
+    yield Part("band", "every third band", inside)
+
+
+def _of_group(evidence: Evidence, group: HeldOut) -> np.ndarray:
+    rows, block_of, campaign = evidence.rows, evidence.block_of, evidence.campaign
+    datasets = evidence.datasets
+    members = set(group.members)
+    match group.axis:
+        case "record":
+            mine = [i for i, d in enumerate(datasets) if d.record.name in members]
+            return np.isin(block_of, mine)
+        case "speed":
+            speeds = [d.condition.speed_m_per_s for d in datasets]
+            mine = [
+                i
+                for i, v in enumerate(speeds)
+                if v is not None and any(abs(v - float(m)) <= 0.01 * float(m) for m in members)
+            ]
+            return np.isin(block_of, mine)
+        case "temperature":
+            mine = [i for i, d in enumerate(datasets) if d.condition.temperature_C in members]
+            return np.isin(block_of, mine)
+        case "channel":
+            return np.isin(rows.sensor, list(members))
+        case "band":
+            assert group.band_Hz is not None
+            return np.asarray((rows.frequency_Hz >= group.band_Hz[0]) & (rows.frequency_Hz <= group.band_Hz[1]))
+    assert group.from_to_m is not None
+    low, high = group.from_to_m
+    inside = {s.name for s in campaign.said.sensors if s.x_m is not None and low <= s.x_m <= high}
+    struck = {p.name for p in campaign.said.forces if low <= p.x_m <= high}
+    return np.isin(rows.sensor, list(inside)) | np.isin(rows.force, list(struck))
+
+
+class Rest:
+    """A fit, ready to be fitted again without some of its rows.
+
+    Parameters
+    ----------
+    fit : Fit
+    """
+
+    def __init__(self, fit: Fit) -> None:
+        self.fit = fit
+        columns, origins = fit.evidence.smooth(fit.evidence.predicted(fit.campaign).datasets)
+        self._whole = Whitener.of(columns, origins, fit.evidence.sizes)
+        self._columns, self._origins = columns, origins
+        # What the blocks take out themselves, shared out among their rows.
+        blocks = fit.evidence.blocks
+        self._volume = np.concatenate(
+            [np.full(b.rows.channel.size, b.log_determinant / b.rows.channel.size) for b in blocks]
+        )
+
+    def _of(self, rows: np.ndarray) -> Whitener:
+        return Whitener.of(sparse.csr_array(self._columns[rows]), self._origins, self.fit.evidence.sizes)
+
+    def _deviations(self, z: Reals) -> Reals | None:
+        values = {f.name: f.value(float(v)) for f, v in zip(self.fit.free, z, strict=True)}
+        try:
+            predicted = self.fit.evidence.predicted(self.fit.build(values))
+        except (InputError, SolveError):
+            return None
+        found = self.fit.evidence.deviations(predicted.datasets)
+        return found if np.isfinite(found).all() else None
+
+    def fitted(self, rows: np.ndarray) -> tuple[Reals, Reals]:
+        """Values z and all deviations of a fit to some rows."""
+        fit, whitener = self.fit, self._of(rows)
+        jacobian = fit.jacobian[rows]
+        reduced = whitener.reduce(jacobian)
+        normal = (jacobian.T @ jacobian - reduced.T @ reduced) / fit.heat + np.eye(fit.z.size)
+        low, high = np.array([f.limits for f in fit.free]).T
+        z, deviations = fit.z, fit.deviations
+        value = _square(whitener, deviations[rows]) / fit.heat + float(z @ z)
+        for _ in range(STEPS):
+            left = whitener.reduce(deviations[rows])
+            slope = (jacobian.T @ deviations[rows] - reduced.T @ left) / fit.heat + z
+            shift, moved = -linalg.solve(normal, slope, assume_a="pos"), False
+            for share in (1.0, 0.3):
+                tried = np.clip(z + share * shift, low, high)
+                new = self._deviations(tried)
+                if new is not None:
+                    objective = _square(whitener, new[rows]) / fit.heat + float(tried @ tried)
+                    if objective < value:
+                        gained, moved = value - objective, True
+                        z, deviations, value = tried, new, objective
+                        break
+            if not moved or gained < 0.5:
+                break
+        return z, deviations
+
+    def scored(self, part: np.ndarray) -> Scored:
+        """How well the fit to all else predicts a part.
+
+        Parameters
+        ----------
+        part : ndarray of bool, shape (n,)
+        """
+        _, deviations = self.fitted(~part)
+        rest = self._of(~part)
+        square = _square(self._whole, deviations) - _square(rest, deviations[~part])
+        volume = self._whole.log_determinant - rest.log_determinant + float(self._volume[part].sum())
+        coefficients, _ = rest.explained(deviations[~part])
+        scale = np.array([self.fit.evidence.sizes[o] for o in self._origins])
+        left = deviations[part] - sparse.csr_array(self._columns[part]) @ (scale * coefficients)
+        size = self.fit.evidence.rows.scale_dB[part]
+        sure = size < SURE_DB
+        level = (deviations[part] * size)[sure]
+        error = float(np.sqrt(np.mean(level**2))) if sure.any() else float("nan")
+        return Scored(-0.5 * (square + volume), 0.5 * (left**2 + self._volume[part]), error)
+
+    def log_density(self, rows: np.ndarray, deviations: Reals) -> float:
+        """Of some rows by themselves, smooth errors integrated out, nats."""
+        whitener = self._of(rows)
+        volume = whitener.log_determinant + float(self._volume[rows].sum())
+        return -0.5 * (_square(whitener, deviations[rows]) + volume)
+
+
+def _square(whitener: Whitener, values: Reals) -> float:
+    reduced = whitener.reduce(values)
+    return float(values @ values - reduced @ reduced)
+
+
+@dataclass(frozen=True)
+class Gain:
+    """Amended against recalibrated on a part that was left out.
+
+    Attributes
+    ----------
+    part : Part
+    nats, standard_error : float
+        Gain of log predictive density; its error from how it differs from third to third of an octave.
+    before_dB, after_dB : float
+    """
+
+    part: Part
+    nats: float
+    standard_error: float
+    before_dB: float
+    after_dB: float
+
+
+def gains(base: Rest, amended: Rest, chosen: Sequence[Part]) -> list[Gain]:
+    """Of every part."""
+    found = []
+    for part in chosen:
+        before, after = base.scored(part.rows), amended.scored(part.rows)
+        rows = base.fit.evidence.rows
+        cell = np.floor(3.0 * np.log2(rows.frequency_Hz[part.rows])).astype(np.int64)
+        keys = np.char.add(np.char.add(rows.channel[part.rows], "|"), cell.astype(str))
+        _, index = np.unique(keys, return_inverse=True)
+        by_cell = np.bincount(index, weights=before.by_line - after.by_line)
+        error = float(np.sqrt(by_cell.size) * by_cell.std()) if by_cell.size > 1 else float("inf")
+        nats = after.log_density - before.log_density
+        found.append(Gain(part, nats, error, before.error_dB, after.error_dB))
+    return found
+
+
+def log_e_value(base: Rest, amended: Rest) -> float:
+    """Logarithm of the split-likelihood e-value (Wasserman, Ramdas and Balakrishnan 2020).
+
+    One half of the records fits the amended model, the other judges it against the base, which may fit the judging
+    half itself. With nothing missing its expectation is at most 1.
+    """
+    rows = base.fit.evidence.rows
+    key = np.where(rows.force != "", rows.force, base.fit.evidence.block_of.astype(str))
+    names = list(dict.fromkeys(key))
+    judges = np.isin(key, names[1::2])
+    if not judges.any() or judges.all():
+        judges = np.floor(6.0 * np.log2(rows.frequency_Hz)).astype(np.int64) % 2 == 1
+    _, trained = amended.fitted(~judges)
+    _, own = base.fitted(judges)
+    return amended.log_density(judges, trained) - base.log_density(judges, own)

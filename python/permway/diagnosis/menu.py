@@ -1,0 +1,154 @@
+"""Measurements that could come next: sensors, blows, repeats, speeds, temperatures, each with what it costs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from permway.model.segments import Segment
+from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_load import Dataset
+from permway.recordings.channel import Point, Sensor
+
+COST = {"repeat": 1.0, "sensor": 1.0, "blows": 1.0, "speed": 4.0, "temperature": 8.0}
+"""Of a measurement, in units of an hour on the track."""
+
+FASTER, COLDER_K, REPEATS = 1.3, 25.0, 4.0
+SHARES = (0.25, 0.5, 0.9)
+"""Where along a beam a sensor may stand."""
+
+
+@dataclass(frozen=True)
+class Item:
+    """A measurement that could be made.
+
+    Attributes
+    ----------
+    words : str
+    cost : float
+        See :data:`COST`.
+    planned : callable
+        From a campaign to one that has the sensors and conditions of the measurement.
+    dataset : Dataset
+        Its coordinates, averages and scatter; its values mean nothing.
+    """
+
+    words: str
+    cost: float
+    planned: Callable[[Campaign], Campaign]
+    dataset: Dataset
+
+
+def menu(campaign: Campaign, datasets: list[Dataset]) -> Iterator[Item]:
+    """What could be measured beside what was.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    datasets : list of Dataset
+        What was measured.
+    """
+    hammer = next((d for d in datasets if d.record.statistic == "frf"), None)
+    if hammer is not None:
+        yield from _sensors(campaign, hammer)
+        yield from _blows(campaign, hammer)
+        words = f"{hammer.record.name} again, {REPEATS:.0f} times the blows"
+        yield Item(words, COST["repeat"] * REPEATS, lambda c: c, _quieter(hammer))
+        temperature = hammer.condition.temperature_C
+        if temperature is not None:
+            yield _other_condition(
+                hammer,
+                f"the hammer test at {temperature - COLDER_K:g} degC",
+                COST["temperature"],
+                temperature_C=temperature - COLDER_K,
+            )
+    train = next((d for d in datasets if d.condition.kind == "train"), None)
+    if train is not None and train.condition.speed_m_per_s is not None:
+        speed = FASTER * train.condition.speed_m_per_s
+        yield _other_condition(train, f"a run at {3.6 * speed:.0f} km/h", COST["speed"], speed_m_per_s=speed)
+
+
+def _stretches(campaign: Campaign) -> Iterator[tuple[str, Segment, float, float]]:
+    table = campaign.model.line.joint_table()
+    for beam, segment in campaign.model.line.beams():
+        low, high = max(segment.start, float(table.x.min())), min(segment.stop, float(table.x.max()))
+        if beam is not None and high > low:
+            yield segment.name, segment, low, high
+
+
+def _sensors(campaign: Campaign, hammer: Dataset) -> Iterator[Item]:
+    standing = [campaign.sensor(str(s)) for s in hammer.data["sensor"].values]
+    for body, _, low, high in _stretches(campaign):
+        for share in SHARES:
+            x = float(np.round(low + share * (high - low), 2))
+            if any(s.body == body and abs(float(s.x_m or 0.0) - x) < 1.0 for s in standing):
+                continue
+            sensor = standing[0].model_copy(update={"name": f"planned {body}@{x:g}", "body": body, "x_m": x})
+            data = hammer.data.isel(sensor=[0]).assign_coords(sensor=[sensor.name])
+            yield Item(
+                f"a sensor on {body} at {x:g} m in the hammer test",
+                COST["sensor"],
+                _with_sensor(sensor),
+                replace(hammer, data=_typical(data, hammer.data)),
+            )
+
+
+def _blows(campaign: Campaign, hammer: Dataset) -> Iterator[Item]:
+    struck = [campaign.point(str(p)) for p in hammer.data["force"].values]
+    for body, _, low, high in _stretches(campaign):
+        x = float(np.round(low + 0.4 * (high - low), 2))
+        if any(p.body == body and abs(p.x_m - x) < 1.0 for p in struck):
+            continue
+        point = struck[0].model_copy(update={"name": f"planned {body}@{x:g}", "body": body, "x_m": x})
+        data = hammer.data.isel(force=[0]).assign_coords(force=[point.name])
+        yield Item(
+            f"blows on {body} at {x:g} m",
+            COST["blows"],
+            _with_point(point),
+            replace(hammer, data=_typical(data, hammer.data)),
+        )
+
+
+def _typical(data: xr.Dataset, of: xr.Dataset) -> xr.Dataset:
+    """Scatter by frequency as it is in the middle of what was measured."""
+    middle = of["log_variance"].median(("sensor", "force"))
+    found = data.copy()
+    found["log_variance"] = middle.broadcast_like(data["log_variance"]).transpose(*data["log_variance"].dims)
+    found["frf"] = xr.ones_like(data["frf"])
+    return found
+
+
+def _quieter(hammer: Dataset) -> Dataset:
+    data = hammer.data.copy()
+    data["log_variance"] = data["log_variance"] / REPEATS
+    data.attrs["averages"] = float(data.attrs.get("averages", 1.0)) * REPEATS
+    return replace(hammer, data=data)
+
+
+def _other_condition(dataset: Dataset, words: str, cost: float, **changed: float) -> Item:
+    condition = dataset.condition.model_copy(update={"name": f"planned {dataset.condition.name}", **changed})
+
+    def planned(campaign: Campaign) -> Campaign:
+        said = campaign.said.model_copy(update={"conditions": (*campaign.said.conditions, condition)})
+        return Campaign(said, campaign.model, campaign.folder, campaign.parameters)
+
+    return Item(words, cost, planned, replace(dataset, condition=condition))
+
+
+def _with_sensor(sensor: Sensor) -> Callable[[Campaign], Campaign]:
+    def planned(campaign: Campaign) -> Campaign:
+        said = campaign.said.model_copy(update={"sensors": (*campaign.said.sensors, sensor)})
+        return Campaign(said, campaign.model, campaign.folder, campaign.parameters)
+
+    return planned
+
+
+def _with_point(point: Point) -> Callable[[Campaign], Campaign]:
+    def planned(campaign: Campaign) -> Campaign:
+        said = campaign.said.model_copy(update={"forces": (*campaign.said.forces, point)})
+        return Campaign(said, campaign.model, campaign.folder, campaign.parameters)
+
+    return planned

@@ -1,0 +1,87 @@
+"""What a diagnosis hands on: the verdict and everything it was drawn from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from permway.arrays import Complexes
+from permway.diagnosis.compare import Comparison
+from permway.diagnosis.hypothesis import Where
+from permway.diagnosis.locate import Found
+from permway.diagnosis.recalibrate import Fit
+from permway.diagnosis.verdict import Verdict
+
+Stage = Literal["screened", "quick", "full"]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A hypothesis that was held against the records.
+
+    Attributes
+    ----------
+    entry, family, domain : str
+        Of the catalogue.
+    place : Where
+    law : str
+        Mechanics in words.
+    gain : float
+        Of twice the log posterior; the recalibrated base has zero.
+    log_evidence : float
+        Less the base's, nats.
+    parameters : mapping of name to (value, low, high, unit)
+        With 90 % intervals.
+    stage : "screened", "quick" or "full"
+        How far it was followed.
+    """
+
+    entry: str
+    family: str
+    domain: str
+    place: Where
+    law: str
+    gain: float
+    log_evidence: float
+    parameters: Mapping[str, tuple[float, float, float, str]]
+    stage: Stage
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """A verdict and what it rests on.
+
+    Attributes
+    ----------
+    verdict : Verdict
+    base : Fit
+        The owner's model, recalibrated.
+    amended : Fit, optional
+        With the effects that were found; None without any.
+    found : tuple of Found
+        Scan of the base, the most telling place first; empty without hammer tests.
+    left : tuple of Found
+        The same after the amendment; may be empty.
+    candidates : tuple of Candidate
+        The most telling first.
+    comparison : Comparison
+        Of the owner's values and the recalibrated.
+    after : Comparison, optional
+        Of the amended model: its last model is the amended, recalibrated.
+    law_dZ : mapping of str to ndarray of complex128, shape (F,)
+        Stiffness that named laws add, N/m, over the frequencies of the best found spot; may be empty.
+    seconds : mapping of stage to float
+        Time taken.
+    """
+
+    verdict: Verdict
+    base: Fit
+    amended: Fit | None
+    found: tuple[Found, ...]
+    left: tuple[Found, ...]
+    candidates: tuple[Candidate, ...]
+    comparison: Comparison
+    after: Comparison | None
+    law_dZ: Mapping[str, Complexes]
+    seconds: Mapping[str, float]

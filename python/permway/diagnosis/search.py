@@ -1,0 +1,269 @@
+"""One round of the search for what is missing: screen all hypotheses, follow the best, fit finalists in full."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.hypothesis import Hypothesis
+from permway.diagnosis.recalibrate import Fit, learnt, recalibrate
+from permway.diagnosis.result import Candidate
+
+FOLLOWED, PER_ENTRY = 10, 2
+"""Hypotheses that are followed after screening, in all and of one effect."""
+
+FINALISTS = 3
+"""Hypotheses that are fitted in full, each of another effect."""
+
+WORTH = 0.05
+"""Share of the best gain below which a hypothesis is not followed."""
+
+PROMISE = 3.0
+"""Times that its other parameters may better what the start of a hypothesis promises."""
+
+RIVAL = 0.3
+"""Share of the best gain below which a hypothesis is no finalist."""
+
+CLOSE = 0.7
+"""Share of the best finalist's gain from which a rival may yet be the better one."""
+
+Progress = Callable[[str, int, int], object]
+"""Told a stage, how much of it is done, and of how much."""
+
+Threshold = Callable[[Ring, Sequence[Quick]], float]
+
+
+@dataclass(frozen=True)
+class Finalist:
+    """A hypothesis fitted in full.
+
+    Attributes
+    ----------
+    quick : Quick
+        From where.
+    rough, fit : Fit
+        Base and effect together, with the base's sizes of smooth errors, and with sizes learnt anew.
+    prefix : str
+        Of the effect's parameters among the fit's.
+    gain, log_evidence : float
+        Of the objective, and of the log evidence in nats, over the base's, sizes of smooth errors learnt on both
+        sides.
+    """
+
+    quick: Quick
+    rough: Fit
+    fit: Fit
+    prefix: str
+    gain: float
+    log_evidence: float
+
+    @property
+    def hypothesis(self) -> Hypothesis:
+        """What was fitted."""
+        return self.quick.hypothesis
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The effect's parameters by their own names."""
+        start = len(self.prefix)
+        return {k[start:]: v for k, v in self.fit.values().items() if self.prefix and k.startswith(self.prefix)}
+
+
+@dataclass(frozen=True)
+class Round:
+    """What one round found.
+
+    Attributes
+    ----------
+    ring : Ring
+        Of the base.
+    screened : tuple of Quick
+        All that could be solved, the best first.
+    followed : tuple of Quick
+        Those that were followed, the best first.
+    finalists : tuple of Finalist
+        Those that passed the threshold, the best first.
+    threshold : float
+        Gain of BIC that had to be passed.
+    """
+
+    ring: Ring
+    screened: tuple[Quick, ...]
+    followed: tuple[Quick, ...]
+    finalists: tuple[Finalist, ...]
+    threshold: float
+
+
+def penalty(quick: Quick, ring: Ring) -> float:
+    """What BIC asks of a hypothesis: its parameters times the logarithm of the number of lines."""
+    return float(len(quick.hypothesis.free) * np.log(lines(ring.fit)))
+
+
+def lines(fit: Fit) -> int:
+    """Lines of all records: real and imaginary parts are two rows of one."""
+    return max(2, fit.deviations.size // 2)
+
+
+def search(
+    fit: Fit,
+    hypotheses: Iterable[Hypothesis],
+    *,
+    learnt_base: Fit,
+    prefix: str,
+    threshold: Threshold,
+    before: Sequence[Quick] = (),
+    progress: Progress,
+) -> Round:
+    """Hold hypotheses against the records.
+
+    Parameters
+    ----------
+    fit : Fit
+        The base that hypotheses are put into, recalibrated, with earlier effects in it or not.
+    hypotheses : iterable of Hypothesis
+    learnt_base : Fit
+        The same base with the sizes of smooth errors learnt: what a finalist has to be better than.
+    prefix : str
+        For the parameters of a further effect.
+    before : sequence of Quick
+        What was screened against an earlier base: what still promises little by its slopes of then is not tried
+        again.
+    threshold : callable
+        From the base and what was screened to the gain of BIC below which nothing is a finalist.
+    progress : callable
+    """
+    ring = Ring(fit)
+    offered = list(hypotheses)
+    screened = []
+    best = 0.0
+    known = {_key(q.hypothesis): q for q in before if q.direction is not None}
+    for index, hypothesis in enumerate(offered):
+        progress("screen", index, len(offered))
+        asked = len(hypothesis.free) * np.log(lines(fit))
+        old = known.get(_key(hypothesis))
+        if old is not None and (promise := ring.promise(old)) < asked / PROMISE:
+            screened.append(replace(old, hypothesis=hypothesis, base_z=fit.z, gain=promise))
+            continue
+        found = ring.screen(hypothesis, least=max(asked / PROMISE, WORTH * best / PROMISE))
+        if np.isfinite(found.gain):
+            screened.append(found)
+            best = max(best, found.gain)
+    screened.sort(key=lambda q: penalty(q, ring) - q.gain)
+    chosen = _chosen(screened, ring)
+    followed = []
+    for index, one in enumerate(chosen):
+        progress("follow", index, len(chosen))
+        followed.append(ring.quick(one.hypothesis, after=one))
+    followed.sort(key=lambda q: penalty(q, ring) - q.gain)
+    least = threshold(ring, screened)
+    rivals = _finalists(followed, ring, least)
+    fitted = []
+    for index, one in enumerate(rivals):
+        progress("fit", index, len(rivals))
+        fitted.append((one, ring.full(one, prefix=prefix)))
+    fitted.sort(key=lambda pair: pair[1].objective + penalty(pair[0], ring))
+    finalists = []
+    for index, (one, rough) in enumerate(fitted):
+        if fit.objective - rough.objective < CLOSE * (fit.objective - fitted[0][1].objective):
+            continue
+        progress("learn", index, len(fitted))
+        amended = _learnt(rough)
+        gain = learnt_base.objective - amended.objective
+        if gain - penalty(one, ring) > least:
+            more = amended.log_evidence - learnt_base.log_evidence
+            finalists.append(Finalist(one, rough, amended, prefix, gain, more))
+    finalists.sort(key=lambda f: -f.fit.log_evidence)
+    return Round(ring, tuple(screened), tuple(followed), tuple(finalists), least)
+
+
+def _key(hypothesis: Hypothesis) -> tuple[str, str]:
+    """What makes a hypothesis the same as one of an earlier round: effect and place."""
+    values = {f.name: f.value(float(z)) for f, z in zip(hypothesis.free, hypothesis.starts[0], strict=True)}
+    return hypothesis.entry, hypothesis.locate(values).label
+
+
+def _learnt(fit: Fit) -> Fit:
+    """With the sizes of smooth errors learnt anew, now that less is left for them to explain."""
+    evidence, _ = learnt(fit.evidence, fit.evidence.predicted(fit.campaign))
+    return recalibrate(evidence, build=fit.build, free=fit.free, start=fit.z, learn=False)
+
+
+def _chosen(screened: Sequence[Quick], ring: Ring) -> list[Quick]:
+    """The best, not too many of one effect."""
+    if not screened:
+        return []
+    best = max(q.gain for q in screened)
+    found: list[Quick] = []
+    for quick in screened:
+        taken = sum(q.hypothesis.entry == quick.hypothesis.entry for q in found)
+        # A step that has not arrived may still double its gain.
+        promising = 3.0 * quick.gain > penalty(quick, ring) and quick.gain > WORTH * best
+        if promising and taken < PER_ENTRY and len(found) < FOLLOWED:
+            found.append(quick)
+    return found
+
+
+def _finalists(followed: Sequence[Quick], ring: Ring, threshold: float) -> list[Quick]:
+    """The best of each effect that passes the threshold."""
+    found: list[Quick] = []
+    for quick in followed:
+        best = found[0].gain if found else quick.gain
+        passes = quick.gain - penalty(quick, ring) > threshold and quick.gain > RIVAL * best
+        if passes and quick.hypothesis.entry not in {q.hypothesis.entry for q in found}:
+            found.append(quick)
+    return found[:FINALISTS]
+
+
+def candidates(found: Round) -> list[Candidate]:
+    """Everything that was tried, the most telling first, each as far as it was followed."""
+    seen: set[int] = set()
+    rows = []
+    for finalist in found.finalists:
+        seen.add(id(finalist.hypothesis))
+        spans, values = finalist.fit.intervals(), finalist.values
+        rows.append(
+            Candidate(
+                entry=finalist.hypothesis.entry,
+                family=finalist.hypothesis.family,
+                domain=finalist.hypothesis.domain,
+                place=finalist.hypothesis.locate(values),
+                law=finalist.hypothesis.law(values),
+                gain=finalist.gain,
+                log_evidence=finalist.log_evidence,
+                parameters={
+                    f.name: (
+                        values[f.name],
+                        min(spans[finalist.prefix + f.name]),
+                        max(spans[finalist.prefix + f.name]),
+                        f.unit,
+                    )
+                    for f in finalist.hypothesis.free
+                },
+                stage="full",
+            )
+        )
+    for stage, quicks in (("quick", found.followed), ("screened", found.screened)):
+        for quick in quicks:
+            if id(quick.hypothesis) in seen:
+                continue
+            seen.add(id(quick.hypothesis))
+            values = quick.values
+            rows.append(
+                Candidate(
+                    entry=quick.hypothesis.entry,
+                    family=quick.hypothesis.family,
+                    domain=quick.hypothesis.domain,
+                    place=quick.hypothesis.locate(values),
+                    law=quick.hypothesis.law(values),
+                    gain=quick.gain,
+                    log_evidence=0.5 * (quick.gain - penalty(quick, found.ring)),
+                    parameters={
+                        f.name: (values[f.name], float("nan"), float("nan"), f.unit) for f in quick.hypothesis.free
+                    },
+                    stage="quick" if stage == "quick" else "screened",
+                )
+            )
+    return rows

@@ -1,0 +1,234 @@
+"""From what was found to the verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from permway.arrays import Reals
+from permway.diagnosis import decide
+from permway.diagnosis.decide import Conditions
+from permway.diagnosis.heldout import Gain
+from permway.diagnosis.labels import Mislabelled
+from permway.diagnosis.locate import Found
+from permway.diagnosis.recalibrate import Fit
+from permway.diagnosis.search import Finalist, Round, lines
+from permway.diagnosis.verdict import NOVEL, Status, Verdict
+from permway.diagnosis.verdict_parts import (
+    Effect,
+    Estimate,
+    HeldOutGain,
+    Mechanics,
+    Moved,
+    NextMeasurement,
+    Place,
+    Recalibrated,
+    Weight,
+)
+
+LABELS = "sensor_labels"
+"""Name of the fault that channels carry each other's labels."""
+
+UNEXPLAINED = 1.5
+"""Mean square of the deviations above which a base does not fit, whatever its smooth errors."""
+
+REASON = 0.5
+"""Share of a misfit that a free stiffness at a place has to explain, or else nothing is said to be there."""
+
+LARGEST_E = 1e300
+SHOWN = 0.8
+"""Share of an effect's gain that its bands hold."""
+
+WIDTH = 1.6449
+"""Standard deviations on either side that hold 90 %."""
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What records that were left out say of the amended model.
+
+    Attributes
+    ----------
+    held_out, placebo : sequence of Gain
+    log_e : float
+        Natural logarithm of the e-value.
+    bic_gain : float
+    conditions : Conditions
+    """
+
+    held_out: Sequence[Gain]
+    placebo: Sequence[Gain]
+    log_e: float
+    bic_gain: float
+    conditions: Conditions
+
+
+def verdict_of(
+    base: Fit,
+    rounds: Sequence[Round],
+    accepted: Sequence[Finalist],
+    found: Sequence[Found],
+    left: Sequence[Found],
+    proof: Proof | None,
+    advice: tuple[NextMeasurement, ...] = (),
+) -> Verdict:
+    """Put the verdict together."""
+    first = rounds[0]
+    sizes = decide.detectable(rounds[-1].ring, rounds[-1].screened, rounds[-1].threshold)
+    weight = Weight(false_alarm_threshold=first.threshold)
+    recalibrated = Recalibrated(before=_moved(base))
+    if not accepted or proof is None:
+        status, effects = _nothing(base, first, found)
+        return Verdict(
+            status=status, effects=effects, evidence=weight, recalibrated=recalibrated, detectable=sizes
+        )
+    amended = accepted[-1].fit
+    free_gain = decide.unexplained(amended, left)
+    gap = decide.explained(base, amended, left)
+    by_prefix = {r.finalists[0].prefix: r for r in rounds if r.finalists}
+    effects = tuple(_effect(one, by_prefix[one.prefix], amended, base, free_gain) for one in accepted)
+    return Verdict(
+        status=_status(effects, proof, gap),
+        effects=effects,
+        evidence=Weight(
+            bic_gain=proof.bic_gain,
+            log10_bayes_factor=(amended.log_evidence - base.log_evidence) / np.log(10.0),
+            e_value=float(np.exp(min(proof.log_e, np.log(LARGEST_E)))),
+            false_alarm_threshold=first.threshold,
+        ),
+        held_out=_held_out(proof.held_out),
+        placebo=_held_out(proof.placebo),
+        explained_gap=gap,
+        recalibrated=Recalibrated(before=_moved(base), after=_moved(amended)),
+        next=advice,
+        detectable=sizes,
+    )
+
+
+def mixed_up(base: Fit, mixed: Mislabelled) -> Verdict:
+    """Of records whose labels are wrong: nothing else can be said of them."""
+    effect = Effect(
+        domain="measurement",
+        place=Place(channels=tuple(label for label, _ in mixed.pairs)),
+        name=LABELS,
+        law=Mechanics(words=mixed.words),
+    )
+    return Verdict(status="measurement", effects=(effect,), recalibrated=Recalibrated(before=_moved(base)))
+
+
+def _status(effects: Sequence[Effect], proof: Proof, gap: float) -> Status:
+    if not proof.conditions.hold:
+        return "insufficient"
+    if effects[0].class_ and effects[0].class_[0].name == NOVEL:
+        return "described" if effects[0].parameters and gap >= decide.EXPLAINED else "located"
+    if gap < decide.EXPLAINED and effects[0].domain == "path":
+        return "located"
+    if any(effect.name is None for effect in effects):
+        return "ambiguous"
+    return "measurement" if all(effect.domain == "measurement" for effect in effects) else "named"
+
+
+def _nothing(base: Fit, first: Round, found: Sequence[Found]) -> tuple[Status, tuple[Effect, ...]]:
+    """Without an effect that passed: the place where something acts, if there is one."""
+    if found:
+        best = found[0]
+        # Where the base does not fit at all, one place has to be the reason for a good part of it.
+        reason = base.heat <= UNEXPLAINED or best.gain > REASON * best.total
+        if reason and best.gain - best.degrees * np.log(lines(base)) > first.threshold:
+            joint = best.spot.kind == "joint"
+            place = Place(
+                body=None if joint else best.spot.name,
+                joint=best.spot.name if joint else None,
+                x=best.spot.x_m,
+                within=_alike(found),
+            )
+            return "located", (Effect(domain="path", place=place, bands=_spans(best.frequency_Hz, best.by_band)),)
+    return ("insufficient" if base.heat > UNEXPLAINED else "recalibrated"), ()
+
+
+def _alike(found: Sequence[Found]) -> tuple[float, float]:
+    """From and to of the places that explain as much as the best, but for what noise does (90 %)."""
+    best = found[0]
+    same = [f for f in found if f.spot.name == best.spot.name and best.surplus - f.surplus < 2.0 * np.log(10.0)]
+    return min(f.spot.x_m[0] for f in same), max(f.spot.x_m[1] for f in same)
+
+
+def _effect(one: Finalist, found: Round, amended: Fit, base: Fit, unexplained: float) -> Effect:
+    members = decide.members(found, unexplained=unexplained)
+    hypothesis, fit = one.hypothesis, amended
+    index = {f.name: i for i, f in enumerate(fit.free)}
+    z = np.array([fit.z[index[one.prefix + f.name]] for f in hypothesis.free])
+    sigma = np.sqrt(
+        np.array([fit.covariance[i, i] for i in (index[one.prefix + f.name] for f in hypothesis.free)])
+    )
+    values = {f.name: f.value(float(v)) for f, v in zip(hypothesis.free, z, strict=True)}
+    estimates = {}
+    for f, v, s in zip(hypothesis.free, z, sigma, strict=True):
+        ends = sorted(f.value(float(np.clip(v + side * WIDTH * s, *f.limits))) for side in (-1.0, 1.0))
+        estimates[f.name] = Estimate(value=values[f.name], unit=f.unit, low=ends[0], high=ends[1])
+    where = hypothesis.locate(values)
+    within = None
+    if where.x_m is not None:
+        ends = list(where.x_m)
+        for f, estimate in zip(hypothesis.free, estimates.values(), strict=True):
+            for end in (estimate.low, estimate.high):
+                moved = hypothesis.locate({**values, f.name: float(end if end is not None else values[f.name])})
+                ends.extend(moved.x_m or ())
+        within = (min(ends), max(ends))
+    named = members[0].name != NOVEL and members[0].probability >= decide.NAMED
+    base_square = base.clean**2
+    amended_square = one.fit.clean**2
+    return Effect(
+        domain=hypothesis.domain,
+        place=Place.of(where, amended.campaign.model.line, within=within),
+        bands=_spans(base.evidence.rows.frequency_Hz, base_square - amended_square),
+        name=members[0].name if named else None,
+        class_=tuple(members),
+        law=Mechanics(words=hypothesis.law(values)),
+        parameters=estimates,
+    )
+
+
+def _spans(frequency_Hz: Reals, shown: Reals) -> tuple[tuple[float, float], ...]:
+    """Bands, of whole third octaves, that hold most of what an effect shows."""
+    cell = np.floor(3.0 * np.log2(frequency_Hz)).astype(np.int64)
+    cells = np.arange(cell.min(), cell.max() + 1)
+    share = np.bincount(cell - cell.min(), weights=np.maximum(shown, 0.0), minlength=cells.size)
+    if share.sum() <= 0.0:
+        return ()
+    order = np.argsort(-share)
+    needed = int(np.searchsorted(np.cumsum(share[order]) / share.sum(), SHOWN)) + 1
+    chosen = np.zeros(cells.size, dtype=bool)
+    chosen[order[:needed]] = True
+    spans, start = [], None
+    for index, inside in enumerate([*chosen, False]):
+        if inside and start is None:
+            start = index
+        elif not inside and start is not None:
+            spans.append((float(2.0 ** (cells[start] / 3.0)), float(2.0 ** ((cells[index - 1] + 1) / 3.0))))
+            start = None
+    return tuple(spans)
+
+
+def _moved(fit: Fit) -> dict[str, Moved]:
+    known = fit.evidence.campaign.parameters.known
+    values = fit.values()
+    return {
+        f.name: Moved(value=values[f.name], prior=known[f.name].nominal, z=float(z))
+        for f, z in zip(fit.free, fit.z, strict=True)
+        if f.name in known
+    }
+
+
+def _held_out(found: Sequence[Gain]) -> dict[str, HeldOutGain]:
+    return {
+        f"{g.part.axis}: {g.part.name}": HeldOutGain(
+            gain_nats=g.nats,
+            standard_error=g.standard_error if np.isfinite(g.standard_error) else None,
+            db_before=g.before_dB if np.isfinite(g.before_dB) else None,
+            db_after=g.after_dB if np.isfinite(g.after_dB) else None,
+        )
+        for g in found
+    }

@@ -1,0 +1,172 @@
+"""The verdict in words: one sentence, and a small table for notebooks."""
+
+from __future__ import annotations
+
+from html import escape
+
+from permway.diagnosis.verdict import Effect, Estimate, HeldOutGain, Smallest, Verdict
+
+MOST_SIZES = 3
+"""Detectable sizes that a sentence names, at most."""
+
+STATUS = {
+    "recalibrated": "nothing missing",
+    "measurement": "fault in the measurement",
+    "named": "effect named",
+    "ambiguous": "effect found, several names possible",
+    "described": "effect described, none of the catalogue",
+    "located": "effect located",
+    "insufficient": "not enough information",
+}
+"""Statuses in words."""
+
+DOMAIN = {
+    "path": "track and structure",
+    "irregularity": "irregularity",
+    "vehicle": "vehicle",
+    "measurement": "measurement",
+}
+"""Domains in words."""
+
+
+def sentence(verdict: Verdict) -> str:
+    """The verdict in one plain sentence for an engineer."""
+    match verdict.status:
+        case "recalibrated":
+            parts = ["Nothing is missing beyond what the stated tolerances allow", _seen(verdict)]
+        case "insufficient":
+            suspect = f"the suspicion is {_named(verdict.effects[0])}" if verdict.effects else ""
+            words = "These records cannot say whether anything is missing"
+            parts = [words, suspect, _seen(verdict), _advice(verdict)]
+        case "named":
+            parts = [_named(verdict.effects[0]), _more(verdict), _better(verdict)]
+        case "measurement":
+            words = f"The measurement is at fault and no physics is missing: {_named(verdict.effects[0])}"
+            parts = [words, _more(verdict), _better(verdict)]
+        case "ambiguous":
+            first = next(i for i, effect in enumerate(verdict.effects) if effect.name is None)
+            parts = [_rivals(verdict.effects[first]), _more(verdict, first), _better(verdict), _advice(verdict)]
+        case "described":
+            effect = verdict.effects[0]
+            words = f"{_at(effect)} acts what the catalogue does not hold: {effect.law.words or 'novel physics'}"
+            parts = [words, _more(verdict), _better(verdict)]
+        case "located":
+            words = f"{_at(verdict.effects[0])} physics is missing that these records cannot describe"
+            parts = [words, _more(verdict), _better(verdict), _advice(verdict)]
+    text = "; ".join(part for part in parts if part)
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+def quantity(value: float, unit: str = "") -> str:
+    """Three significant digits, or a whole number below 100 000, and the unit; a ratio has none."""
+    plain = f"{value:.0f}" if 1000.0 <= abs(value) < 1e5 else f"{value:.3g}"
+    text = plain.replace("e+0", "e").replace("e+", "e").replace("e-0", "e-").replace("-", "−")
+    return text if unit in ("", "1") else f"{text} {unit}"
+
+
+def interval(one: Estimate) -> str:
+    """The 90 % interval, or ""."""
+    if one.low is None or one.high is None:
+        return ""
+    return f"{quantity(one.low)} to {quantity(one.high)}"
+
+
+def smallest(name: str, one: Smallest) -> str:
+    """What would have been seen of an effect."""
+    return f"a {name} with {one.parameter} {size(one)}"
+
+
+def size(one: Smallest) -> str:
+    """The side on which it would have been seen, and the value."""
+    if one.value is None:
+        return "of no size"
+    side = "below" if one.none is None or one.value < one.none else "above"
+    return f"{side} {quantity(one.value, one.unit)}"
+
+
+def probability(effect: Effect) -> float | None:
+    """Of the effect's name, or of the first of its class."""
+    chosen = [m.probability for m in effect.class_ if m.name == effect.name] or [
+        m.probability for m in effect.class_
+    ]
+    return chosen[0] if chosen else None
+
+
+def strongest(verdict: Verdict) -> tuple[str, HeldOutGain] | None:
+    """The axis of held-out records that gains most, of those whose decibels are known."""
+    known = {axis: g for axis, g in verdict.held_out.items() if None not in (g.db_before, g.db_after)}
+    return max(known.items(), key=lambda item: item[1].gain_nats, default=None)
+
+
+def _named(effect: Effect) -> str:
+    chance = probability(effect)
+    name = effect.name or " or ".join(member.name for member in effect.class_)
+    sure = "" if chance is None or effect.name is None else f"probability {chance:.2f}"
+    said = ", ".join(part for part in (name, sure) if part)
+    what = effect.law.words or _values(effect)
+    text = ": ".join(part for part in (effect.place.label, what) if part) or "an effect"
+    return f"{text} ({said})" if said else text
+
+
+def _values(effect: Effect) -> str:
+    return ", ".join(f"{name} {quantity(one.value, one.unit)}" for name, one in effect.parameters.items())
+
+
+def _at(effect: Effect) -> str:
+    label = effect.place.label
+    bands = " and ".join(f"{low:.3g} to {high:.3g} Hz" for low, high in effect.bands)
+    where = f"at {label}" if label else f"in {DOMAIN[effect.domain]}"
+    return f"{where}, {bands}," if bands else where
+
+
+def _rivals(effect: Effect) -> str:
+    names = " or ".join(f"{m.name} ({m.probability:.2f})" for m in effect.class_)
+    return f"{_at(effect)} physics is missing that these records allow to be {names}"
+
+
+def _more(verdict: Verdict, said: int = 0) -> str:
+    """The effects beside the one that was said."""
+    others = [_named(effect) for i, effect in enumerate(verdict.effects) if i != said]
+    return f"beside that {' and '.join(others)}" if others else ""
+
+
+def _better(verdict: Verdict) -> str:
+    found = strongest(verdict)
+    if found is None:
+        return ""
+    before, after = found[1].db_before or 0.0, found[1].db_after or 0.0
+    moves = "improves" if after < before else "does not improve:"
+    return f"the prediction of held-out records {moves} from {before:.1f} to {after:.1f} dB"
+
+
+def _seen(verdict: Verdict) -> str:
+    sizes = [smallest(name, one) for name, one in verdict.detectable.items() if one.value is not None]
+    if not sizes:
+        return ""
+    more = f" (and {len(sizes) - MOST_SIZES} more effects by size)" if len(sizes) > MOST_SIZES else ""
+    return f"{' or '.join(sizes[:MOST_SIZES])} would have been seen{more}"
+
+
+def _advice(verdict: Verdict) -> str:
+    if not verdict.next:
+        return ""
+    first = verdict.next[0]
+    return f"to tell {first.separates[0]} from {first.separates[1]}, measure: {first.measurement}"
+
+
+def html_table(verdict: Verdict) -> str:
+    """The verdict as a small table: the sentence, then of each effect place, name and parameters."""
+    rows = []
+    for effect in verdict.effects:
+        values = ", ".join(
+            f"{name} {quantity(one.value, one.unit)}" + (f" ({span})" if (span := interval(one)) else "")
+            for name, one in effect.parameters.items()
+        )
+        rivals = ", ".join(f"{m.name} {m.probability:.2f}" for m in effect.class_)
+        cells = (DOMAIN[effect.domain], effect.place.label, effect.name or "", rivals, values)
+        rows.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
+    heads = ("domain", "place", "name", "class", "parameters (90 %)")
+    head = "<tr>" + "".join(f"<th>{one}</th>" for one in heads) + "</tr>"
+    words = f"<b>{escape(STATUS[verdict.status])}.</b> {escape(verdict.sentence)}"
+    body = f"<thead>{head}</thead><tbody>{''.join(rows)}</tbody>" if rows else ""
+    return f'<table><caption style="text-align: left">{words}</caption>{body}</table>'

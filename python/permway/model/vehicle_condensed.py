@@ -1,0 +1,95 @@
+"""Dynamic stiffness of a car with additions, what moves beside its ten degrees condensed into them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from permway.arrays import Complexes, Reals
+from permway.model.vehicle_additions import (
+    BODY,
+    BOGIES,
+    AirSpring,
+    AnyAddition,
+    DamperSeries,
+    FlexibleMode,
+    Resonator,
+)
+
+
+def condensed(
+    omega: Reals,
+    masses: Reals,
+    stretches: tuple[Reals, Reals],
+    springs: tuple[float, float],
+    dashpots: tuple[float, float],
+    additions: Sequence[AnyAddition],
+) -> Complexes:
+    """Dynamic stiffness of one whole car.
+
+    A flexible mode q, scaled to 1 at the point y that is read, leaves the mass of its part at y - q and the other
+    springs of the part at y + (shape - 1) q. Every q is then eliminated, which keeps what is passive passive.
+
+    Parameters
+    ----------
+    omega : ndarray, shape (F,)
+        rad/s.
+    masses : ndarray, shape (n,)
+        Of the rigid degrees.
+    stretches : (ndarray, ndarray)
+        Rows that give the compression of each secondary and of each primary suspension from the degrees.
+    springs, dashpots : (float, float)
+        Of one secondary and of one primary suspension, N/m and N s/m.
+    additions : sequence of additions
+
+    Returns
+    -------
+    ndarray of complex128, shape (F, n, n)
+    """
+    modes = [(mode, degree) for mode in additions if isinstance(mode, FlexibleMode) for degree in mode.at()]
+    n, q = masses.size, len(modes)
+    rigid = np.hstack([np.eye(n), np.zeros((n, q))])
+    secondary, primary = (np.hstack([rows, np.zeros((rows.shape[0], q))]) for rows in stretches)
+    modal = np.zeros(q)
+    own = np.zeros(q, dtype=np.complex128)
+    for index, (mode, degree) in enumerate(modes):
+        rigid[degree, n + index] = -1.0
+        modal[index] = mode.modal_mass_kg
+        own[index] = mode.modal_mass_kg * mode.spring()
+        held = secondary if degree == BODY else primary if degree in BOGIES else None
+        if held is not None:
+            held[:, n + index] = (mode.shape - 1.0) * held[:, degree]
+    mass = rigid.T @ (masses[:, None] * rigid) + np.diag(np.concatenate([np.zeros(n), modal]))
+    stiffness = _suspensions(omega, springs, dashpots, additions)
+    whole = (
+        stiffness[0][:, None, None] * (secondary.T @ secondary)
+        + stiffness[1][:, None, None] * (primary.T @ primary)
+        + np.diag(np.concatenate([np.zeros(n), own]))
+        - omega[:, None, None] ** 2 * mass
+    )
+    for addition in additions:
+        if isinstance(addition, Resonator):
+            degrees = list(addition.at())
+            whole[:, degrees, degrees] += addition.stiffness(omega)[:, None]
+    if not q:
+        return np.asarray(whole)
+    out = np.linalg.solve(whole[:, n:, n:], whole[:, n:, :n])
+    return np.asarray(whole[:, :n, :n] - whole[:, :n, n:] @ out)
+
+
+def _suspensions(
+    omega: Reals, springs: tuple[float, float], dashpots: tuple[float, float], additions: Sequence[AnyAddition]
+) -> list[Complexes]:
+    """Complex stiffness of one secondary and of one primary suspension, N/m, each (F,)."""
+    found = []
+    for name, spring, dashpot in zip(("secondary", "primary"), springs, dashpots, strict=True):
+        elastic, viscous = np.full(omega.size, spring, dtype=np.complex128), 1j * omega * dashpot
+        for addition in additions:
+            if isinstance(addition, DamperSeries) and addition.suspension == name:
+                viscous = viscous / (1.0 + viscous / addition.stiffness_N_per_m)
+            elif isinstance(addition, AirSpring) and name == "secondary":
+                late = 1j * omega / (2.0 * np.pi * addition.transition_Hz)
+                elastic = elastic * (1.0 + addition.rise * late / (1.0 + late))
+        found.append(elastic + viscous)
+    return found

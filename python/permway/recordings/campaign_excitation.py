@@ -1,0 +1,134 @@
+"""What excites a train beside the profile's own spectrum: bands, lines, the roughness of single wheels, forces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from pydantic import Field, NonNegativeFloat, PositiveFloat
+
+from permway.errors import InputError
+from permway.records import FrozenModel, Number
+
+if TYPE_CHECKING:
+    from permway.model.file import Model
+    from permway.recordings.campaign_parts import Condition, IrregularityKnown
+
+
+class RoughBand(FrozenModel):
+    """More roughness about one wavelength, as of corrugated rail.
+
+    The profile's density is multiplied by 1 + (10^(gain/10) - 1) exp(-x^2/2), x = log2(wavelength/centre)/octaves.
+
+    Parameters
+    ----------
+    wavelength_m : float
+        Centre.
+    octaves : float
+        Width: one standard deviation of the bell over the logarithm of wavelength.
+    gain_dB : float
+        At the centre.
+    """
+
+    wavelength_m: PositiveFloat
+    octaves: float = Field(default=0.2, ge=0.005, le=5.0)
+    gain_dB: Number = Field(ge=0.0, le=60.0)
+
+
+class _Lines(FrozenModel):
+    """A harmonic series of a profile: amplitude a of the first, a n^-decay of the n-th.
+
+    Parameters
+    ----------
+    amplitude_m : float
+    harmonics : int, optional
+        How many; by default as many as the record's band holds.
+    decay : float
+    width : float
+        Standard deviation of a line's frequency over the frequency, of a bell; 0 for a pure line.
+    """
+
+    amplitude_m: NonNegativeFloat
+    harmonics: int | None = Field(default=None, ge=1, le=10_000, strict=True)
+    decay: Number = Field(default=1.0, ge=0.0, le=10.0)
+    width: float = Field(default=0.0, ge=0.0, le=0.3)
+
+
+class TrackLines(_Lines):
+    """Something that repeats along the track, met by all wheels one after the other: lines at n V / length.
+
+    Parameters
+    ----------
+    length_m : float
+        Of rails between welds, of spans, of the distance between supports.
+    amplitude_m, harmonics, decay, width
+        See :class:`_Lines`.
+    """
+
+    length_m: float = Field(ge=0.05, le=1000.0)
+
+
+class WheelLines(_Lines):
+    """Roughness of the wheels themselves, lines at n order V / (2 pi R), each wheel for itself.
+
+    Parameters
+    ----------
+    order : float
+        Of the first line, per turn: 18 for a polygon of 18 sides, 1 for a flat.
+    wheel : int, optional
+        1 is the leading wheelset; by default every wheelset, independent of each other.
+    amplitude_m, harmonics, decay, width
+        See :class:`_Lines`.
+    """
+
+    order: float = Field(default=1.0, ge=0.5, le=500.0)
+    wheel: int | None = Field(default=None, ge=1, strict=True)
+
+
+class Push(FrozenModel):
+    """A random force on a degree of freedom of the vehicle: a motor, a gear box, the wind.
+
+    Parameters
+    ----------
+    degree : str
+        As "car1.bogie1.bounce".
+    density_N2_per_Hz : float
+        One-sided; of the centre, if there is one. Moments, for a pitch, in (N m)^2/Hz.
+    centre_Hz : float, optional
+        By default the density is the same at all frequencies.
+    octaves : float
+        One standard deviation of the bell about the centre.
+    """
+
+    degree: str
+    density_N2_per_Hz: NonNegativeFloat
+    centre_Hz: PositiveFloat | None = None
+    octaves: float = Field(default=1.0, ge=0.01, le=10.0)
+
+
+def check_excitation(known: IrregularityKnown, conditions: Iterable[Condition], model: Model) -> None:
+    """Check what an irregularity says of conditions, wheels and degrees of freedom.
+
+    Raises
+    ------
+    InputError
+        With the place in the campaign file.
+    """
+    trains = [condition.name for condition in conditions if condition.kind == "train"]
+    for name in known.level_by_condition_dB:
+        if name not in trains:
+            where = f"irregularity.level_by_condition_dB.{name}"
+            raise InputError("there is no train of that name", where=where, remedy=f"use one of {trains}")
+    wheels = 0 if model.train is None else len(model.train.vehicle.wheel_indices)
+    for index, lines in enumerate(known.wheels):
+        if wheels < (lines.wheel or 1):
+            what = f"the vehicle has {wheels} wheelsets" if wheels else "the model has no train"
+            raise InputError(what, where=f"irregularity.wheels[{index}].wheel", value=lines.wheel)
+    degrees = [] if model.train is None else model.train.vehicle.degrees
+    for index, push in enumerate(known.pushes):
+        if push.degree not in degrees:
+            where = f"irregularity.pushes[{index}].degree"
+            remedy = f"use one of {degrees[:10]}" if degrees else "give the model file a [train]"
+            raise InputError(
+                "the vehicle has no such degree of freedom", where=where, value=push.degree, remedy=remedy
+            )

@@ -1,0 +1,176 @@
+"""The fine grid on which spectra are taken before Welch's window smears them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy import sparse
+
+from permway.arrays import Complexes, Reals
+
+PER_LINE = 16
+"""Points between two lines at which spectra are taken before the window smears them."""
+
+REACH_LINES = 4
+"""Lines on either side beyond which Hann's window lets nothing through (below 1e-5 of the power)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Equally spaced frequencies, `PER_LINE` to a line of the estimate, and the ways onto it and off it.
+
+    Attributes
+    ----------
+    frequency_Hz : ndarray, shape (N,)
+    step_Hz : float
+    left : ndarray of int, shape (N,)
+        The solved line below each point.
+    share : ndarray, shape (N, 1)
+        How much of the way to the next solved line.
+    smear : sparse array, shape (F, N)
+        Power of Hann's spectral window about every line of the estimate, each row of sum 1.
+    moments : sparse array, shape (n, N)
+        From a density to the n numbers of a sparse array (F, 3 (L - 1)): by interval between solved lines the sums
+        of window times density times `share` to the powers 0, 1, 2.
+    columns, pointers : ndarray of int
+        Where those numbers stand.
+    """
+
+    frequency_Hz: Reals
+    step_Hz: float
+    left: np.ndarray
+    share: Reals
+    smear: sparse.csr_array
+    moments: sparse.csr_array
+    columns: np.ndarray
+    pointers: np.ndarray
+
+    def spread(self, values: Complexes) -> Complexes:
+        """Linear interpolation from the solved lines, (L, k) to (N, k)."""
+        steps = np.diff(values, axis=0)
+        found = steps[self.left]
+        found *= self.share
+        found += values[self.left]
+        return np.asarray(found)
+
+    def expected(self, fine: Complexes, density: Reals) -> Complexes:
+        """What Welch's method expects of a source, channel against channel.
+
+        Parameters
+        ----------
+        fine : ndarray of complex128, shape (N, C)
+            What channels read per source.
+        density : ndarray, shape (N,)
+            Of the source.
+
+        Returns
+        -------
+        ndarray of complex128, shape (F, C (C + 1) / 2)
+            The upper triangle, row by row.
+        """
+        rows, columns = np.triu_indices(fine.shape[1])
+        scaled = fine * np.sqrt(density)[:, None]
+        return _apply(self.smear, scaled[:, rows] * scaled.conj()[:, columns])
+
+    def expected_between(self, sources: Sequence[Complexes], density: Reals) -> Complexes:
+        """The same of independent sources of one density, given at the solved lines and linear between them.
+
+        Between two lines a product of what two channels read is a parabola, so the window's moments by interval
+        are enough, and no product is taken on the grid.
+
+        Parameters
+        ----------
+        sources : sequence of ndarray of complex128, shape (L, C)
+        density : ndarray, shape (N,)
+        """
+        rows, columns = np.triu_indices(sources[0].shape[1])
+        parabolas = np.zeros((3 * (sources[0].shape[0] - 1), rows.size), dtype=np.complex128)
+        for values in sources:
+            start, step = values[:-1], np.diff(values, axis=0)
+            left, right = (start[:, rows], step[:, rows]), (start.conj()[:, columns], step.conj()[:, columns])
+            parts = [left[0] * right[0], left[0] * right[1] + left[1] * right[0], left[1] * right[1]]
+            parabolas += np.concatenate(parts)
+        shape = (self.pointers.size - 1, len(parabolas))
+        weights = sparse.csr_array((self.moments @ density, self.columns, self.pointers), shape=shape)
+        return _apply(weights, parabolas)
+
+
+def _apply(weights: sparse.csr_array, values: Complexes) -> Complexes:
+    """Real weights times complex values, whose parts are columns of their own."""
+    real = np.ascontiguousarray(values).view(np.float64)
+    return np.ascontiguousarray(weights @ real).view(np.complex128)
+
+
+def grid_of(lines_Hz: Reals, estimate_Hz: Reals, segment_s: float) -> Grid:
+    """The grid of a record; the same arrays give the same one.
+
+    Parameters
+    ----------
+    lines_Hz : ndarray, shape (L,)
+        Frequencies that were solved at.
+    estimate_Hz : ndarray, shape (F,)
+    segment_s : float
+    """
+    return _grid(lines_Hz.tobytes(), estimate_Hz.tobytes(), segment_s)
+
+
+@lru_cache(maxsize=8)
+def _grid(lines: bytes, estimate: bytes, segment_s: float) -> Grid:
+    lines_Hz, estimate_Hz = np.frombuffer(lines), np.frombuffer(estimate)
+    step = 1.0 / (segment_s * PER_LINE)
+    count = int(np.floor((lines_Hz[-1] - lines_Hz[0]) / step + 1e-9)) + 1
+    fine = np.asarray(lines_Hz[0] + step * np.arange(count), dtype=np.float64)
+    left = np.clip(np.searchsorted(lines_Hz, fine, side="right") - 1, 0, lines_Hz.size - 2)
+    share = np.clip((fine - lines_Hz[left]) / (lines_Hz[left + 1] - lines_Hz[left]), 0.0, 1.0)
+    smear = _window(fine, estimate_Hz, segment_s)
+    return Grid(fine, step, left, share[:, None], smear, *_moments(smear, left, share, lines_Hz.size - 1))
+
+
+def _moments(
+    smear: sparse.csr_array, left: np.ndarray, share: Reals, intervals: int
+) -> tuple[sparse.csr_array, np.ndarray, np.ndarray]:
+    window = smear.tocoo()
+    line, point = window.coords
+    keys = [(3 * line.astype(np.int64) + power) * intervals + left[point] for power in range(3)]
+    values = [window.data * share[point] ** power for power in range(3)]
+    there, at = np.unique(np.concatenate(keys), return_inverse=True)
+    cells = (at, np.tile(point, 3))
+    moments = sparse.csr_array((np.concatenate(values), cells), shape=(there.size, left.size))
+    row, column = np.divmod(there, 3 * intervals)
+    return moments, column, np.searchsorted(row, np.arange(smear.shape[0] + 1))
+
+
+def _window(fine: Reals, estimate_Hz: Reals, segment_s: float) -> sparse.csr_array:
+    rows, columns, values = [], [], []
+    for index, frequency in enumerate(estimate_Hz):
+        away = (fine - frequency) * segment_s
+        near = np.flatnonzero(np.abs(away) <= REACH_LINES)
+        x = away[near]
+        power = (np.sinc(x) + 0.5 * (np.sinc(x - 1.0) + np.sinc(x + 1.0))) ** 2
+        rows.append(np.full(near.size, index))
+        columns.append(near)
+        values.append(power / power.sum())
+    at = (np.concatenate(rows), np.concatenate(columns))
+    return sparse.csr_array((np.concatenate(values), at), shape=(estimate_Hz.size, fine.size))
+
+
+def solved_lines(
+    estimate_Hz: Reals, segment_s: float, interpolated_Hz: Sequence[tuple[float, float]] | None
+) -> Reals:
+    """Frequencies to solve at, so that the window's reach is covered, Hz.
+
+    They lie a line of the estimate apart, or where those lay between which the record was interpolated.
+    """
+    reach = REACH_LINES / segment_s
+    low, high = float(estimate_Hz[0]) - reach, float(estimate_Hz[-1]) + reach
+    ranges = list(interpolated_Hz or [(0.0, 1.0 / segment_s)])
+    parts = []
+    for (start, step), stop in zip(ranges, [*(start for start, _ in ranges[1:]), np.inf], strict=True):
+        first = int(np.floor((max(low, start) - start) / step + 1e-9))
+        last = int(np.ceil((min(high, stop) - start) / step - 1e-9))
+        parts.append(start + step * np.arange(first, last + 1, dtype=np.float64))
+    lines = np.unique(np.round(np.concatenate(parts), 9))
+    return np.asarray(lines[lines > 0.0])

@@ -1,0 +1,59 @@
+"""What the verdict rests on without having been tested: model, tolerances, noise, versions, data left out."""
+
+from __future__ import annotations
+
+import platform
+from importlib.metadata import version
+from typing import Any
+
+from permway import _core
+from permway.diagnosis.blocks import FrfBlock
+from permway.diagnosis.compare import KIND
+from permway.diagnosis.result import Diagnosis
+from permway.report.compare.tables import decibels, smooth_rows
+
+LIBRARIES = ("numpy", "scipy", "xarray")
+
+
+def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
+    """Facts by heading: `model`, `records`, `smooth`, `noise`, `left_out`, `held_out`, `versions`, `seconds`."""
+    campaign, comparison = diagnosis.comparison.campaign, diagnosis.comparison
+    line = campaign.model.line
+    layers = dict.fromkeys(f"{layer.law} ({layer.between[0]} on {layer.between[1]})" for layer in line.joints)
+    return {
+        "model": [
+            ("Model file", campaign.said.model),
+            ("Bodies", ", ".join(line.bodies)),
+            ("Joints", f"{line.joint_table().x.size}: {', '.join(layers)}"),
+            ("Parameters with tolerances", str(len(campaign.parameters.known))),
+        ],
+        "records": [
+            (row["kind"], row["records"], row["channels"], decibels(row["noise_dB_rms"]))
+            for row in comparison.fits()
+        ],
+        "smooth": smooth_rows(comparison),
+        "noise": _noise(diagnosis),
+        "left_out": list(comparison.left_out.items()),
+        "held_out": [f"{group.name} ({group.axis})" for group in campaign.said.held_out],
+        "versions": [
+            ("permway", _core.__version__),
+            ("Python", platform.python_version()),
+            *((name, version(name)) for name in LIBRARIES),
+        ],
+        "seconds": [(stage, f"{seconds:.1f} s") for stage, seconds in diagnosis.seconds.items()],
+    }
+
+
+def _noise(diagnosis: Diagnosis) -> list[tuple[str, str]]:
+    """How the noise of each kind of record was had."""
+    words = []
+    evidence = diagnosis.base.evidence
+    if any(isinstance(block, FrfBlock) for block in evidence.blocks):
+        words.append((KIND["frf"], "of each line by coherence and averages"))
+    kinds = dict.fromkeys(d.record.statistic for d in evidence.datasets)
+    if "csd" in kinds or "psd" in kinds:
+        words.append((KIND["psd"], "by the effective number of averages"))
+    for kind in kinds:
+        if kind not in ("frf", "csd", "psd"):
+            words.append((KIND.get(kind, kind), "an assumed scatter"))
+    return words

@@ -1,0 +1,62 @@
+"""Everything that a diagnosis leaves in a folder: verdict, amended model, page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from permway.diagnosis.result import Diagnosis
+from permway.errors import InputError
+from permway.files import prepare_folder, write_text
+from permway.laws.toml import to_toml
+from permway.model.writing import model_table
+from permway.report.diagnosis.writing import PAGE, write_report
+
+VERDICT, AMENDED = "verdict.json", "amended.toml"
+
+
+def write_diagnosis(diagnosis: Diagnosis, folder: Path, *, page: bool = True) -> dict[str, Any]:
+    """Write the verdict, the amended model, and the page.
+
+    Without an effect that passed, the model is the owner's, recalibrated: a file of another name would say less.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    folder : Path
+        Made if its parent exists.
+    page : bool
+        Whether to write the page, which takes the longest.
+
+    Returns
+    -------
+    dict
+        What there is, for people and machines.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
+    """
+    folder = prepare_folder(Path(folder), (VERDICT, AMENDED, PAGE))
+    verdict = diagnosis.verdict
+    found: dict[str, Any] = {
+        "verdict": verdict.sentence,
+        "status": verdict.status,
+        "effects": [
+            {"name": e.name or " or ".join(m.name for m in e.class_) or "not named", "place": e.place.label}
+            for e in verdict.effects
+        ],
+        "seconds": {stage: round(seconds, 1) for stage, seconds in diagnosis.seconds.items()},
+    }
+    fit = diagnosis.amended or diagnosis.base
+    write_text(folder / VERDICT, verdict.to_json())
+    found["verdict file"] = str(folder / VERDICT)
+    try:
+        write_text(folder / AMENDED, to_toml(model_table(fit.campaign.model)))
+        found["amended model"] = str(folder / AMENDED)
+    except InputError as error:
+        found["amended model"] = f"not written: {error}"
+    if page:
+        found["report"] = str(write_report(diagnosis, folder))
+    return found

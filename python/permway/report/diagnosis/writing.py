@@ -1,0 +1,46 @@
+"""Writes the page of a diagnosis, `report.html`."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+from permway.diagnosis.result import Diagnosis
+from permway.files import prepare_folder, write_text
+
+PAGE = "report.html"
+
+
+def write_report(diagnosis: Diagnosis, folder: Path, *, dpi: int = 140) -> Path:
+    """Write the page, which holds its pictures and needs nothing from outside.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    folder : Path
+        Made if its parent exists.
+    dpi : int
+        Of the pictures.
+
+    Returns
+    -------
+    Path
+        Of the page.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
+    """
+    # Drawing is slow to import.
+    from permway.report.diagnosis.page import render
+    from permway.report.diagnosis.pictures import pictures
+
+    folder = prepare_folder(Path(folder), (PAGE,))
+    drawn = {}
+    for name, figure in pictures(diagnosis):
+        buffer = io.BytesIO()
+        # No date and no version inside: the same data give the same file.
+        figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
+        drawn[name] = buffer.getvalue()
+    return write_text(folder / PAGE, render(diagnosis, drawn))

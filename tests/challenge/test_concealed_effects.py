@@ -1,0 +1,98 @@
+"""Concealed effects: each changes what it should and nothing else, and none creates energy."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from permway.challenge.case import _kinds
+from permway.challenge.effects import CATALOGUE, NONLINEAR, OUTSIDE, STRENGTHS, TWINS, Effect
+from permway.challenge.mesh import Mesh
+from permway.challenge.plan import Plan
+from short_deck import TWO_SPANS, small_plan, small_site
+
+FREQUENCY = np.array([3.0, 11.0, 33.0, 90.0, 170.0, 290.0, 395.0])
+EVERY = CATALOGUE + OUTSIDE + NONLINEAR
+
+
+def drawn(kind: type[Effect], strength: str = "strong", seed: int = 1) -> Effect:
+    return kind.draw(np.random.default_rng(seed), strength, small_site())  # type: ignore[arg-type]
+
+
+def receptance(plan: Plan, temperature_C: float = -15.0) -> np.ndarray:
+    spots = list(dict.fromkeys([*plan.tests.sensors, ("rail", 1.28), ("girder", 4.8)]))
+    return Mesh(plan.track, spots).receptance(FREQUENCY, temperature_C, spots, spots)
+
+
+@pytest.fixture(scope="module")
+def base() -> np.ndarray:
+    return receptance(small_plan(small_site()))
+
+
+@pytest.mark.parametrize("kind", [kind for kind in EVERY if kind.DOMAIN == "path"], ids=lambda kind: kind.KIND)
+def test_path_effect_is_reciprocal_passive_and_felt(kind: type[Effect], base: np.ndarray) -> None:
+    plan = small_plan(small_site())
+    drawn(kind).apply(plan)
+    moved = receptance(plan)
+    scale = np.abs(moved).max(axis=(1, 2), keepdims=True)
+    assert np.allclose(moved / scale, np.swapaxes(moved, 1, 2) / scale, atol=1e-8)
+    loss = -(moved - np.conj(np.swapaxes(moved, 1, 2))) / 2j
+    assert np.linalg.eigvalsh(loss / scale).min() > -1e-9
+    assert np.abs(np.log(np.abs(moved / base))).max() > 0.02
+    assert [plan.line_gain, plan.shapes, plan.wheel_profiles, plan.channel_gain] == [{}, [], [], {}]
+
+
+@pytest.mark.parametrize("kind", [kind for kind in EVERY if kind.DOMAIN != "path"], ids=lambda kind: kind.KIND)
+def test_other_effects_leave_the_track_alone(kind: type[Effect], base: np.ndarray) -> None:
+    plan = small_plan(small_site())
+    drawn(kind).apply(plan)
+    assert np.array_equal(receptance(plan), base)
+
+
+@pytest.mark.parametrize("kind", [kind for kind in EVERY if kind.DOMAIN == "vehicle"], ids=lambda kind: kind.KIND)
+def test_vehicle_effect_is_felt_on_board(kind: type[Effect]) -> None:
+    changed, plain = small_plan(small_site()), small_plan(small_site())
+    drawn(kind).apply(changed)
+    track = np.broadcast_to(np.eye(4) * (1e-8 - 2e-9j), (FREQUENCY.size, 4, 4)).copy()
+    before, after = (plan.vehicle.influence(FREQUENCY, track) for plan in (plain, changed))
+    assert np.abs(np.log(np.abs(after / before))).max() > 0.05
+    low = np.array([0.05])
+    still = changed.vehicle.influence(low, track[:1])[0, -1].sum()
+    assert still == pytest.approx(1.0, abs=0.05), "slowly, the body follows the rail"
+
+
+@pytest.mark.parametrize("kind", EVERY, ids=lambda kind: kind.KIND)
+def test_truth_of_an_effect_says_what_where_and_how_much(kind: type[Effect]) -> None:
+    truth = json.loads(json.dumps(drawn(kind).truth()))
+    assert {"id", "kind", "family", "domain", "place", "parameters", "mechanical", "twins"} == set(truth)
+    assert (truth["id"] is None) == (kind not in CATALOGUE)
+    assert truth["place"]
+    assert truth["mechanical"]
+
+
+@pytest.mark.parametrize("kind", [k for k in EVERY if k.DOMAIN == "path"], ids=lambda kind: kind.KIND)
+def test_strength_orders_what_is_felt(kind: type[Effect], base: np.ndarray) -> None:
+    felt = []
+    for strength in STRENGTHS:
+        plan = small_plan(small_site())
+        drawn(kind, strength).apply(plan)
+        felt.append(np.sqrt(np.mean(np.abs(np.log(np.abs(receptance(plan) / base))) ** 2)))
+    assert felt[0] < felt[2]
+
+
+@pytest.mark.parametrize("kind", EVERY, ids=lambda kind: kind.KIND)
+def test_every_effect_finds_a_place_on_two_spans(kind: type[Effect]) -> None:
+    site = replace(small_site(), layout=TWO_SPANS)
+    for seed in range(20):
+        place = kind.draw(np.random.default_rng(seed), "strong", site).place.get("x_m") or [0.0]
+        assert 0.0 <= min(place) <= max(place) <= TWO_SPANS.length_m
+
+
+def test_several_effects_are_of_several_families() -> None:
+    for seed in range(50):
+        kinds = _kinds(np.random.default_rng(seed), "multiple")
+        assert len({kind.FAMILY for kind in kinds}) == len(kinds)
+        assert len(kinds) in (2, 3)
+    assert all(kind.TWINS for kind in TWINS)

@@ -1,0 +1,289 @@
+"""Effects of track and bridge put into the tool's own small lines: unit tests of entries, and no proof of them."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from permway.diagnosis.catalogue import entries
+from permway.diagnosis.catalogue._interval import weakened
+from permway.diagnosis.compete import Ring
+from permway.diagnosis.evidence import gather
+from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation
+from permway.diagnosis.locate import scan
+from permway.diagnosis.recalibrate import Fit, recalibrate
+from permway.recordings.campaign import Campaign
+from permway.recordings.predict import predict
+from simulated_track import ballasted, campaign, embedded, viaduct
+from simulated_train import blank, measured, written
+
+LINES: dict[str, Callable[[], dict[str, Any]]] = {
+    "viaduct": viaduct,
+    "two spans": lambda: viaduct(2),
+    "ballast": ballasted,
+    "bed": embedded,
+}
+FOUND_ON: dict[str, tuple[str, ...]] = {
+    "fastener_loss": ("viaduct", "two spans", "ballast", "bed"),
+    "mortar_void": ("viaduct", "two spans", "ballast"),
+    "girder_crack": ("viaduct", "two spans"),
+    "bearing_stiffness": ("viaduct", "two spans"),
+    "rail_absorber": ("viaduct", "two spans", "ballast"),
+    "baseplate_mass": ("viaduct", "two spans", "ballast"),
+    "slab_joints": ("viaduct", "two spans"),
+    "layer_damping": ("viaduct", "two spans", "ballast", "bed"),
+    "pier_soil": ("viaduct", "two spans"),
+    "support_gradient": ("viaduct", "two spans", "ballast", "bed"),
+    "support_scatter": ("viaduct", "two spans", "ballast", "bed"),
+    "slab_warping": ("viaduct", "two spans"),
+    "sliding_friction": ("viaduct", "two spans"),
+    "ballast_frequency": ("ballast",),
+    "discrete_support": ("bed",),
+    "span_coupling": ("two spans",),
+    "girder_local_modes": ("viaduct", "two spans"),
+    "second_track": ("viaduct", "two spans"),
+    "deck_attachment": ("viaduct", "two spans"),
+    "pad_frequency": ("viaduct", "two spans", "ballast", "bed"),
+}
+"""What each line has a part for."""
+
+Values = Mapping[str, float]
+
+
+def strengths(size: str, weak: float, middle: float, strong: float, **others: float) -> list[Values]:
+    """Three strengths of one effect."""
+    return [{**others, size: value} for value in (weak, middle, strong)]
+
+
+# Line, values at three strengths, and how near the strongest must come out: relative, or in m for places.
+INJECTED: dict[str, tuple[str, list[Values], dict[str, float]]] = {
+    "fastener_loss": (
+        "viaduct",
+        strengths("factor", 0.8, 0.5, 0.1, centre_m=6.9, length_m=0.6),
+        {"centre_m": 0.4, "length_m": 0.7},
+    ),
+    "mortar_void": (
+        "viaduct",
+        strengths("factor", 0.5, 0.2, 0.03, centre_m=8.1, length_m=1.8),
+        {"centre_m": 0.4, "length_m": 0.7},
+    ),
+    "girder_crack": (
+        "viaduct",
+        strengths("factor", 0.85, 0.6, 0.35, centre_m=5.0, length_m=1.2),
+        {"centre_m": 0.5},
+    ),
+    "rail_absorber": (
+        "viaduct",
+        strengths("mass_kg", 0.5, 2.0, 8.0, frequency_Hz=110.0, loss_factor=0.1),
+        {"mass_kg": 0.15, "frequency_Hz": 0.03, "loss_factor": 0.3},
+    ),
+    "baseplate_mass": ("viaduct", strengths("mass_kg", 2.0, 6.0, 15.0, share=0.6), {"mass_kg": 0.5, "share": 0.2}),
+    "slab_joints": (
+        "viaduct",
+        strengths("flexibility_m", 0.3, 2.0, 30.0, length_m=5.0, offset=0.0),
+        {"length_m": 0.05},
+    ),
+    "support_gradient": ("viaduct", strengths("ratio", 1.15, 1.4, 2.2), {"ratio": 0.1}),
+    "slab_warping": (
+        "viaduct",
+        strengths("factor", 0.7, 0.4, 0.05, length_m=2.5),
+        {"length_m": 0.15},
+    ),
+    "girder_local_modes": (
+        "viaduct",
+        strengths("mass_share", 0.01, 0.04, 0.15, frequency_Hz=40.0, loss_factor=0.05),
+        {"mass_share": 0.2, "frequency_Hz": 0.05},
+    ),
+    "deck_attachment": (
+        "viaduct",
+        strengths("mass_kg", 150.0, 500.0, 1500.0, x_m=5.0, frequency_Hz=25.0, loss_factor=0.05),
+        {"mass_kg": 0.2, "frequency_Hz": 0.03, "x_m": 0.7},
+    ),
+    "ballast_frequency": (
+        "ballast",
+        strengths("share", 0.1, 0.3, 0.6, stiffness_factor=1.0, order=0.5),
+        {"order": 0.2},
+    ),
+    "discrete_support": (
+        "bed",
+        strengths("share", 0.3, 0.6, 0.95, spacing_m=0.6, offset=0.1),
+        {"spacing_m": 0.02},
+    ),
+    "layer_damping": ("viaduct", strengths("share", 0.1, 0.4, 0.9, equal_at_Hz=60.0), {}),
+    "support_scatter": (
+        "viaduct",
+        strengths("wave2", -0.1, -0.2, -0.4, wave1=0.05, wave3=0.05, wave4=0.1),
+        {"wave2": 0.3},
+    ),
+    "sliding_friction": (
+        "viaduct",
+        strengths("stiffness_factor", 0.8, 0.5, 0.2, rubbing=0.6),
+        {},
+    ),
+    "second_track": (
+        "viaduct",
+        strengths("mass_kg_per_m", 100.0, 300.0, 900.0, sprung=0.1, frequency_Hz=90.0),
+        {"frequency_Hz": 0.1},
+    ),
+    "pier_soil": (
+        "viaduct",
+        strengths("compliance", 0.05, 0.2, 0.6, mass_kg=6e4, loss_factor=0.1),
+        {"mass_kg": 0.3},
+    ),
+    "pad_frequency": (
+        "viaduct",
+        strengths("share", 0.1, 0.3, 0.6, order=0.4, stiffness_factor=1.0),
+        {"order": 0.25},
+    ),
+    "span_coupling": ("two spans", strengths("stiffness", 2e7, 1e8, 5e8, loss_factor=0.1), {"stiffness": 0.2}),
+}
+
+
+@pytest.fixture(scope="module")
+def situations(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Situation, Campaign]]:
+    """Of a line with nothing missing."""
+
+    @cache
+    def made(line: str) -> tuple[Situation, Campaign]:
+        owner = read(tmp_path_factory.mktemp("line"), line)
+        fit, situation = of(owner, 7)
+        return situation, fit.campaign
+
+    return made
+
+
+def read(folder: Path, line: str) -> Campaign:
+    model = LINES[line]()
+    return written(folder / "c", campaign(model), model)
+
+
+def of(
+    owner: Campaign, seed: int, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
+) -> tuple[Fit, Situation]:
+    fit = recalibrate(gather(owner, measured(owner, seed, amend), threads=1), learn=False)
+    return fit, Situation(fit, tuple(scan(fit)))
+
+
+def _put(inject: Amend, values: Values, base: Campaign) -> Campaign:
+    return inject(base, values)
+
+
+def predicted(base: Campaign) -> np.ndarray:
+    return np.concatenate([p["frf"].values.reshape(-1) for p in predict(base, blank(base), threads=1)])
+
+
+def middle(hypothesis: Hypothesis, z: float = 0.4) -> dict[str, float]:
+    return {f.name: f.value(z) for f in hypothesis.free}
+
+
+@pytest.mark.parametrize("line", LINES)
+def test_a_line_yields_what_it_has_a_part_for(
+    line: str, situations: Callable[[str], tuple[Situation, Campaign]]
+) -> None:
+    situation, _ = situations(line)
+    yielded = {name for name in FOUND_ON if list(entries()[name].hypotheses(situation))}
+    assert yielded == {name for name, lines in FOUND_ON.items() if line in lines}
+
+
+@pytest.mark.parametrize(("entry", "line"), [(name, lines[-1]) for name, lines in FOUND_ON.items()])
+def test_no_effect_is_the_base_and_the_ends_of_ranges_can_be_solved(
+    entry: str, line: str, situations: Callable[[str], tuple[Situation, Campaign]]
+) -> None:
+    situation, base = situations(line)
+    right = predicted(base)
+    for hypothesis in entries()[entry].hypotheses(situation):
+        assert hypothesis.family
+        values = middle(hypothesis)
+        none = {**values, hypothesis.size: hypothesis.none} if hypothesis.size else dict.fromkeys(values, 0.0)
+        np.testing.assert_allclose(predicted(hypothesis.amend(base, none)), right, rtol=1e-6)
+        # What is said of it changes the prediction.
+        assert np.abs(predicted(hypothesis.amend(base, values)) / right - 1.0).max() > 1e-4
+        for ends in itertools.product((0, 1), repeat=len(hypothesis.free)):
+            extreme = {f.name: f.value(f.limits[end]) for f, end in zip(hypothesis.free, ends, strict=True)}
+            assert np.isfinite(predicted(hypothesis.amend(base, extreme))).all()
+        place = hypothesis.locate(values)
+        assert place.what
+        assert hypothesis.law(values)
+
+
+@pytest.mark.parametrize("entry", INJECTED)
+def test_what_is_put_in_is_named_and_measured(
+    entry: str, situations: Callable[[str], tuple[Situation, Campaign]], tmp_path: Path
+) -> None:
+    line, levels, near = INJECTED[entry]
+    inject = next(iter(entries()[entry].hypotheses(situations(line)[0]))).amend
+    owner, gains = read(tmp_path, line), []
+    for values in levels:
+        fit, situation = of(owner, 3, partial(_put, inject, values))
+        ring = Ring(fit)
+        own = max((ring.quick(h) for h in entries()[entry].hypotheses(situation)), key=lambda q: q.gain)
+        # A gain is told over the heat of its base, which grows with what is missing: of chi square it is this.
+        gains.append(own.gain * fit.heat)
+    assert gains[0] < gains[1] < gains[2]
+    family = own.hypothesis.family
+    rivals = {*entries()[entry].CONFUSED_WITH, "fastener_loss", "pad_frequency", "deck_attachment", "sensor_gain"}
+    for rival in sorted(rivals - {entry}):
+        for hypothesis in entries()[rival].hypotheses(situation) if rival in entries() else ():
+            if hypothesis.family != family:
+                assert ring.quick(hypothesis, steps=3).gain < own.gain, rival
+    found = ring.full(own, most_steps=25).values()
+    for name, share in near.items():
+        in_metres = name in ("centre_m", "x_m") or (name == "length_m" and "centre_m" in values)
+        assert abs(found[name] - values[name]) <= share * (1.0 if in_metres else abs(values[name])), (name, found)
+
+
+@pytest.mark.parametrize("factor", [0.3, 3.0])
+def test_a_bearing_apart_is_found(
+    factor: float, situations: Callable[[str], tuple[Situation, Campaign]], tmp_path: Path
+) -> None:
+    hypotheses = entries()["bearing_stiffness"].hypotheses
+    inject = {h.locate({}).x_m: h for h in hypotheses(situations("viaduct")[0])}[(15.0, 15.0)].amend
+    fit, situation = of(read(tmp_path, "viaduct"), 3, lambda base: inject(base, {"factor": factor}))
+    ring = Ring(fit)
+    quick = [ring.quick(h) for h in hypotheses(situation)]
+    for rival in ("girder_crack", "girder_local_modes", "fastener_loss", "deck_attachment"):
+        for hypothesis in entries()[rival].hypotheses(situation):
+            assert ring.quick(hypothesis).gain < max(q.gain for q in quick)
+    # One bearing softer or the other stiffer: which of the two, the owner's tolerance tells.
+    best = max((ring.full(q, most_steps=25) for q in quick), key=lambda full: -full.objective)
+    line = best.campaign.model.line
+    table = line.joint_table()
+    left, right = table.scale[table.law == list(line.laws).index("bearing")]
+    assert right / left == pytest.approx(factor, rel=0.15)
+
+
+def test_a_stretch_changes_whole_joints_and_fades_between(
+    situations: Callable[[str], tuple[Situation, Campaign]],
+) -> None:
+    _, base = situations("viaduct")
+
+    def factors(centre: float, length: float) -> dict[float, float]:
+        changed = weakened(base, "pad", centre, length, 0.2).model.line.joint_table()
+        ratio = changed.scale / base.model.line.joint_table().scale
+        return {round(float(x), 6): round(float(r), 6) for x, r in zip(changed.x, ratio, strict=True) if r != 1.0}
+
+    whole = {6.6: 0.2, 7.2: 0.2, 7.8: 0.2}
+    assert factors(7.2, 1.2) == whole
+    # Up to a quarter of a spacing, 0.15 m, at either end changes nothing; half a spacing takes half a joint more.
+    assert factors(7.3, 1.2) == whole
+    assert factors(7.2, 1.8) == {6.0: 0.6, **whole, 8.4: 0.6}
+
+
+def test_layer_damping_goes_both_ways(situations: Callable[[str], tuple[Situation, Campaign]]) -> None:
+    situation, base = situations("viaduct")
+    by_law = {h.locate({}).what: h for h in entries()["layer_damping"].hypotheses(situation)}
+    assert by_law["pad"].family == "pad law"
+    assert by_law["mortar"].family == "damping law"
+    values = {"share": 1.0, "equal_at_Hz": 60.0}
+    line = by_law["pad"].amend(base, values).model.line
+    before = base.model.line.stiffness([30.0, 60.0, 120.0])[:, 0]
+    laws = list(line.laws)
+    after = line.stiffness([30.0, 60.0, 120.0])
+    total = after[:, laws.index("pad")] + after[:, laws.index("pad_loss")]
+    np.testing.assert_allclose(total.real, before.real)
+    np.testing.assert_allclose(total.imag, before.imag * [0.5, 1.0, 2.0])

@@ -1,0 +1,108 @@
+"""Whole diagnoses of small campaigns that the tool simulated itself: each stage at work, and no proof of any."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from permway.diagnosis.catalogue._change import with_chain
+from permway.diagnosis.catalogue._interval import weakened
+from permway.diagnosis.diagnose import diagnose
+from permway.diagnosis.result import Diagnosis
+from permway.model.file import read_model
+from permway.recordings.campaign import Campaign, read_campaign
+from permway.report.diagnosis import write_diagnosis
+from simulated import simulate
+
+
+def lost(campaign: Campaign) -> Campaign:
+    return weakened(campaign, "pad", 7.5, 0.6, 0.05)
+
+
+def loud(campaign: Campaign) -> Campaign:
+    chain = campaign.sensor("deck@3").chain
+    return with_chain(campaign, "deck@3", chain.model_copy(update={"gain": 1.26 * chain.gain}))
+
+
+@pytest.fixture(scope="module")
+def hung_loose(tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
+    case = simulate(tmp_path_factory.mktemp("lost") / "c", 3, amend=lost)
+    return diagnose(case.campaign, threads=1)
+
+
+def test_lost_fasteners_are_named_and_proved(hung_loose: Diagnosis) -> None:
+    verdict = hung_loose.verdict
+    assert verdict.status == "named"
+    (effect,) = verdict.effects
+    assert (effect.domain, effect.name, effect.place.joint) == ("path", "fastener_loss", "pad")
+    assert effect.place.x is not None
+    assert effect.place.x[0] == pytest.approx(7.2, abs=0.35)
+    assert effect.place.x[1] == pytest.approx(7.8, abs=0.35)
+    assert effect.parameters["factor"].value < 0.1
+    assert verdict.evidence.e_value is not None
+    assert verdict.evidence.e_value > 20.0
+    assert verdict.explained_gap is not None
+    assert verdict.explained_gap > 0.9
+    assert all((g.db_after or 0.0) < (g.db_before or 0.0) for g in verdict.held_out.values())
+    # Fewer decibels are gained elsewhere with as many parameters.
+    best = max(g.gain_nats for g in verdict.held_out.values())
+    assert max(g.gain_nats for g in verdict.placebo.values()) < 0.5 * best
+
+
+def test_the_folder_holds_verdict_and_a_model_that_loads(hung_loose: Diagnosis, tmp_path: Path) -> None:
+    said = write_diagnosis(hung_loose, tmp_path / "d", page=False)
+    assert said["status"] == "named"
+    assert hung_loose.amended is not None
+    assert read_model(tmp_path / "d" / "amended.toml") == hung_loose.amended.campaign.model
+
+
+def test_nothing_missing_is_called_recalibrated_whatever_the_seed_of_nulls(tmp_path: Path) -> None:
+    case = simulate(tmp_path / "c", 3)
+    verdicts = [diagnose(case.campaign, threads=1, seed=seed).verdict for seed in (0, 1)]
+    assert [v.status for v in verdicts] == ["recalibrated", "recalibrated"]
+    assert verdicts[0].detectable
+    again = diagnose(read_campaign(case.path), threads=1).verdict
+    assert again.to_json() == verdicts[0].to_json()
+
+
+def test_one_channel_times_1_26_is_a_fault_of_the_measurement(tmp_path: Path) -> None:
+    verdict = diagnose(simulate(tmp_path / "c", 3, amend=loud).campaign, threads=1).verdict
+    assert verdict.status == "measurement"
+    assert verdict.effects[0].place.channels == ("deck@3",)
+    gain = verdict.effects[0].parameters["gain"]
+    assert gain.value == pytest.approx(1.26, rel=0.05)
+
+
+def test_the_tools_own_base_as_data_shows_nothing(tmp_path: Path) -> None:
+    case = simulate(tmp_path / "c", 5, noise=1e-4, smooth=0.0)
+    assert diagnose(case.campaign, threads=1).verdict.status == "recalibrated"
+
+
+def _changed(path: Path, change: object) -> Campaign:
+    file = path.parent / "frf.npz"
+    data = dict(np.load(file))
+    data["frf"] = change(data["frf"])  # type: ignore[operator]
+    np.savez(file, **data)
+    return read_campaign(path)
+
+
+def test_shuffled_labels_are_a_fault_of_the_measurement(tmp_path: Path) -> None:
+    case = simulate(tmp_path / "c", 3)
+    verdict = diagnose(_changed(case.path, lambda frf: frf[:, ::-1]), threads=1).verdict
+    assert verdict.status == "measurement"
+    assert verdict.effects[0].name == "sensor_labels"
+    assert set(verdict.effects[0].place.channels) == {"rail@6", "deck@3"}
+
+
+def test_noise_that_claims_to_be_coherent_names_nothing(tmp_path: Path) -> None:
+    case = simulate(tmp_path / "c", 3)
+    random = np.random.default_rng(7)
+
+    def noise(frf: np.ndarray) -> np.ndarray:
+        size = np.median(np.abs(frf))
+        return size * (random.standard_normal(frf.shape) + 1j * random.standard_normal(frf.shape))
+
+    verdict = diagnose(_changed(case.path, noise), threads=1).verdict
+    assert verdict.status in ("insufficient", "measurement")
+    assert all(effect.domain == "measurement" for effect in verdict.effects)
