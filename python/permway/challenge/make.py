@@ -7,7 +7,7 @@ from pathlib import Path
 from permway.challenge.case import Tier, draw, write, write_truth
 
 
-def make(seed: int, cases: int, tier: Tier, out: Path) -> list[Path]:
+def make(seed: int, cases: int, tier: Tier, out: Path | str) -> list[Path]:
     """Write some campaigns of a tier, and their truths in a folder of their own.
 
     Parameters
@@ -31,10 +31,10 @@ def make(seed: int, cases: int, tier: Tier, out: Path) -> list[Path]:
         For a seed or a tier that is none, and a folder that cannot be made.
     """
     folders = []
-    truths = out / "truth"
+    truths = Path(out) / "truth"
     for number in range(seed, seed + cases):
         case = draw(number, tier)
-        folder = out / f"{tier}-{number}"
+        folder = Path(out) / f"{tier}-{number}"
         write(case, folder)
         truths.mkdir(parents=True, exist_ok=True)
         write_truth(case, truths / f"{folder.name}.json")

@@ -14,6 +14,7 @@ from permway.diagnosis.blocks import FrfBlock
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.compare import assemble
 from permway.diagnosis.compete import Quick, Ring, stacked
+from permway.diagnosis.constancy import constancy
 from permway.diagnosis.decide import CLASS_DEVIANCE
 from permway.diagnosis.evidence import gather
 from permway.diagnosis.heldout import Rest, gains, log_e_value, parts
@@ -30,7 +31,7 @@ from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.predict import why_not
 
-MOST_EFFECTS = 3
+MOST_EFFECTS, SHOWN_INCONSTANT = 3, 8
 
 ROUGH = 1.5
 """Mean square of the deviations above which smooth errors of usual size do not explain what is left."""
@@ -89,6 +90,7 @@ def diagnose(
         proof = _proof(base, amended, rounds, accepted, clock)
         advice = _advice(rounds, clock)
     clock("compare")
+    inconstant = tuple(constancy(Ring(base))[:SHOWN_INCONSTANT])
     return Diagnosis(
         verdict=verdict_of(base, rounds, accepted, found, left, proof, advice)
         if mixed is None
@@ -102,6 +104,7 @@ def diagnose(
         after=None if amended is None else assemble(amended.evidence, amended, left_out=left_out),
         law_dZ={},
         seconds=clock.seconds(),
+        inconstant=inconstant,
     )
 
 

@@ -8,6 +8,7 @@ from typing import Literal
 
 from permway.arrays import Complexes
 from permway.diagnosis.compare import Comparison
+from permway.diagnosis.constancy import Inconstant
 from permway.diagnosis.hypothesis import Where
 from permway.diagnosis.locate import Found
 from permway.diagnosis.recalibrate import Fit
@@ -73,6 +74,8 @@ class Diagnosis:
         Stiffness that named laws add, N/m, over the frequencies of the best found spot; may be empty.
     seconds : mapping of stage to float
         Time taken.
+    inconstant : tuple of Inconstant
+        Parameters of the base that would be others over part of the records, the least constant first.
     """
 
     verdict: Verdict
@@ -85,3 +88,4 @@ class Diagnosis:
     after: Comparison | None
     law_dZ: Mapping[str, Complexes]
     seconds: Mapping[str, float]
+    inconstant: tuple[Inconstant, ...] = ()

@@ -81,6 +81,10 @@ def size(one: Smallest) -> str:
     if one.value is None:
         return "of no size"
     side = "below" if one.none is None or one.value < one.none else "above"
+    if one.none:
+        # Three digits of 1.002 would say nothing.
+        percent = quantity(100.0 * abs(one.value / one.none - 1.0))
+        return f"more than {percent} % {side} {quantity(one.none, one.unit)}"
     return f"{side} {quantity(one.value, one.unit)}"
 
 

@@ -211,6 +211,7 @@ def test_no_effect_is_the_base_and_the_ends_of_ranges_can_be_solved(
         assert hypothesis.law(values)
 
 
+@pytest.mark.injection
 @pytest.mark.parametrize("entry", INJECTED)
 def test_what_is_put_in_is_named_and_measured(
     entry: str, situations: Callable[[str], tuple[Situation, Campaign]], tmp_path: Path
@@ -237,6 +238,7 @@ def test_what_is_put_in_is_named_and_measured(
         assert abs(found[name] - values[name]) <= share * (1.0 if in_metres else abs(values[name])), (name, found)
 
 
+@pytest.mark.injection
 @pytest.mark.parametrize("factor", [0.3, 3.0])
 def test_a_bearing_apart_is_found(
     factor: float, situations: Callable[[str], tuple[Situation, Campaign]], tmp_path: Path

@@ -71,6 +71,7 @@ def best(name: str, fit: Fit, ring: Ring) -> Quick:
     return max((ring.quick(h) for h in of(name, fit)), key=lambda q: q.gain)
 
 
+@pytest.mark.injection
 @pytest.mark.parametrize("name", list(INJECTED))
 def test_an_effect_is_named_and_sized(name: str, sound: Callable[[bool], Fit]) -> None:
     what, sizes, rest = INJECTED[name]

@@ -79,8 +79,12 @@ class Excess:
     def amplitude_at(self, frequency_Hz: Reals, channel: str = "") -> Reals:
         """Amplitudes of lines in the profile that would leave the excess there, m; NaN outside the record."""
         neper = self.neper_at(frequency_Hz, channel)
-        profile = np.exp(np.interp(frequency_Hz, self.frequency_Hz, np.log(self.profile)))
-        return np.asarray(np.sqrt(2.0 * np.clip(np.expm1(neper), 0.05, None) * profile * self.line_Hz))
+        power = np.clip(np.expm1(neper), 0.05, None) * self.profile_at(frequency_Hz) * self.line_Hz
+        return np.asarray(np.sqrt(2.0 * power))
+
+    def profile_at(self, frequency_Hz: Reals) -> Reals:
+        """Density of the model's irregularity, m2/Hz."""
+        return np.exp(np.interp(frequency_Hz, self.frequency_Hz, np.log(self.profile)))
 
 
 def excesses(situation: Situation) -> list[Excess]:
@@ -181,8 +185,11 @@ def combs(
         scores = []
         for run in runs:
             number = _numbers(run, value, harmonics)
-            seen = run.score_at(number * value * run.speed, channel)
-            scores.append(float(np.sum(seen) / np.sqrt(max(seen.size, 1))))
+            lines = number * value * run.speed
+            seen = run.score_at(lines, channel)
+            # A line shows by its power over the profile's.
+            weight = number ** (-2.0 * decay) / run.profile_at(lines)
+            scores.append(float(weight @ seen / max(float(np.linalg.norm(weight)), 1e-300)))
         # What is tied to length shows at every speed.
         ranked.append((min(scores) + 0.1 * sum(scores) if scores else 0.0, value))
     ranked.sort(reverse=True)

@@ -30,16 +30,19 @@ SOURCE = (
     "Jenkins and others, The effect of track and vehicle parameters on wheel/rail vertical dynamic forces (1974)"
 )
 CENTRE_M, LENGTH_FACTOR, AMPLITUDE_M = 25.0, 2.0, 1e-5
-USUAL_M = (12.5, 20.0, 25.0, 50.0, 100.0)
+USUAL_M = (10.0, 12.0, 12.5, 15.0, 18.0, 20.0, 24.0, 25.0, 30.0, 36.0, 50.0, 60.0, 100.0, 120.0)
+"""Usual lengths of rails, slabs and panels: tried also where no comb stands out in power."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
-    """At the lengths whose combs stand out most."""
+    """From the lengths whose combs stand out most, and from usual ones."""
     runs = excesses(situation)
     if not runs:
         return
-    lengths = np.concatenate([np.geomspace(5.0, 120.0, 1600), USUAL_M])
-    found = combs(runs, (1.0 / lengths).tolist(), harmonics=None, decay=0.7, most=3)
+    every = (1.0 / np.geomspace(5.0, 120.0, 1600)).tolist()
+    found = combs(runs, every, harmonics=None, decay=0.7, most=4)
+    for length in USUAL_M:
+        found += combs(runs, [1.0 / length], harmonics=None, decay=0.7, most=1)
     yield Hypothesis(
         entry=ID,
         domain=DOMAIN,

@@ -24,6 +24,10 @@ FEW_CHANNELS = 16
 """Channels of a record that its table shows openly."""
 
 
+NOTABLE_GAIN = 10.0
+"""Of twice the log posterior, from which a parameter is said not to stay constant."""
+
+
 def headline(verdict: Verdict) -> list[tuple[str, str]]:
     """Status and confidence: value and words of each."""
     found = [(STATUS[verdict.status].capitalize(), "status")]
@@ -237,6 +241,20 @@ def next_rows(verdict: Verdict) -> list[dict[str, str]]:
             "after": quantity(one.separation_after),
         }
         for one in verdict.next
+    ]
+
+
+def inconstant_rows(diagnosis: Diagnosis) -> list[dict[str, str]]:
+    """Parameters of the base that would not stay constant."""
+    return [
+        {
+            "parameter": one.parameter,
+            "over": f"{one.axis}: {one.group}",
+            "shift": f"{one.shift:+.2f} ± {one.sigma:.2f}",
+            "gain": quantity(one.gain),
+        }
+        for one in diagnosis.inconstant
+        if one.gain > NOTABLE_GAIN
     ]
 
 

@@ -1,0 +1,190 @@
+"""Verdicts held against truths: detection, place, family, class, parameters, held-out gain, by tier."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.stats import beta
+
+from permway.errors import InputError
+
+FOUND = ("named", "ambiguous", "described", "located", "measurement")
+"""Statuses that call something missing or at fault."""
+
+NEAR_M = 1.5
+"""How far from a true place an interval may end and still be there."""
+
+
+@dataclass(frozen=True)
+class Scored:
+    """One campaign.
+
+    Attributes
+    ----------
+    name, tier, status : str
+    truth : tuple of str
+        Identifiers of what was concealed, or its mechanics in words.
+    said : tuple of str
+        Names of the effects, or their classes.
+    found, placed, family, in_class, false_name : bool or None
+        Of the strongest concealed effect; None where that does not apply.
+    covered : tuple of bool
+        Of each parameter that truth and verdict both name, whether the 90 % interval holds it.
+    harmed : bool
+        Whether the amended model predicts what was held out worse.
+    seconds : float
+    """
+
+    name: str
+    tier: str
+    status: str
+    truth: tuple[str, ...]
+    said: tuple[str, ...]
+    found: bool | None
+    placed: bool | None
+    family: bool | None
+    in_class: bool | None
+    false_name: bool
+    covered: tuple[bool, ...]
+    harmed: bool
+    seconds: float
+
+
+def score(folder: Path, families: Mapping[str, str]) -> list[Scored]:
+    """Score all verdicts of a challenge.
+
+    Parameters
+    ----------
+    folder : Path
+        As `run` left it.
+    families : mapping of effect to family
+        Effects of one family are near twins.
+
+    Raises
+    ------
+    InputError
+        If there is no verdict.
+    """
+    found = []
+    for path in sorted((Path(folder) / "truth").glob("*.json")):
+        verdict = Path(folder) / "verdicts" / path.stem / "verdict.json"
+        if verdict.is_file():
+            seconds = verdict.with_name("seconds.json")
+            took = sum(json.loads(seconds.read_text()).values()) if seconds.is_file() else float("nan")
+            found.append(
+                _scored(path.stem, json.loads(path.read_text()), json.loads(verdict.read_text()), families, took)
+            )
+    if not found:
+        raise InputError("holds no verdict", where=str(folder), remedy="permway challenge run")
+    return found
+
+
+def _scored(
+    name: str, truth: Mapping[str, Any], verdict: Mapping[str, Any], families: Mapping[str, str], seconds: float
+) -> Scored:
+    concealed = list(truth["effects"])
+    effects = list(verdict["effects"]) if verdict["status"] in FOUND else []
+    harmed = (
+        any(g["gain_nats"] < -2.0 * (g["standard_error"] or 0.0) for g in verdict["held_out"].values())
+        if effects
+        else False
+    )
+    said = tuple(e["name"] or "|".join(m["name"] for m in e["class"]) or "not named" for e in effects)
+    ids = tuple(e["id"] or e.get("mechanical") or "unknown" for e in concealed)
+    known = {families.get(e["id"], e.get("family")) for e in concealed if e["id"]}
+    false = any(e["name"] and families.get(e["name"]) not in known for e in effects)
+    if not concealed:
+        flags: tuple[bool | None, ...] = (None, None, None, None)
+    else:
+        first = concealed[0]
+        flags = (
+            bool(effects),
+            any(_there(first["place"], e["place"], first.get("domain"), e["domain"]) for e in effects),
+            any(first["id"] and families.get(e["name"] or "") == families.get(first["id"]) for e in effects),
+            any(first["id"] in [m["name"] for m in e["class"]] or first["id"] == e["name"] for e in effects)
+            if first["id"]
+            else None,
+        )
+    return Scored(
+        name=name,
+        tier=name.rsplit("-", 1)[0],
+        status=str(verdict["status"]),
+        truth=ids,
+        said=said,
+        found=flags[0],
+        placed=flags[1],
+        family=flags[2],
+        in_class=flags[3],
+        false_name=false,
+        covered=tuple(_covered(concealed, effects)),
+        harmed=harmed,
+        seconds=float(seconds),
+    )
+
+
+def _there(true: Mapping[str, Any], said: Mapping[str, Any], domain: str | None, said_domain: str) -> bool:
+    """Whether the verdict's place is the concealed one: the same domain, and the same stretch or channels."""
+    if domain is not None and domain != said_domain:
+        return False
+    x = true.get("x")
+    if x:
+        low, high = (x[0], x[-1]) if isinstance(x, list) else (x, x)
+        stretch = said.get("within") or said.get("x")
+        return stretch is not None and stretch[0] - NEAR_M <= high and low <= stretch[1] + NEAR_M
+    channels = true.get("channels") or ([true["sensor"]] if true.get("sensor") else [])
+    if channels and said.get("channels"):
+        return bool(set(channels) & set(said["channels"]))
+    return True
+
+
+def _covered(concealed: Iterable[Mapping[str, Any]], effects: Iterable[Mapping[str, Any]]) -> list[bool]:
+    by_name = {e["name"]: e["parameters"] for e in effects if e["name"]}
+    found = []
+    for effect in concealed:
+        for key, value in effect.get("parameters", {}).items():
+            said = by_name.get(effect["id"], {}).get(key)
+            if said is not None and said["low"] is not None and isinstance(value, int | float):
+                found.append(bool(said["low"] <= value <= said["high"]))
+    return found
+
+
+def interval(hits: int, of: int, width: float = 0.9) -> tuple[float, float]:
+    """Clopper and Pearson's interval of a share."""
+    tail = 0.5 * (1.0 - width)
+    low = 0.0 if hits == 0 else float(beta.ppf(tail, hits, of - hits + 1))
+    high = 1.0 if hits == of else float(beta.ppf(1.0 - tail, hits + 1, of - hits))
+    return low, high
+
+
+def summary(scored: Iterable[Scored]) -> list[dict[str, Any]]:
+    """A row for each tier: shares with their 90 % intervals."""
+    rows = []
+    all_cases = list(scored)
+    for tier in dict.fromkeys(s.tier for s in all_cases):
+        mine = [s for s in all_cases if s.tier == tier]
+        row: dict[str, Any] = {"tier": tier, "cases": len(mine)}
+        alarms = [s.status in FOUND for s in mine]
+        row["called"] = _share(alarms)
+        for key in ("found", "placed", "family", "in_class"):
+            values = [v for s in mine if (v := getattr(s, key)) is not None]
+            if values:
+                row[key] = _share(values)
+        row["false_name"] = _share([s.false_name for s in mine])
+        row["harmed"] = _share([s.harmed for s in mine])
+        covered = [c for s in mine for c in s.covered]
+        if covered:
+            row["covered"] = _share(covered)
+        row["seconds"] = round(float(np.nanmedian([s.seconds for s in mine])), 1)
+        rows.append(row)
+    return rows
+
+
+def _share(values: list[bool]) -> str:
+    hits, of = sum(values), len(values)
+    low, high = interval(hits, of)
+    return f"{hits}/{of} ({100.0 * low:.0f} to {100.0 * high:.0f} %)"
