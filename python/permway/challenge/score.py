@@ -179,7 +179,9 @@ def summary(scored: Iterable[Scored]) -> list[dict[str, Any]]:
         covered = [c for s in mine for c in s.covered]
         if covered:
             row["covered"] = _share(covered)
-        row["seconds"] = round(float(np.nanmedian([s.seconds for s in mine])), 1)
+        took = [s.seconds for s in mine if np.isfinite(s.seconds)]
+        if took:
+            row["seconds"] = round(float(np.median(took)), 1)
         rows.append(row)
     return rows
 

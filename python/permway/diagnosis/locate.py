@@ -261,6 +261,21 @@ def scan(fit: Fit) -> list[Found]:
     return sorted(total, key=lambda f: -f.surplus)
 
 
+def unseen(fit: Fit) -> list[Found]:
+    """A quarter, the middle and three quarters of each layer and body, as places of which nothing is known yet."""
+    blocks = [b for b in fit.evidence.blocks if isinstance(b, FrfBlock)]
+    if not blocks:
+        return []
+    one = Scan(fit, blocks[0])
+    rows = _rows(one)
+    nothing, flat = np.zeros(one.frequency.size, dtype=np.complex128), np.ones(one.frequency.size)
+    return [
+        Found(row[round(share * (len(row) - 1))][0], 0.0, 0, one.frequency, nothing, flat, flat, 1.0)
+        for share in (0.5, 0.25, 0.75)
+        for row in rows.values()
+    ]
+
+
 def _rows(one: Scan) -> dict[tuple[str, str], list[tuple[Spot, Motion]]]:
     """The spots of each layer and of each body, in order."""
     rows: dict[tuple[str, str], list[tuple[Spot, Motion]]] = {}

@@ -30,6 +30,9 @@ Z_LIMIT = 8.0
 REUSED = 5.0
 """Gain of a step below which the slopes of the one before do for the next."""
 
+UNFIT, COARSE = 1.5, 1e-3
+"""Mean square of the deviations from which a model does not fit, and share of them that a step must then gain."""
+
 FORETOLD = 0.7
 """Share of the gain foretold by the slopes that a step must bring, or else they are taken anew."""
 
@@ -215,12 +218,14 @@ def recalibrate(
         before, state = state, state if moved is None else moved
         if progress is not None:
             progress(f"step {step + 1}, {tangent.heated(state, 1.0):.1f}, heat {heat:.3g}")
-        if gained >= REUSED:
+        # A base that does not fit is no more than where a search begins.
+        enough = 0.5 if heat < UNFIT else COARSE * state.deviations.size
+        if gained >= max(REUSED, enough):
             # Where the step did what the slopes foretold, what it showed mends them well enough.
             good = gained > FORETOLD * foreseen and moved is not None
             tangent = tangent.mended(before, state) if good else problem.tangent(state)
             exact = exact or not good
-        elif gained < 0.5 and not fresh:
+        elif gained < enough and not fresh and heat < UNFIT:
             tangent, exact = problem.tangent(state), True
         elif (learn and rounds < MOST_LEARNT) or reweigh:
             if reweigh:
@@ -231,7 +236,7 @@ def recalibrate(
             state = problem.again(state)
             tangent, exact = problem.tangent(state), True
             damping = 1e-3
-        elif gained < 0.5:
+        elif gained < enough:
             break
     if tangent.at is not state or not exact:
         tangent = problem.tangent(state)

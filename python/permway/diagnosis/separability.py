@@ -19,6 +19,7 @@ from permway.diagnosis.compete import Ring
 from permway.diagnosis.decide import CLASS_DEVIANCE
 from permway.diagnosis.evidence import gather
 from permway.diagnosis.hypothesis import Hypothesis, Situation
+from permway.diagnosis.locate import unseen
 from permway.diagnosis.recalibrate import untouched
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
@@ -103,7 +104,7 @@ def separability(
         raise InputError("no record can be predicted", where="records")
     fit = untouched(gather(campaign, datasets, threads=threads))
     ring = Ring(fit)
-    offered = list(hypotheses(Situation(fit, ())))
+    offered = list(hypotheses(Situation(fit, tuple(unseen(fit)))))
     kept: list[tuple[Hypothesis, Reals, Reals, Reals]] = []
     for index, hypothesis in enumerate(offered):
         say("effects", index, len(offered))
@@ -116,7 +117,9 @@ def separability(
     directions = np.column_stack([d for _, _, d, _ in kept])
     seen = np.maximum(np.diag(ring.projected(directions, directions)), 0.0)
     apart = np.zeros((len(kept), len(kept)))
-    for j, (_, _, _, columns) in enumerate(kept):
+    for j, (_, _, direction, slopes) in enumerate(kept):
+        # At any size of its own, and at any near values.
+        columns = np.column_stack([direction, slopes])
         inner = ring.projected(columns, columns) + np.eye(columns.shape[1])
         across = ring.projected(directions, columns)
         explained = np.einsum("ip,pi->i", across, linalg.solve(inner, across.T, assume_a="pos"))

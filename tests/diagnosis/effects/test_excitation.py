@@ -249,6 +249,7 @@ def best_of(ring: Ring, some: Iterator[Hypothesis] | list[Hypothesis], most: int
     return max((ring.quick(q.hypothesis, after=q) for q in screened[:most]), key=lambda quick: quick.gain)
 
 
+@pytest.mark.injection
 @pytest.mark.parametrize("case", CASES, ids=[case.entry for case in CASES])
 def test_the_strongest_is_named_and_measured(owner: Campaign, case: Case) -> None:
     situation = injected(owner, case, 1.0)
@@ -261,6 +262,7 @@ def test_the_strongest_is_named_and_measured(owner: Campaign, case: Case) -> Non
     assert own.gain > other.gain, (own.gain, other.hypothesis.entry, other.gain, other.values)
 
 
+@pytest.mark.injection
 @pytest.mark.parametrize("case", CASES, ids=[case.entry for case in CASES])
 def test_more_effect_is_more_gain(owner: Campaign, case: Case) -> None:
     gains = []

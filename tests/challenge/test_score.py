@@ -1,0 +1,94 @@
+"""Scores of verdicts that are written by hand."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from permway.challenge.score import interval, score, summary
+from permway.errors import InputError
+
+FAMILIES = {"fastener_loss": "local loss", "mortar_void": "local loss", "sensor_gain": "level"}
+
+
+def truth(*effects: dict[str, Any]) -> dict[str, Any]:
+    return {"effects": list(effects)}
+
+
+def verdict(status: str, *effects: dict[str, Any], gain: float = 5.0) -> dict[str, Any]:
+    return {
+        "status": status,
+        "effects": list(effects),
+        "held_out": {"place": {"gain_nats": gain, "standard_error": 1.0}} if effects else {},
+    }
+
+
+def effect(name: str | None, *members: str, x: tuple[float, float] = (10.0, 12.0)) -> dict[str, Any]:
+    return {
+        "domain": "path",
+        "name": name,
+        "class": [{"name": m, "probability": 0.5} for m in members],
+        "place": {"x": x, "within": x, "channels": []},
+        "parameters": {"factor": {"value": 0.1, "low": 0.05, "high": 0.2}},
+    }
+
+
+LOST = {
+    "id": "fastener_loss",
+    "family": "local loss",
+    "domain": "path",
+    "place": {"x": [10.5, 11.5]},
+    "parameters": {"factor": 0.15},
+}
+
+
+def folder(root: Path, cases: dict[str, tuple[dict[str, Any], dict[str, Any]]]) -> Path:
+    (root / "truth").mkdir(parents=True)
+    for name, (true, said) in cases.items():
+        (root / "truth" / f"{name}.json").write_text(json.dumps(true))
+        (root / "verdicts" / name).mkdir(parents=True)
+        (root / "verdicts" / name / "verdict.json").write_text(json.dumps(said))
+    return root
+
+
+def test_what_is_right_wrong_and_kept_back(tmp_path: Path) -> None:
+    cases = {
+        "null-1": (truth(), verdict("recalibrated")),
+        "null-2": (truth(), verdict("named", effect("sensor_gain", "sensor_gain"))),
+        "single-1": (truth(LOST), verdict("named", effect("fastener_loss", "fastener_loss"))),
+        "single-2": (truth(LOST), verdict("named", effect("mortar_void", "mortar_void", "fastener_loss"))),
+        "single-3": (
+            truth(LOST),
+            verdict("named", effect("sensor_gain", "sensor_gain", x=(30.0, 31.0)), gain=-9.0),
+        ),
+        "single-4": (truth(LOST), verdict("insufficient", effect("sensor_gain", "sensor_gain"))),
+    }
+    scored = {s.name: s for s in score(folder(tmp_path, cases), FAMILIES)}
+    assert scored["null-1"].found is None
+    assert not scored["null-1"].false_name
+    assert scored["null-2"].false_name
+    right, twin, wrong, quiet = (scored[f"single-{i}"] for i in (1, 2, 3, 4))
+    assert (right.found, right.placed, right.family, right.in_class, right.false_name) == (*[True] * 4, False)
+    assert right.covered == (True,)
+    assert (twin.family, twin.in_class, twin.false_name, twin.covered) == (True, True, False, ())
+    assert (wrong.placed, wrong.family, wrong.false_name, wrong.harmed) == (False, False, True, True)
+    # What is suspected and not called is neither found nor a false name.
+    assert (quiet.found, quiet.false_name) == (False, False)
+    rows = {row["tier"]: row for row in summary(scored.values())}
+    assert rows["null"]["called"].startswith("1/2")
+    assert rows["single"]["found"].startswith("3/4")
+    assert rows["single"]["false_name"].startswith("1/4")
+
+
+def test_intervals_of_shares() -> None:
+    # Clopper and Pearson (1934): none of 20 leaves up to 13.9 % at 90 %, two-sided.
+    assert interval(0, 20) == (0.0, pytest.approx(1.0 - 0.05 ** (1.0 / 20.0)))
+    low, high = interval(10, 20)
+    assert low == pytest.approx(1.0 - high)
+
+
+def test_a_folder_without_verdicts_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="holds no verdict"):
+        score(tmp_path, FAMILIES)

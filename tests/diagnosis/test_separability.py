@@ -1,0 +1,63 @@
+"""What sensors can tell apart, and which measurement would, on small campaigns that the tool simulated itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from permway.diagnosis.advise import separation
+from permway.diagnosis.catalogue._interval import weakened
+from permway.diagnosis.evidence import gather
+from permway.diagnosis.menu import menu
+from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.separability import Separability, separability
+from simulated import Simulated, simulate
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory: pytest.TempPathFactory) -> Simulated:
+    return simulate(tmp_path_factory.mktemp("sensors") / "c", 3)
+
+
+@pytest.fixture(scope="module")
+def found(case: Simulated) -> Separability:
+    return separability(case.campaign, threads=1)
+
+
+def test_nothing_explains_an_effect_better_than_itself(found: Separability) -> None:
+    own = np.diag(found.apart)
+    # A prior holds an effect back from explaining the whole of itself.
+    assert (own <= found.seen * (1.0 + 1e-9)).all()
+    assert (found.apart <= found.seen[:, None] * (1.0 + 1e-9)).all()
+    seen = found.seen > 100.0
+    assert seen.any()
+    assert np.median(own[seen] / found.seen[seen]) < 0.1
+
+
+def test_a_lost_fastener_and_a_sensors_gain_are_no_twins(found: Separability) -> None:
+    pairs = {frozenset(pair[:2]) for pair in found.twins()}
+    assert frozenset(("fastener_loss", "sensor_gain")) not in pairs
+    said = found.summary()
+    assert {row["effect"] for row in said["effects"]} >= {"fastener_loss", "sensor_gain", "deck_attachment"}
+
+
+def test_measured_values_play_no_part(case: Simulated, found: Separability, tmp_path: Path) -> None:
+    other = simulate(tmp_path / "c", 3, amend=lambda c: weakened(c, "pad", 7.5, 0.6, 0.5))
+    again = separability(other.campaign, threads=1)
+    # The noise that a record's coherence tells of is drawn with the record, and follows its level.
+    np.testing.assert_allclose(np.log10(again.seen + 1.0), np.log10(found.seen + 1.0), atol=0.4)
+
+
+def test_more_blows_and_more_sensors_separate_more(case: Simulated) -> None:
+    base = recalibrate(gather(case.campaign, threads=1), learn=False)
+    right = type(base)(**{**vars(base), "campaign": weakened(base.campaign, "pad", 7.5, 0.6, 0.3)})
+    items = {item.words: separation(item, right, base) for item in menu(case.campaign, base.evidence.datasets)}
+    assert all(value >= 0.0 for value in items.values())
+    again = next(value for words, value in items.items() if words.endswith("4 times the blows"))
+    one = max(value for words, value in items.items() if words.startswith("a sensor"))
+    assert one > 10.0
+    # All sensors and points again say more than one sensor more.
+    assert again > one
+    same = type(base)(**vars(base))
+    assert all(separation(item, same, base) < 1e-6 for item in menu(case.campaign, base.evidence.datasets))
