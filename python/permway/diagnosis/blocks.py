@@ -23,17 +23,17 @@ FLOOR = 0.003
 
 @dataclass(frozen=True)
 class Smooth:
-    """How smooth errors of one origin move the deviations of a block.
+    """How smooth errors move the deviations of a block.
 
     Attributes
     ----------
-    origin : str
-        As "sensor rail@16" or "irregularity".
+    origins : tuple of str
+        Of every column, as "sensor rail@16" or "irregularity".
     columns : sparse matrix, shape (rows, coefficients)
         Deviations per coefficient, each of unit size a smooth error of 1 neper (amplitude) or rad.
     """
 
-    origin: str
+    origins: tuple[str, ...]
     columns: sparse.csr_array
 
 
@@ -192,31 +192,23 @@ class FrfBlock:
     def smooth(self, predicted: xr.Dataset) -> list[Smooth]:
         """Of each sensor's chain and of the hammer's at each point: log gain and phase."""
         basis = self._basis.values(self.frequency)
-        shape = predicted["frf"].shape
+        sensors, points = (self.dataset.data[kind].values.astype(str) for kind in ("sensor", "force"))
         spread = predicted["frf"].values * self.weight
         white = np.stack([self.white(spread * column) for column in basis.T], axis=-1)
-        found = []
-        for axis, kind in ((0, "sensor"), (1, "force")):
-            for index, name in enumerate(self.dataset.data[kind].values.astype(str)):
-                mine = np.zeros(shape, dtype=bool)
-                mine[(slice(None),) * axis + (index,)] = True
-                rows = np.flatnonzero(mine)
-                part = white.reshape(-1, basis.shape[1])[rows]
-                gain = np.concatenate([part.real, part.imag])
-                phase = np.concatenate([-part.imag, part.real])
-                where = np.concatenate([rows, rows + mine.size])
-                found.append(Smooth(f"{kind} {name}", _rows(where, -np.hstack([gain, phase]), 2 * mine.size)))
-        return found
-
-
-def _rows(where: np.ndarray, values: Reals, count: int) -> sparse.csr_array:
-    """A sparse matrix of so many rows, of which some are given."""
-    width = values.shape[1]
-    pointer = np.zeros(count + 1, dtype=np.int64)
-    pointer[where + 1] = width
-    columns = np.tile(np.arange(width), where.size)
-    order = np.argsort(where, kind="stable")
-    return sparse.csr_array((values[order].reshape(-1), columns, np.cumsum(pointer)), shape=(count, width))
+        # A smooth gain moves a response along itself, a smooth phase across.
+        gain = np.concatenate([white.real, white.imag]).reshape(-1, basis.shape[1])
+        phase = np.concatenate([-white.imag, white.real]).reshape(-1, basis.shape[1])
+        values = -np.hstack([gain, phase])
+        width, rows = values.shape[1], np.arange(values.shape[0])
+        pair = (rows // self.frequency.size) % (sensors.size * points.size)
+        first = np.stack([pair // points.size, sensors.size + pair % points.size], axis=1) * width
+        where = (first[:, :, None] + np.arange(width)).reshape(-1)
+        whole = sparse.csr_array(
+            (np.hstack([values, values]).reshape(-1), where, np.arange(0, where.size + 1, 2 * width)),
+            shape=(rows.size, width * (sensors.size + points.size)),
+        )
+        origins = [f"sensor {name}" for name in sensors] + [f"force {name}" for name in points]
+        return [Smooth(tuple(np.repeat(origins, width)), whole)]
 
 
 def _noise_variance(raw: Reals, reach: int = 4) -> Reals:
@@ -340,7 +332,7 @@ class SpectraBlock:
                     gains.append(-2.0 * float(c == channel) * basis)
                     phases.append(zero)
             columns = sparse.csr_array(np.hstack([np.vstack(gains), np.vstack(phases)]))
-            found.append(Smooth(f"channel {name}", columns))
+            found.append(Smooth((f"channel {name}",) * columns.shape[1], columns))
         if speed is not None:
             # The same track under every speed: knots over wavenumber, two per octave.
             wavenumber = IRREGULARITY_KNOTS
@@ -348,7 +340,7 @@ class SpectraBlock:
             for what, _, _, at, sigma in self._parts:
                 basis = wavenumber.values(self.frequency[at] / speed) / sigma[:, None]
                 level.extend([-basis] if what != "transfer" else [np.zeros_like(basis)] * 2)
-            found.append(Smooth("irregularity", sparse.csr_array(np.vstack(level))))
+            found.append(Smooth(("irregularity",) * wavenumber.knots.size, sparse.csr_array(np.vstack(level))))
         return found
 
 

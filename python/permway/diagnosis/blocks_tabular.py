@@ -58,4 +58,4 @@ class TableBlock:
         basis = self._basis.values(self.frequency) / self.sigma
         zero = np.zeros_like(basis)
         columns = np.block([[-basis, zero], [zero, -basis]]) if self.complex else -basis
-        return [Smooth(f"record {self.dataset.record.name}", sparse.csr_array(columns))]
+        return [Smooth((f"record {self.dataset.record.name}",) * columns.shape[1], sparse.csr_array(columns))]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 
@@ -18,7 +18,7 @@ from permway.diagnosis.constancy import constancy
 from permway.diagnosis.decide import CLASS_DEVIANCE
 from permway.diagnosis.evidence import gather
 from permway.diagnosis.heldout import Rest, gains, log_e_value, parts
-from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.labels import mislabelled
 from permway.diagnosis.locate import Found, scan
 from permway.diagnosis.nulls import threshold
@@ -174,7 +174,7 @@ def _rounds(
     for order in range(MOST_EFFECTS):
         result = None
         for start in [rough, fit] if rough.heat > ROUGH else [fit]:
-            offered = hypotheses(Situation(start, found))
+            offered = _of_the_owners(base, hypotheses(Situation(start, found)), start)
             prefix = f"{order + 1}."
             result = search(
                 start,
@@ -202,6 +202,18 @@ def _rounds(
     return rounds, accepted
 
 
+def _of_the_owners(base: Fit, offered: Iterable[Hypothesis], fit: Fit) -> list[Hypothesis]:
+    """Without changes of what an earlier effect has brought: an effect is not explained by a second one on it."""
+    owner, line = base.campaign.model.line, fit.campaign.model.line
+    brought = {*line.laws, *line.bodies} - {*owner.laws, *owner.bodies}
+    kept = []
+    for hypothesis in offered:
+        values = {f.name: f.value(float(z)) for f, z in zip(hypothesis.free, hypothesis.starts[0], strict=True)}
+        if hypothesis.locate(values).what not in brought:
+            kept.append(hypothesis)
+    return kept
+
+
 def _without_needless(base: Fit, accepted: list[Finalist], least: float, clock: _Clock) -> list[Finalist]:
     """Backward: earlier effects that the last one has made needless are dropped, and the rest fitted again."""
     kept = list(accepted)
@@ -215,6 +227,11 @@ def _without_needless(base: Fit, accepted: list[Finalist], least: float, clock: 
             free = (*free, *more)
         at = {f.name: float(z) for f, z in zip(whole.free, whole.z, strict=True)}
         start = np.array([at[f.name] for f in free])
+        try:
+            build({f.name: f.value(float(z)) for f, z in zip(free, start, strict=True)})
+        except (InputError, KeyError):
+            # A later effect stands on this one.
+            continue
         without = recalibrate(whole.evidence, build=build, free=free, start=start, learn=False)
         asked = len(one.hypothesis.free) * float(np.log(lines(base)))
         if without.objective - whole.objective < least + asked:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import xarray as xr
 from scipy import linalg, sparse
 
 from permway.arrays import Reals
-from permway.diagnosis.blocks import Block, FrfBlock, Rows, SpectraBlock
+from permway.diagnosis.blocks import Block, FrfBlock, Rows, Smooth, SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
@@ -21,6 +22,9 @@ SMALLEST_SMOOTH, LARGEST_SMOOTH = 0.001, 0.2
 
 LARGEST_PAIR = 0.03
 """Of the errors of a pair of sensor and point, 0.26 dB: what is larger is not of where a hammer fell."""
+
+DENSE_ROWS = 16
+"""Rows with entries in the same columns from which their products are taken as those of dense matrices."""
 
 LINES_PER_FREQUENCY = 40.0
 """Lines of a frequency response within its own frequency, at most."""
@@ -137,20 +141,22 @@ class Evidence:
 
     def smooth(self, predicted: Sequence[xr.Dataset]) -> tuple[sparse.csr_array, list[str]]:
         """Columns of all smooth errors, and the origin of each: one origin met by two records is one."""
-        columns: dict[str, list[sparse.csr_array | None]] = {}
-        for index, (block, prediction) in enumerate(zip(self.blocks, predicted, strict=True)):
-            for part in block.smooth(prediction):
-                columns.setdefault(part.origin, [None] * len(self.blocks))[index] = part.columns
-        rows = [block.rows.channel.size for block in self.blocks]
-        whole, origins = [], []
-        for origin, parts in columns.items():
-            width = next(part.shape[1] for part in parts if part is not None)
-            filled = [
-                sparse.csr_array((n, width)) if part is None else part for n, part in zip(rows, parts, strict=True)
-            ]
-            whole.append(sparse.vstack(filled))
-            origins.extend([origin] * width)
-        return sparse.csr_array(sparse.hstack(whole)), origins
+        parts = [block.smooth(p) for block, p in zip(self.blocks, predicted, strict=True)]
+        origins: list[str] = []
+        first: dict[str, int] = {}
+        for origin in (o for part in parts for smooth in part for o in smooth.origins):
+            first.setdefault(origin, -1)
+        for part in parts:
+            for smooth in part:
+                for origin in dict.fromkeys(smooth.origins):
+                    if first[origin] < 0:
+                        first[origin] = len(origins)
+                        origins.extend([origin] * smooth.origins.count(origin))
+        rows = [
+            _placed(part, first, len(origins), b.rows.channel.size)
+            for part, b in zip(parts, self.blocks, strict=True)
+        ]
+        return sparse.csr_array(sparse.vstack(rows, format="csr")), origins
 
     @property
     def log_determinant(self) -> float:
@@ -247,6 +253,52 @@ def _block(dataset: Dataset, predicted: xr.Dataset) -> Block:
             return TableBlock(dataset)
 
 
+def _placed(parts: Sequence[Smooth], first: Mapping[str, int], width: int, rows: int) -> sparse.csr_array:
+    """A block's columns where all blocks' columns of the same origin are."""
+    whole = sparse.csr_array((rows, width))
+    for smooth in parts:
+        names = np.array(smooth.origins)
+        place = np.empty(names.size, dtype=np.int64)
+        for origin in dict.fromkeys(smooth.origins):
+            mine = np.flatnonzero(names == origin)
+            place[mine] = first[origin] + np.arange(mine.size)
+        csr = smooth.columns
+        moved = sparse.csr_array((csr.data, place[csr.indices], csr.indptr), shape=(rows, width))
+        whole = moved if whole.nnz == 0 else whole + moved
+    return whole
+
+
+def gram(columns: sparse.csr_array) -> Reals:
+    """`B' B`, where many neighbouring rows have their entries in the same columns, as those of one pair do."""
+    width = np.diff(columns.indptr)
+    inner = np.zeros((columns.shape[1], columns.shape[1]))
+    edges = np.concatenate([[0], np.flatnonzero(np.diff(width)) + 1, [width.size]])
+    rest = np.zeros(width.size, dtype=bool)
+    for start, stop in pairwise(edges):
+        count = int(width[start])
+        if stop - start < DENSE_ROWS or count == 0:
+            rest[start:stop] = count > 0
+            continue
+        inside = slice(columns.indptr[start], columns.indptr[stop])
+        where = columns.indices[inside].reshape(-1, count)
+        values = columns.data[inside].reshape(-1, count)
+        new = np.concatenate([[0], np.flatnonzero((where[1:] != where[:-1]).any(axis=1)) + 1, [where.shape[0]]])
+        lengths = np.diff(new)
+        if lengths.min() < DENSE_ROWS:
+            rest[start:stop] = True
+            continue
+        for length in np.unique(lengths):
+            begin = new[:-1][lengths == length]
+            picked = values[begin[:, None] + np.arange(length)]
+            local = picked.swapaxes(1, 2) @ picked
+            at = where[begin]
+            np.add.at(inner, (at[:, :, None], at[:, None, :]), local)
+    if rest.any():
+        left = sparse.csr_array(columns[np.flatnonzero(rest)])
+        inner += (left.T @ left).toarray()
+    return inner
+
+
 @dataclass(frozen=True)
 class Whitener:
     """Takes out of deviations what smooth errors of known sizes would explain.
@@ -265,7 +317,7 @@ class Whitener:
         """From the columns and the sizes of their origins."""
         scale = np.array([sizes[origin] for origin in origins])
         scaled = sparse.csr_array(columns.multiply(scale[None, :]))
-        inner = (scaled.T @ scaled).toarray() + np.eye(scale.size)
+        inner = gram(scaled) + np.eye(scale.size)
         return Whitener(scaled, scale, linalg.cholesky(inner, lower=True), tuple(origins))
 
     def reduce(self, values: Reals) -> Reals:

@@ -30,6 +30,10 @@ RIVAL = 0.3
 CLOSE = 0.7
 """Share of the best finalist's gain from which a rival may yet be the better one."""
 
+FITS, CLOSE_TO_FITTING = 1.2, 0.95
+"""Mean square of the deviations below which a finalist explains all there is, and the share of its gain from which
+a rival may then be the better one."""
+
 Progress = Callable[[str, int, int], object]
 """Told a stage, how much of it is done, and of how much."""
 
@@ -160,14 +164,20 @@ def search(
     followed.sort(key=lambda q: penalty(q, ring) - q.gain)
     least = threshold(ring, screened)
     rivals = _finalists(followed, ring, least)
-    fitted = []
+    fitted: list[tuple[Quick, Fit]] = []
+    close = CLOSE
     for index, one in enumerate(rivals):
         progress("fit", index, len(rivals))
+        if fitted and fitted[0][1].heat < FITS:
+            # The first explains all there is: only a rival that did nearly as well may do so, too.
+            close = CLOSE_TO_FITTING
+            if one.gain < close * fitted[0][0].gain:
+                continue
         fitted.append((one, ring.full(one, prefix=prefix)))
     fitted.sort(key=lambda pair: pair[1].objective + penalty(pair[0], ring))
     finalists = []
     for index, (one, rough) in enumerate(fitted):
-        if fit.objective - rough.objective < CLOSE * (fit.objective - fitted[0][1].objective):
+        if fit.objective - rough.objective < close * (fit.objective - fitted[0][1].objective):
             continue
         progress("learn", index, len(fitted))
         amended = _learnt(rough)
