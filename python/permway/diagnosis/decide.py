@@ -17,6 +17,10 @@ from permway.diagnosis.verdict_parts import ClassMember, Smallest
 
 E_VALUE = 20.0
 STANDARD_ERRORS = 2.0
+HARM_NATS = 3.0
+"""Loss of log predictive density on an axis below which nothing is called harm: where an effect does not show, its
+standard error is next to nothing."""
+
 PLACEBO_SHARE = 0.5
 """Share of the effect's gain that a placebo may not reach."""
 
@@ -31,6 +35,9 @@ NOVEL_PRIOR = 0.05
 
 MOST_TIMES = 5.0
 """Times a usual size beyond which an effect is not said to be detectable."""
+
+DISCREPANCY = 0.03
+"""Share of an effect's gain that its idealisation may leave to a free description: none is quite its model."""
 
 EXPLAINED = 0.8
 """Share of the gap to a free description that a named effect has to close."""
@@ -78,7 +85,7 @@ def conditions(
         Of the objective, by the effect and by the placebo.
     """
     helps = any(g.nats > STANDARD_ERRORS * g.standard_error for g in held_out)
-    harms = any(g.nats < -STANDARD_ERRORS * g.standard_error for g in held_out)
+    harms = any(g.nats < -max(STANDARD_ERRORS * g.standard_error, HARM_NATS) for g in held_out)
     return Conditions(
         bic=bic_gain > threshold,
         e_value=log_e > np.log(E_VALUE),
@@ -98,6 +105,12 @@ def explained(base: Fit, amended: Fit, left: Sequence[Found]) -> float:
     """Share of the gap between recalibrated base and free description that the amended model closes, 0 to 1."""
     gained = max(base.objective - amended.objective, 1e-9)
     return float(gained / (gained + max(unexplained(amended, left), 0.0)))
+
+
+def beyond_discrepancy(base: Fit, amended: Fit, left: Sequence[Found]) -> float:
+    """What is unexplained beyond what an idealisation of the right effect may leave."""
+    gained = max(base.objective - amended.objective, 0.0)
+    return max(unexplained(amended, left) - DISCREPANCY * gained, 0.0)
 
 
 def members(found: Round, *, unexplained: float) -> list[ClassMember]:

@@ -36,6 +36,12 @@ MOST_EFFECTS, SHOWN_INCONSTANT = 3, 8
 ROUGH = 1.5
 """Mean square of the deviations above which smooth errors of usual size do not explain what is left."""
 
+SECOND = 0.03
+"""Share of the first effect's gain from which a further one counts as an effect."""
+
+BLUNT = 0.2
+"""Relative error of frequency responses with which the search then begins."""
+
 Progress = Callable[[str, int, int], object]
 """Told a stage, how much of it is done, and of how much."""
 
@@ -72,13 +78,20 @@ def diagnose(
     evidence = gather(campaign, kept, threads=threads)
     clock("recalibrate")
     rough = recalibrate(evidence, learn=False, reweigh=True, progress=lambda _: clock.tick())
-    base = recalibrate(rough.evidence, start=rough.z, reweigh=False, progress=lambda _: clock.tick())
+    if rough.heat > ROUGH:
+        sharp = rough.evidence
+        searched = recalibrate(sharp.blunted(BLUNT), learn=False, reweigh=False, progress=lambda _: clock.tick())
+        base = recalibrate(sharp, start=searched.z, reweigh=False, progress=lambda _: clock.tick())
+    else:
+        searched = base = recalibrate(
+            rough.evidence, start=rough.z, reweigh=False, progress=lambda _: clock.tick()
+        )
     clock("locate")
-    found = _scanned(rough if rough.heat > ROUGH else base)
-    mixed = mislabelled(rough)
-    rounds, accepted = ([], []) if mixed is not None else _rounds(rough, base, found, seed, clock)
+    found = _scanned(searched)
+    mixed = mislabelled(base)
+    rounds, accepted = ([], []) if mixed is not None else _rounds(searched, base, found, seed, clock)
     left = _left(accepted, clock)
-    described = None if mixed is not None else _described(base, found, rounds, accepted, left, clock)
+    described = None if mixed is not None else _described(searched, base, found, rounds, accepted, left, clock)
     if described is not None:
         rounds, accepted = [described], [described.finalists[0]]
         left = _left(accepted, clock)
@@ -114,6 +127,7 @@ def _left(accepted: Sequence[Finalist], clock: _Clock) -> tuple[Found, ...]:
 
 
 def _described(
+    searched: Fit,
     base: Fit,
     found: tuple[Found, ...],
     rounds: Sequence[Round],
@@ -131,9 +145,9 @@ def _described(
         best = base
         if not found or found[0].gain - found[0].degrees * np.log(lines(base)) <= least:
             return None
-    offered = grammar.hypotheses(Situation(base, found))
+    offered = grammar.hypotheses(Situation(searched, found))
     result = search(
-        base, offered, learnt_base=base, prefix="1.", threshold=lambda _ring, _screened: least, progress=clock
+        searched, offered, learnt_base=base, prefix="1.", threshold=lambda _ring, _screened: least, progress=clock
     )
     if not result.finalists:
         return None
@@ -161,7 +175,8 @@ def _rounds(
     """Add effects while one passes; take out those that a later one made needless.
 
     Where smooth errors of usual size do not explain what is left, the search begins from a base that has learnt no
-    larger ones, for these would hide what is sought; what it finds has to be better than the base that has.
+    larger ones, for these would hide what is sought, and that takes responses less seriously, for what is missing
+    would bend it; what it finds has to be better than the base that has learnt, on responses as they are.
     """
 
     def least(ring: Ring, screened: Sequence[Quick]) -> float:
@@ -173,7 +188,7 @@ def _rounds(
     screened: tuple[Quick, ...] = ()
     for order in range(MOST_EFFECTS):
         result = None
-        for start in [rough, fit] if rough.heat > ROUGH else [fit]:
+        for start in [fit] if rough is fit else [rough, fit]:
             offered = _of_the_owners(base, hypotheses(Situation(start, found)), start)
             prefix = f"{order + 1}."
             result = search(
@@ -192,13 +207,18 @@ def _rounds(
         rounds.append(result)
         if not result.finalists:
             break
+        if accepted and result.finalists[0].gain < SECOND * accepted[0].gain:
+            # So little beside the first is as likely to mend how the first was idealised.
+            break
         accepted.append(result.finalists[0])
         if len(accepted) > 1:
             accepted = _without_needless(base, accepted, result.threshold, clock)
-        rough, fit = accepted[-1].rough, accepted[-1].fit
+        # Once a model nearly fits, nothing is gained from blunting.
+        fit = accepted[-1].fit
+        rough = fit if fit.heat < ROUGH else accepted[-1].rough
         if order + 1 < MOST_EFFECTS:
             clock("locate")
-            found = _scanned(rough if rough.heat > ROUGH else fit)
+            found = _scanned(rough)
     return rounds, accepted
 
 
@@ -253,7 +273,10 @@ def _proof(base: Fit, amended: Fit, rounds: list[Round], accepted: list[Finalist
     sham = _placebo(rounds[0], accepted[0])
     placebo_gain, placebo_held_out = 0.0, []
     if sham is not None:
-        fit = rounds[0].ring.full(sham, prefix="placebo.", most_steps=6)
+        found = rounds[0].ring.full(sham, prefix="placebo.", most_steps=6)
+        fit = recalibrate(
+            base.evidence, build=found.build, free=found.free, start=found.z, learn=False, most_steps=6
+        )
         placebo_gain = base.objective - fit.objective
         placebo_held_out = gains(before, Rest(fit), chosen)
     bic = sum(f.gain - penalty(f.quick, rounds[0].ring) for f in accepted)

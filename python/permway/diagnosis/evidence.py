@@ -167,6 +167,14 @@ class Evidence:
         """The same with other sizes of smooth errors."""
         return replace(self, sizes=dict(sizes))
 
+    def blunted(self, floor: float) -> Evidence:
+        """The same with a larger relative error of every frequency response.
+
+        What one place does to a few pairs then bends a base less that all other pairs hold.
+        """
+        blocks = tuple(FrfBlock(b.dataset, floor=floor) if isinstance(b, FrfBlock) else b for b in self.blocks)
+        return replace(self, blocks=blocks)
+
     def reweighed(self, predicted: Sequence[xr.Dataset]) -> Evidence:
         """The same with spectra weighed by what a fit predicts, and not by what the owner's values do."""
         blocks = tuple(

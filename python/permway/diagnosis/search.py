@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.recalibrate import Fit, learnt, recalibrate
 from permway.diagnosis.result import Candidate
@@ -180,7 +181,7 @@ def search(
         if fit.objective - rough.objective < close * (fit.objective - fitted[0][1].objective):
             continue
         progress("learn", index, len(fitted))
-        amended = _learnt(rough)
+        amended = _learnt(rough, learnt_base.evidence)
         gain = learnt_base.objective - amended.objective
         if gain - penalty(one, ring) > least:
             more = amended.log_evidence - learnt_base.log_evidence
@@ -195,9 +196,9 @@ def _key(hypothesis: Hypothesis) -> tuple[str, str]:
     return hypothesis.entry, hypothesis.locate(values).label
 
 
-def _learnt(fit: Fit) -> Fit:
-    """With the sizes of smooth errors learnt anew, now that less is left for them to explain."""
-    evidence, _ = learnt(fit.evidence, fit.evidence.predicted(fit.campaign))
+def _learnt(fit: Fit, sharp: Evidence) -> Fit:
+    """On the records as they are, the sizes of smooth errors learnt anew, now that less is left to explain."""
+    evidence, _ = learnt(sharp, sharp.predicted(fit.campaign))
     return recalibrate(evidence, build=fit.build, free=fit.free, start=fit.z, learn=False)
 
 

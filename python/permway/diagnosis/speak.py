@@ -85,7 +85,7 @@ def verdict_of(
             status=status, effects=effects, evidence=weight, recalibrated=recalibrated, detectable=sizes
         )
     amended = accepted[-1].fit
-    free_gain = decide.unexplained(amended, left)
+    free_gain = decide.beyond_discrepancy(base, amended, left)
     gap = decide.explained(base, amended, left)
     by_prefix = {r.finalists[0].prefix: r for r in rounds if r.finalists}
     effects = tuple(_effect(one, by_prefix[one.prefix], amended, base, free_gain) for one in accepted)

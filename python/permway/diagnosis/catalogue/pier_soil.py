@@ -9,7 +9,8 @@ import numpy as np
 from permway.diagnosis.catalogue._change import fresh, with_line
 from permway.diagnosis.catalogue._roles import Layer, bearings, reaches
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
-from permway.laws import Hysteretic
+from permway.laws import Hysteretic, Parallel, Springpot
+from permway.laws.base import Law
 from permway.model.bodies import Mass
 from permway.model.joints import GROUND, Joints
 from permway.model.line import Line
@@ -24,6 +25,7 @@ PARAMETERS = {
     "compliance": "1, 0.002 to 120: of the soil's spring, over that of one bearing at 10 Hz",
     "mass_kg": "kg, 1e3 to 1e7: of pier and foundation, the model's share",
     "loss_factor": "1, 0.005 to 5: of the soil's spring",
+    "radiation": "1, 0.0004 to 25: loss factor at 10 Hz of the dashpot that radiation into the soil is",
 }
 SIGNATURE = (
     "Responses of the girder at its ends and its rigid and first bending motions, at all supports alike; the "
@@ -34,6 +36,9 @@ CONFUSED_WITH = {
     "span_coupling": "a hammer test on the pier or on the neighbouring span",
 }
 SOURCE = "Gazetas (1991), J. Geotechnical Engineering 117, 1363-1381; Wolf (1994), simple physical models"
+AT_HZ = 10.0
+"""Where the dashpot's loss is counted."""
+
 SHARED_M = 1.5
 """Ends of two girders no farther apart stand on one pier."""
 
@@ -49,6 +54,13 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
 def _shared(line: Line, layer: Layer) -> float:
     several = isinstance(layer.joints.at, Ends) and len(reaches(line, layer.upper)) > 1
     return SHARED_M if several else 0.0
+
+
+def _soil(stiffness: float, loss_factor: float, radiation: float) -> Law:
+    spring = Hysteretic(stiffness=stiffness, loss_factor=loss_factor)
+    return Parallel(
+        first=spring, second=Springpot(coefficient=radiation * stiffness / (2.0 * np.pi * AT_HZ), order=1.0)
+    )
 
 
 def _below(layer: Layer, within: float) -> Hypothesis:
@@ -73,7 +85,7 @@ def _below(layer: Layer, within: float) -> Hypothesis:
             ),
             laws={
                 **line.laws,
-                soil: Hysteretic(stiffness=bearing / values["compliance"], loss_factor=values["loss_factor"]),
+                soil: _soil(bearing / values["compliance"], values["loss_factor"], values["radiation"]),
             },
         )
 
@@ -85,13 +97,14 @@ def _below(layer: Layer, within: float) -> Hypothesis:
             log_free("compliance", "1", 0.5, 3.0),
             log_free("mass_kg", "kg", 1e5, 2.5),
             log_free("loss_factor", "1", 0.15, 2.0),
+            log_free("radiation", "1", 0.1, 3.0),
         ),
         amend=amend,
         locate=lambda _: Where(what=layer.law),
-        starts=((0.0, 0.0, 0.0), (1.0, -1.0, 0.0), (1.0, 1.0, 0.0)),
+        starts=((0.0, 0.0, 0.0, 0.0), (1.0, -1.0, 0.0, 0.0), (1.0, 1.0, 0.0, 0.0)),
         law=lambda v: (
             f"{v['mass_kg']:.3g} kg on a spring of {1.0 / v['compliance']:.3g} times a bearing's stiffness, "
-            f"loss factor {v['loss_factor']:.2g}"
+            f"loss factor {v['loss_factor']:.2g}, and {v['radiation']:.2g} more at {AT_HZ:g} Hz by a dashpot"
         ),
         size="compliance",
         none=0.0,
