@@ -225,7 +225,7 @@ def recalibrate(
             good = gained > FORETOLD * foreseen and moved is not None
             tangent = tangent.mended(before, state) if good else problem.tangent(state)
             exact = exact or not good
-        elif gained < enough and not fresh and heat < UNFIT:
+        elif gained < enough and not fresh:
             tangent, exact = problem.tangent(state), True
         elif (learn and rounds < MOST_LEARNT) or reweigh:
             if reweigh:
