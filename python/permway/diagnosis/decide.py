@@ -21,6 +21,9 @@ HARM_NATS = 3.0
 """Loss of log predictive density on an axis below which nothing is called harm: where an effect does not show, its
 standard error is next to nothing."""
 
+HARM_DB = 1.02
+"""Ratio of errors in decibels, after over before, from which an axis is predicted worse."""
+
 PLACEBO_SHARE = 0.5
 """Share of the effect's gain that a placebo may not reach."""
 
@@ -54,7 +57,7 @@ class Conditions:
     e_value : bool
         The split-likelihood e-value is above 20.
     held_out : bool
-        The gain on records left out is above two standard errors on some axis, and below minus two on none.
+        The gain on records left out is above two standard errors on some axis, and none is predicted worse.
     placebo : bool
         As many parameters elsewhere do not do half as well.
     """
@@ -85,13 +88,22 @@ def conditions(
         Of the objective, by the effect and by the placebo.
     """
     helps = any(g.nats > STANDARD_ERRORS * g.standard_error for g in held_out)
-    harms = any(g.nats < -max(STANDARD_ERRORS * g.standard_error, HARM_NATS) for g in held_out)
+    harms = any(_harmed(g) for g in held_out)
     return Conditions(
         bic=bic_gain > threshold,
         e_value=log_e > np.log(E_VALUE),
         held_out=not held_out or (helps and not harms),
         placebo=placebo < PLACEBO_SHARE * gain,
     )
+
+
+def _harmed(gain: Gain) -> bool:
+    """Whether an axis is predicted worse, in density and in decibels.
+
+    A better model is surer of itself, and loses density where what it still lacks shows, with no worse levels.
+    """
+    worse = not gain.after_dB <= HARM_DB * gain.before_dB
+    return worse and gain.nats < -max(STANDARD_ERRORS * gain.standard_error, HARM_NATS)
 
 
 def unexplained(amended: Fit, left: Sequence[Found]) -> float:

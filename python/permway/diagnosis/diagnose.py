@@ -254,7 +254,8 @@ def _without_needless(base: Fit, accepted: list[Finalist], least: float, clock: 
             continue
         without = recalibrate(whole.evidence, build=build, free=free, start=start, learn=False)
         asked = len(one.hypothesis.free) * float(np.log(lines(base)))
-        if without.objective - whole.objective < least + asked:
+        needed = max(least + asked, SECOND * max(f.gain for f in accepted))
+        if without.objective - whole.objective < needed:
             kept = [*rest[:-1], _with_fit(rest[-1], without)]
     return kept
 
