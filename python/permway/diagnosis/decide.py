@@ -42,8 +42,8 @@ MOST_TIMES = 5.0
 DISCREPANCY = 0.03
 """Share of an effect's gain that its idealisation may leave to a free description: none is quite its model."""
 
-EXPLAINED = 0.8
-"""Share of the gap to a free description that a named effect has to close."""
+EXPLAINED, HALF = 0.8, 0.5
+"""Share of the gap to a free description that a named effect has to close, and below which none is offered."""
 
 
 @dataclass(frozen=True)
@@ -119,21 +119,16 @@ def explained(base: Fit, amended: Fit, left: Sequence[Found]) -> float:
     return float(gained / (gained + max(unexplained(amended, left), 0.0)))
 
 
-def beyond_discrepancy(base: Fit, amended: Fit, left: Sequence[Found]) -> float:
-    """What is unexplained beyond what an idealisation of the right effect may leave."""
-    gained = max(base.objective - amended.objective, 0.0)
-    return max(unexplained(amended, left) - DISCREPANCY * gained, 0.0)
-
-
-def members(found: Round, *, unexplained: float) -> list[ClassMember]:
+def members(found: Round, *, explained: float) -> list[ClassMember]:
     """The class of effects that the records allow, the most probable first.
 
     Parameters
     ----------
     found : Round
         Whose finalists rival each other.
-    unexplained : float
-        Gain of BIC of a free description over the best finalist.
+    explained : float
+        Share of the gap to a free description that the amended model closes: what is open is novel as likely as it
+        is large.
     """
     best = found.finalists[0]
     weight = {}
@@ -148,10 +143,8 @@ def members(found: Round, *, unexplained: float) -> list[ClassMember]:
         weight.setdefault(quick.hypothesis.entry, float(np.exp(min(behind, 0.0))))
     weight.pop(NOVEL, None)
     total = sum(weight.values()) or 1.0
-    odds = (
-        NOVEL_PRIOR / (1.0 - NOVEL_PRIOR) * float(np.exp(np.clip(0.5 * unexplained / best.fit.heat, -50.0, 50.0)))
-    )
-    novel = odds / (1.0 + odds)
+    open_share = 0.0 if explained > 1.0 - DISCREPANCY else 1.0 - explained
+    novel = NOVEL_PRIOR + (1.0 - NOVEL_PRIOR) * open_share
     found_members = [(name, (1.0 - novel) * w / total) for name, w in weight.items()]
     found_members.append((NOVEL, novel))
     found_members.sort(key=lambda pair: -pair[1])

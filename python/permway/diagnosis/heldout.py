@@ -255,11 +255,12 @@ def log_e_value(base: Rest, amended: Rest) -> float:
     half itself. With nothing missing its expectation is at most 1.
     """
     rows = base.fit.evidence.rows
-    key = np.where(rows.force != "", rows.force, base.fit.evidence.block_of.astype(str))
-    names = list(dict.fromkeys(key))
-    judges = np.isin(key, names[1::2])
-    if not judges.any() or judges.all():
-        judges = np.floor(6.0 * np.log2(rows.frequency_Hz)).astype(np.int64) % 2 == 1
+    points = list(dict.fromkeys(rows.force[rows.force != ""]))
+    # Every second point of the hammer; of what has none, every second line: an effect may show in one run only.
+    judges = np.isin(rows.force, points[1::2])
+    bare = np.ones(judges.size, dtype=bool) if len(points) < 2 else rows.force == ""
+    _, line = np.unique(rows.frequency_Hz[bare], return_inverse=True)
+    judges[bare] = line % 2 == 1
     _, trained = amended.fitted(~judges)
     _, own = base.fitted(judges)
     return amended.log_density(judges, trained) - base.log_density(judges, own)

@@ -169,8 +169,8 @@ def search(
     close = CLOSE
     for index, one in enumerate(rivals):
         progress("fit", index, len(rivals))
-        if fitted and fitted[0][1].heat < FITS:
-            # The first explains all there is: only a rival that did nearly as well may do so, too.
+        if fit.heat > FITS and fitted and fitted[0][1].heat < FITS:
+            # The first explains all there was: only a rival that did nearly as well may do so, too.
             close = CLOSE_TO_FITTING
             if one.gain < close * fitted[0][0].gain:
                 continue

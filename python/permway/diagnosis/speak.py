@@ -85,10 +85,9 @@ def verdict_of(
             status=status, effects=effects, evidence=weight, recalibrated=recalibrated, detectable=sizes
         )
     amended = accepted[-1].fit
-    free_gain = decide.beyond_discrepancy(base, amended, left)
     gap = decide.explained(base, amended, left)
     by_prefix = {r.finalists[0].prefix: r for r in rounds if r.finalists}
-    effects = tuple(_effect(one, by_prefix[one.prefix], amended, base, free_gain) for one in accepted)
+    effects = tuple(_effect(one, by_prefix[one.prefix], amended, base, gap) for one in accepted)
     return Verdict(
         status=_status(effects, proof, gap),
         effects=effects,
@@ -123,7 +122,7 @@ def _status(effects: Sequence[Effect], proof: Proof, gap: float) -> Status:
         return "insufficient"
     if effects[0].class_ and effects[0].class_[0].name == NOVEL:
         return "described" if effects[0].parameters and gap >= decide.EXPLAINED else "located"
-    if gap < decide.EXPLAINED and effects[0].domain == "path":
+    if gap < decide.HALF and effects[0].domain == "path":
         return "located"
     if any(effect.name is None for effect in effects):
         return "ambiguous"
@@ -155,8 +154,8 @@ def _alike(found: Sequence[Found]) -> tuple[float, float]:
     return min(f.spot.x_m[0] for f in same), max(f.spot.x_m[1] for f in same)
 
 
-def _effect(one: Finalist, found: Round, amended: Fit, base: Fit, unexplained: float) -> Effect:
-    members = decide.members(found, unexplained=unexplained)
+def _effect(one: Finalist, found: Round, amended: Fit, base: Fit, explained: float) -> Effect:
+    members = decide.members(found, explained=explained)
     hypothesis, fit = one.hypothesis, amended
     index = {f.name: i for i, f in enumerate(fit.free)}
     z = np.array([fit.z[index[one.prefix + f.name]] for f in hypothesis.free])

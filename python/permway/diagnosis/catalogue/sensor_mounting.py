@@ -58,7 +58,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             ),
             amend=amend,
             locate=partial(at_sensor, name),
-            starts=((0.0, 0.0), (-1.3, 0.0)),
+            starts=tuple((z, -0.5) for z in (0.0, -0.4, -0.8, -1.2, -1.8)),
             law=lambda v: f"resonates on its mount at {v['mount_Hz']:.3g} Hz, loss factor {v['loss_factor']:.2g}",
             size="mount_Hz",
             none=float("inf"),
