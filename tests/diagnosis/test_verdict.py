@@ -204,15 +204,15 @@ def test_a_named_effect_in_one_sentence() -> None:
 def test_a_size_is_seen_on_the_side_away_from_no_effect() -> None:
     mount = Smallest(parameter="mount_Hz", value=900.0, unit="Hz", none=None)
     assert smallest("sensor_mounting", mount) == "a sensor_mounting with mount_Hz below 900 Hz"
-    assert smallest("fastener_loss", SMALLEST["fastener_loss"]).endswith("factor below 0.62")
+    assert smallest("fastener_loss", SMALLEST["fastener_loss"]).endswith("factor more than 38 % below 1")
     assert smallest("deck_attachment", SMALLEST["deck_attachment"]).endswith("mass_kg above 400 kg")
     stiffer = Smallest(parameter="factor", value=1.01, unit="1", none=1.0)
-    assert smallest("bearing_stiffness", stiffer).endswith("factor above 1.01")
+    assert smallest("bearing_stiffness", stiffer).endswith("factor more than 1 % above 1")
 
 
 def test_nothing_missing_in_one_sentence() -> None:
     assert verdict("recalibrated", detectable=SMALLEST).sentence == (
-        "Nothing is missing beyond what the stated tolerances allow; a fastener_loss with factor below 0.62 or "
+        "Nothing is missing beyond what the stated tolerances allow; a fastener_loss with factor more than 38 % below 1 or "
         "a deck_attachment with mass_kg above 400 kg would have been seen."
     )
     assert verdict("recalibrated").sentence == "Nothing is missing beyond what the stated tolerances allow."

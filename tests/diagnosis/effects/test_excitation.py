@@ -305,6 +305,7 @@ def test_without_the_effect_nothing_changes(quiet: Situation, entry: str) -> Non
             assert np.abs(one[name].values - other[name].values).max() <= 1e-9 * np.abs(one[name].values).max()
 
 
+@pytest.mark.injection
 @pytest.mark.parametrize("entry", [*MINE])
 def test_the_ends_of_all_ranges_can_be_solved(quiet: Situation, entry: str) -> None:
     datasets = blank(quiet.campaign)

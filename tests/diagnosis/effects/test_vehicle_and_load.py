@@ -114,6 +114,7 @@ def test_where_there_is_no_such_part_there_is_no_hypothesis(name: str, tmp_path:
     assert list(entry(name).hypotheses(Bare())) == []  # type: ignore[arg-type]
 
 
+@pytest.mark.injection
 @pytest.mark.parametrize("name", list(INJECTED))
 def test_none_is_no_effect_and_the_ends_of_the_range_can_be_solved(
     name: str, sound: Callable[[bool], Fit]
