@@ -212,8 +212,8 @@ def test_a_size_is_seen_on_the_side_away_from_no_effect() -> None:
 
 def test_nothing_missing_in_one_sentence() -> None:
     assert verdict("recalibrated", detectable=SMALLEST).sentence == (
-        "Nothing is missing beyond what the stated tolerances allow; a fastener_loss with factor more than 38 % below 1 or "
-        "a deck_attachment with mass_kg above 400 kg would have been seen."
+        "Nothing is missing beyond what the stated tolerances allow; a fastener_loss with factor more than 38 % "
+        "below 1 or a deck_attachment with mass_kg above 400 kg would have been seen."
     )
     assert verdict("recalibrated").sentence == "Nothing is missing beyond what the stated tolerances allow."
 

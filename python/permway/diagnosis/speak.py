@@ -118,7 +118,7 @@ def mixed_up(base: Fit, mixed: Mislabelled) -> Verdict:
 
 
 def _status(effects: Sequence[Effect], proof: Proof, gap: float) -> Status:
-    if not proof.conditions.hold:
+    if not proof.conditions.hold or (gap < decide.HALF and any(e.domain != "path" for e in effects)):
         return "insufficient"
     if effects[0].class_ and effects[0].class_[0].name == NOVEL:
         return "described" if effects[0].parameters and gap >= decide.EXPLAINED else "located"
