@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from permway.diagnosis.compare import CLEAN, RAW, RECALIBRATED, Comparison, assemble
 from permway.diagnosis.evidence import Evidence, gather
-from permway.diagnosis.recalibrate import Fit, recalibrate
+from permway.diagnosis.fit import Fit
+from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.residuals import channel_rms, lag_correlation
 from permway.laws import FractionalKelvinVoigt
 from permway.recordings.campaign import Campaign

@@ -13,9 +13,10 @@ import pytest
 from lines import hysteretic, supported, uic60
 from permway.diagnosis.compare import assemble
 from permway.diagnosis.evidence import gather
+from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Where
 from permway.diagnosis.locate import scan
-from permway.diagnosis.recalibrate import Fit, recalibrate
+from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.result import Candidate, Diagnosis
 from permway.diagnosis.verdict import (
     ClassMember,

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
-from permway.diagnosis.evidence import Evidence, Whitener, evidence_of
+from permway.diagnosis.evidence import evidence_of
+from permway.diagnosis.fit import Fit
 from permway.diagnosis.menu import Item, menu
-from permway.diagnosis.recalibrate import STEP, Fit
+from permway.diagnosis.search import Progress
+from permway.diagnosis.tangent import STEP
 from permway.diagnosis.verdict_parts import NextMeasurement
 from permway.errors import InputError, SolveError
 from permway.recordings.predict import predict
 
 MOST = 3
 """Measurements that are advised."""
-
-Progress = Callable[[str, int, int], object]
 
 
 def advise(
@@ -61,7 +61,7 @@ def separation(item: Item, right: Fit, other: Fit) -> float:
     (values,) = predict(truth, [item.dataset], threads=right.evidence.threads)
     dataset = item.dataset
     measured = dataset.data.assign({name: values[name] for name in values.data_vars if name in dataset.data})
-    evidence = evidence_of(truth, [type(dataset)(dataset.record, dataset.condition, measured)], right.evidence)
+    evidence = evidence_of(truth, [replace(dataset, data=measured)], right.evidence)
 
     def deviations(z: Reals) -> Reals:
         rival = item.planned(other.build({f.name: f.value(float(v)) for f, v in zip(other.free, z, strict=True)}))
@@ -75,15 +75,11 @@ def separation(item: Item, right: Fit, other: Fit) -> float:
         moved[i] += step
         columns.append((deviations(moved) - plain) / step)
     jacobian = np.column_stack(columns)
-    whitener = _whitener(evidence, item, other)
+    rival = evidence.predicted(item.planned(other.campaign))
+    whitener = evidence.whitener(rival.datasets)
     reduced, left = whitener.reduce(jacobian), whitener.reduce(plain)
     curvature = jacobian.T @ jacobian - reduced.T @ reduced
     slope = jacobian.T @ plain - reduced.T @ left
     known = np.linalg.inv(other.covariance)
     square = float(plain @ plain - left @ left)
     return max(square - float(slope @ linalg.solve(known + curvature, slope, assume_a="pos")), 0.0)
-
-
-def _whitener(evidence: Evidence, item: Item, other: Fit) -> Whitener:
-    rival = evidence.predicted(item.planned(other.campaign))
-    return Whitener.of(*evidence.smooth(rival.datasets), evidence.sizes)

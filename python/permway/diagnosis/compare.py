@@ -11,13 +11,13 @@ import xarray as xr
 
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Block, FrfBlock
-from permway.diagnosis.evidence import Evidence, Solved, gather
-from permway.diagnosis.recalibrate import STEP, Fit, Free, free_parameters, recalibrate
+from permway.diagnosis.evidence import Evidence, Solved, gather, predictable
+from permway.diagnosis.fit import Fit, Free, free_parameters
+from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.residuals import standardised
-from permway.errors import InputError
+from permway.diagnosis.tangent import STEP
 from permway.recordings.campaign import Campaign
 from permway.recordings.compare import NEPER_DB, POWER_DB, POWERS, VARIABLE, curves, flat, third_octaves
-from permway.recordings.predict import why_not
 
 RAW, RECALIBRATED, CLEAN = "raw", "recalibrated", "smooth errors out"
 
@@ -144,13 +144,7 @@ def compare(
         If no record can be predicted, or a file cannot be read.
     """
     steps = _Steps(progress, 3 if raw_only else 34)
-    datasets = campaign.load()
-    reasons = {d.record.name: why_not(campaign, d) for d in datasets}
-    left_out = {name: str(why) for name, why in reasons.items() if why is not None}
-    kept = [d for d in datasets if reasons[d.record.name] is None]
-    if not kept:
-        name, why = next(iter(left_out.items()))
-        raise InputError("no record can be predicted", where=f"records.{name}", remedy=why)
+    kept, left_out = predictable(campaign)
     steps.one()
     evidence = gather(campaign, kept, threads=threads)
     steps.one()

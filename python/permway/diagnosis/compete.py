@@ -9,9 +9,11 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
-from permway.diagnosis.evidence import Evidence, Solved, Whitener
+from permway.diagnosis.evidence import Evidence, Solved
+from permway.diagnosis.fit import Build, Fit, Free
 from permway.diagnosis.hypothesis import Hypothesis
-from permway.diagnosis.recalibrate import STEP, Build, Fit, Free, recalibrate
+from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.tangent import STEP
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
 
@@ -88,7 +90,7 @@ class Ring:
         self.evidence: Evidence = fit.evidence
         solved = self.evidence.predicted(fit.campaign)
         self._solved: Solved = solved
-        self.whitener = Whitener.of(*self.evidence.smooth(solved.datasets), self.evidence.sizes)
+        self.whitener = self.evidence.whitener(solved.datasets)
         self.reduced = self.whitener.reduce(fit.jacobian)
         normal = (fit.jacobian.T @ fit.jacobian - self.reduced.T @ self.reduced) / fit.heat
         self.factor = linalg.cho_factor(normal + np.eye(fit.z.size))

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.fit import Fit, Free
 from permway.diagnosis.heldout import Gain
 from permway.diagnosis.locate import Found
-from permway.diagnosis.recalibrate import Fit, Free
 from permway.diagnosis.search import Finalist, Round, lines, penalty
 from permway.diagnosis.verdict import NOVEL
 from permway.diagnosis.verdict_parts import ClassMember, Smallest
@@ -142,7 +142,9 @@ def members(found: Round, *, explained: float) -> list[ClassMember]:
         )
         weight.setdefault(quick.hypothesis.entry, float(np.exp(min(behind, 0.0))))
     weight.pop(NOVEL, None)
-    total = sum(weight.values()) or 1.0
+    if not weight:
+        return [ClassMember(name=NOVEL, probability=1.0)]
+    total = sum(weight.values())
     open_share = 0.0 if explained > 1.0 - DISCREPANCY else 1.0 - explained
     novel = NOVEL_PRIOR + (1.0 - NOVEL_PRIOR) * open_share
     found_members = [(name, (1.0 - novel) * w / total) for name, w in weight.items()]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 
@@ -16,34 +16,28 @@ from permway.diagnosis.compare import assemble
 from permway.diagnosis.compete import Quick, Ring, stacked
 from permway.diagnosis.constancy import constancy
 from permway.diagnosis.decide import CLASS_DEVIANCE
-from permway.diagnosis.evidence import gather
+from permway.diagnosis.evidence import gather, predictable
+from permway.diagnosis.fit import Fit
 from permway.diagnosis.heldout import Rest, gains, log_e_value, parts
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.labels import mislabelled
 from permway.diagnosis.locate import Found, scan
 from permway.diagnosis.nulls import threshold
-from permway.diagnosis.recalibrate import Fit, recalibrate
+from permway.diagnosis.recalibrate import UNFIT, recalibrate
 from permway.diagnosis.result import Diagnosis
-from permway.diagnosis.search import Finalist, Round, candidates, lines, penalty, search
+from permway.diagnosis.search import Finalist, Progress, Round, candidates, lines, penalty, search
 from permway.diagnosis.speak import Proof, mixed_up, verdict_of
 from permway.diagnosis.verdict_parts import NextMeasurement
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
-from permway.recordings.predict import why_not
 
 MOST_EFFECTS, SHOWN_INCONSTANT = 3, 8
-
-ROUGH = 1.5
-"""Mean square of the deviations above which smooth errors of usual size do not explain what is left."""
 
 SECOND = 0.03
 """Share of the first effect's gain from which a further one counts as an effect."""
 
 BLUNT = 0.2
 """Relative error of frequency responses with which the search then begins."""
-
-Progress = Callable[[str, int, int], object]
-"""Told a stage, how much of it is done, and of how much."""
 
 
 def diagnose(
@@ -68,17 +62,11 @@ def diagnose(
     """
     clock = _Clock(progress)
     clock("read")
-    datasets = campaign.load()
-    reasons = {d.record.name: why_not(campaign, d) for d in datasets}
-    left_out = {name: str(why) for name, why in reasons.items() if why is not None}
-    kept = [d for d in datasets if reasons[d.record.name] is None]
-    if not kept:
-        name, why = next(iter(left_out.items()))
-        raise InputError("no record can be predicted", where=f"records.{name}", remedy=why)
+    kept, left_out = predictable(campaign)
     evidence = gather(campaign, kept, threads=threads)
     clock("recalibrate")
     rough = recalibrate(evidence, learn=False, reweigh=True, progress=lambda _: clock.tick())
-    if rough.heat > ROUGH:
+    if rough.heat > UNFIT:
         sharp = rough.evidence
         searched = recalibrate(sharp.blunted(BLUNT), learn=False, reweigh=False, progress=lambda _: clock.tick())
         base = recalibrate(sharp, start=searched.z, reweigh=False, progress=lambda _: clock.tick())
@@ -215,7 +203,7 @@ def _rounds(
             accepted = _without_needless(base, accepted, result.threshold, clock)
         # Once a model nearly fits, nothing is gained from blunting.
         fit = accepted[-1].fit
-        rough = fit if fit.heat < ROUGH else accepted[-1].rough
+        rough = fit if fit.heat < UNFIT else accepted[-1].rough
         if order + 1 < MOST_EFFECTS:
             clock("locate")
             found = _scanned(rough)
@@ -280,7 +268,8 @@ def _proof(base: Fit, amended: Fit, rounds: list[Round], accepted: list[Finalist
         )
         placebo_gain = base.objective - fit.objective
         placebo_held_out = gains(before, Rest(fit), chosen)
-    bic = sum(f.gain - penalty(f.quick, rounds[0].ring) for f in accepted)
+    gained = base.objective - amended.objective
+    bic = gained - sum(len(f.hypothesis.free) for f in accepted) * float(np.log(lines(base)))
     return Proof(
         held_out=held_out,
         log_e=log_e,
@@ -291,7 +280,7 @@ def _proof(base: Fit, amended: Fit, rounds: list[Round], accepted: list[Finalist
             threshold=rounds[0].threshold,
             log_e=log_e,
             held_out=held_out,
-            gain=accepted[0].gain,
+            gain=gained,
             placebo=placebo_gain,
         ),
     )

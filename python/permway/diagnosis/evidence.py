@@ -13,9 +13,10 @@ from scipy import linalg, sparse
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Block, FrfBlock, Rows, Smooth, SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
+from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import Answer, Need, State, need_of, plan, predict, predict_one, solve
+from permway.recordings.predict import Answer, Need, State, need_of, plan, predict, predict_one, solve, why_not
 
 SMALLEST_SMOOTH, LARGEST_SMOOTH = 0.001, 0.2
 """Between which the size of smooth errors is learnt, neper or rad: 0.009 and 1.7 dB."""
@@ -158,6 +159,10 @@ class Evidence:
         ]
         return sparse.csr_array(sparse.vstack(rows, format="csr")), origins
 
+    def whitener(self, predicted: Sequence[xr.Dataset]) -> Whitener:
+        """What takes out the smooth errors about a prediction."""
+        return Whitener.of(*self.smooth(predicted), self.sizes)
+
     @property
     def log_determinant(self) -> float:
         """Of the covariance by which the blocks' own smooth errors are taken out."""
@@ -198,6 +203,24 @@ class Evidence:
         return replace(self, blocks=tuple(self.blocks[i] for i in keep))
 
 
+def predictable(campaign: Campaign) -> tuple[list[Dataset], dict[str, str]]:
+    """Read a campaign's records: those that can be predicted, and of the others by name why not.
+
+    Raises
+    ------
+    InputError
+        If none can be predicted, or a file cannot be read.
+    """
+    datasets = campaign.load()
+    reasons = {dataset.record.name: why_not(campaign, dataset) for dataset in datasets}
+    left_out = {name: str(why) for name, why in reasons.items() if why is not None}
+    kept = [dataset for dataset in datasets if reasons[dataset.record.name] is None]
+    if not kept:
+        name, why = next(iter(left_out.items()))
+        raise InputError("no record can be predicted", where=f"records.{name}", remedy=why)
+    return kept, left_out
+
+
 def gather(
     campaign: Campaign, datasets: Sequence[Dataset] | None = None, *, threads: int | None = None
 ) -> Evidence:
@@ -208,23 +231,25 @@ def gather(
     InputError
         From reading, or for a record that cannot be predicted.
     """
-    loaded = [thinned(dataset) for dataset in (campaign.load() if datasets is None else datasets)]
-    predicted = predict(campaign, loaded, threads=threads)
-    blocks = tuple(_block(dataset, prediction) for dataset, prediction in zip(loaded, predicted, strict=True))
-    evidence = Evidence(campaign, blocks, {}, threads)
-    _, origins = evidence.smooth(predicted)
-    return evidence.with_sizes({origin: _first_size(campaign, origin) for origin in dict.fromkeys(origins)})
+    evidence, origins = _blocked(campaign, campaign.load() if datasets is None else datasets, threads)
+    return evidence.with_sizes({origin: _first_size(campaign, origin) for origin in origins})
 
 
 def evidence_of(campaign: Campaign, datasets: Sequence[Dataset], like: Evidence) -> Evidence:
     """Datasets that need not be of the campaign's files, with the sizes of smooth errors that another has."""
-    loaded = [thinned(dataset) for dataset in datasets]
-    predicted = predict(campaign, loaded, threads=like.threads)
-    blocks = tuple(_block(dataset, prediction) for dataset, prediction in zip(loaded, predicted, strict=True))
-    evidence = Evidence(campaign, blocks, {}, like.threads)
-    _, origins = evidence.smooth(predicted)
+    evidence, origins = _blocked(campaign, datasets, like.threads)
     usual = float(np.median(list(like.sizes.values()))) if like.sizes else _first_size(campaign, "")
-    return evidence.with_sizes({origin: like.sizes.get(origin, usual) for origin in dict.fromkeys(origins)})
+    return evidence.with_sizes({origin: like.sizes.get(origin, usual) for origin in origins})
+
+
+def _blocked(campaign: Campaign, datasets: Sequence[Dataset], threads: int | None) -> tuple[Evidence, list[str]]:
+    """Evidence whose smooth errors have no sizes yet, and their origins."""
+    loaded = [thinned(dataset) for dataset in datasets]
+    predicted = predict(campaign, loaded, threads=threads)
+    blocks = tuple(_block(dataset, prediction) for dataset, prediction in zip(loaded, predicted, strict=True))
+    evidence = Evidence(campaign, blocks, {}, threads)
+    _, origins = evidence.smooth(predicted)
+    return evidence, list(dict.fromkeys(origins))
 
 
 def thinned(dataset: Dataset) -> Dataset:

@@ -13,14 +13,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from permway.diagnosis.catalogue._change import fresh, hung_mass, with_joints, with_law
+from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation, Where, between_free, linear_free, log_free
 from permway.diagnosis.locate import Found
-from permway.diagnosis.recalibrate import Free
 from permway.diagnosis.verdict import NOVEL
 from permway.laws import Hysteretic, Maxwell, Parallel, Scaled, Springpot
 from permway.laws.base import Law
 from permway.model.joints import GROUND, Joints
 from permway.recordings.campaign import Campaign
+
+AT_HZ = 100.0
+"""Where the stiffness of a springpot is counted."""
 
 Values = Mapping[str, float]
 
@@ -57,7 +60,7 @@ def _dashpot(v: Values) -> Law:
 
 
 def _springpot(v: Values) -> Law:
-    at = float((2.0 * np.pi * v["frequency_Hz"]) ** v["order"])
+    at = float((2.0 * np.pi * AT_HZ) ** v["order"])
     return Scaled(law=Springpot(coefficient=1.0, order=v["order"]), factor=v["stiffness_N_per_m"] / at)
 
 
@@ -92,13 +95,9 @@ ELEMENTS = (
         lambda k, f: (
             _signed("stiffness_N_per_m", "N/m", k),
             between_free("order", "1", 0.02, 0.98),
-            Free("frequency_Hz", "Hz", lambda _: f, (0.0, 0.0)),
         ),
         _springpot,
-        lambda v: (
-            f"a springpot of order {v['order']:.2f}, {v['stiffness_N_per_m']:.3g} N/m at "
-            f"{v['frequency_Hz']:.3g} Hz"
-        ),
+        lambda v: f"a springpot of order {v['order']:.2f}, {v['stiffness_N_per_m']:.3g} N/m at {AT_HZ:g} Hz",
     ),
     Element(
         "maxwell",

@@ -8,8 +8,8 @@ from typing import Literal, Protocol
 
 import numpy as np
 
+from permway.diagnosis.fit import Fit, Free
 from permway.diagnosis.locate import Found
-from permway.diagnosis.recalibrate import Fit, Free
 from permway.recordings.campaign import Campaign
 
 Domain = Literal["path", "irregularity", "vehicle", "measurement"]

@@ -9,7 +9,7 @@ from scipy.optimize import linear_sum_assignment
 
 from permway.arrays import Reals
 from permway.diagnosis.blocks import FrfBlock
-from permway.diagnosis.recalibrate import Fit
+from permway.diagnosis.fit import Fit
 
 BETTER = 0.25
 """Share of the misfit of the labels given that other labels must come below: a model that lacks physics makes rows

@@ -16,7 +16,7 @@ from scipy import linalg
 
 from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks import Basis, FrfBlock
-from permway.diagnosis.recalibrate import Fit
+from permway.diagnosis.fit import Fit
 from permway.errors import InputError
 from permway.recordings.campaign_factors import campaign_under
 from permway.recordings.predict.hammer import read, temperature

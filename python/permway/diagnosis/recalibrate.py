@@ -7,25 +7,19 @@ on the way (expectation maximisation; Dempster, Laird and Rubin 1977).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
 
 import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
-from permway.diagnosis.evidence import LARGEST_SMOOTH, SMALLEST_SMOOTH, Evidence, Solved, Whitener
-from permway.errors import InputError, SolveError
-from permway.recordings.campaign import Campaign
-
-STEP = 1e-3
-"""Of finite differences, in standard deviations of the prior."""
+from permway.diagnosis.evidence import LARGEST_SMOOTH, SMALLEST_SMOOTH, Evidence, Solved
+from permway.diagnosis.fit import Build, Fit, Free, free_parameters
+from permway.diagnosis.tangent import Problem
+from permway.errors import InputError
 
 USUAL, SEEN = 0.02, 4.0
 """Size of smooth errors that is expected beforehand, neper or rad, and how many coefficients it counts for."""
-
-Z_LIMIT = 8.0
-"""Beyond which no parameter is sought, in standard deviations of the prior."""
 
 REUSED = 5.0
 """Gain of a step below which the slopes of the one before do for the next."""
@@ -40,114 +34,6 @@ MOST_LEARNT, MAXIMISATIONS = 2, 5
 """Times that the sizes of smooth errors are learnt, and steps of expectation maximisation each time."""
 
 Progress = Callable[[str], object]
-Build = Callable[[Mapping[str, float]], Campaign]
-"""From values of the free parameters to a campaign."""
-
-
-@dataclass(frozen=True)
-class Free:
-    """A number that is free: its centre and standard deviation in a coordinate z, 0 at the centre.
-
-    Attributes
-    ----------
-    name, unit : str
-    value : callable
-        From z to the value.
-    limits : (float, float)
-        Of z.
-    """
-
-    name: str
-    unit: str
-    value: Callable[[float], float]
-    limits: tuple[float, float] = (-Z_LIMIT, Z_LIMIT)
-
-
-@dataclass(frozen=True)
-class Fit:
-    """The most probable values and what is left.
-
-    Attributes
-    ----------
-    free : tuple of Free
-    z : ndarray, shape (p,)
-        In standard deviations of the priors.
-    covariance : ndarray, shape (p, p)
-        Of z (Laplace).
-    campaign : Campaign
-        With these values.
-    evidence : Evidence
-        With the sizes of smooth errors learnt.
-    deviations : ndarray, shape (n,)
-        Standardised, smooth errors not taken out.
-    clean : ndarray, shape (n,)
-        With the most probable smooth errors taken out.
-    chi2 : float
-        Quadratic form of the deviations, smooth errors integrated out.
-    prior : float
-        Sum of squares of z.
-    log_determinant : float
-        Of the covariance of smooth errors and noise, over that of noise.
-    jacobian : ndarray, shape (n, p)
-        Derivative of the deviations by z.
-    heat : float
-        Mean square of the deviations, at least 1: the records count so much less while no model fits.
-    evaluations : int
-    build : callable
-        From values of `free` to a campaign.
-    """
-
-    free: tuple[Free, ...]
-    z: Reals
-    covariance: Reals
-    campaign: Campaign
-    evidence: Evidence
-    deviations: Reals
-    clean: Reals
-    chi2: float
-    prior: float
-    log_determinant: float
-    jacobian: Reals
-    heat: float
-    evaluations: int
-    build: Build
-
-    @property
-    def objective(self) -> float:
-        """Minus twice the log posterior density, up to a constant."""
-        return self.chi2 + self.prior + self.log_determinant
-
-    @property
-    def log_evidence(self) -> float:
-        """Laplace's approximation of the marginal likelihood, up to a constant of the records."""
-        sign, value = np.linalg.slogdet(self.covariance)
-        return -0.5 * self.objective + 0.5 * float(value if sign > 0 else -np.inf)
-
-    def values(self) -> dict[str, float]:
-        """Values by name."""
-        return {f.name: f.value(float(z)) for f, z in zip(self.free, self.z, strict=True)}
-
-    def intervals(self, width: float = 1.6449) -> dict[str, tuple[float, float]]:
-        """90 % intervals by name, by default."""
-        sigma = np.sqrt(np.diag(self.covariance))
-        return {
-            f.name: (f.value(float(z - width * s)), f.value(float(z + width * s)))
-            for f, z, s in zip(self.free, self.z, sigma, strict=True)
-        }
-
-
-def free_parameters(campaign: Campaign) -> tuple[Free, ...]:
-    """The campaign's parameters, each about its owner's belief."""
-    found = []
-    for known in campaign.parameters.known.values():
-        low, high = known.bounds
-        limits = [-Z_LIMIT, Z_LIMIT]
-        if np.isfinite(low) and (low > 0.0 or not known.log):
-            limits[0] = max(limits[0], known.z(low))
-        if np.isfinite(high):
-            limits[1] = min(limits[1], known.z(high))
-        found.append(Free(known.name, known.parameter.unit, known.value, (limits[0], limits[1])))
-    return tuple(found)
 
 
 def recalibrate(
@@ -192,7 +78,7 @@ def recalibrate(
     reweigh = build is None if reweigh is None else reweigh
     build = evidence.campaign.with_values if build is None else build
     free = free_parameters(evidence.campaign) if free is None else free
-    problem = _Problem(evidence, build, free)
+    problem = Problem(evidence, build, free)
     z = np.zeros(len(free)) if start is None else np.asarray(start, dtype=np.float64).copy()
     state = problem.at(_inside(z, free))
     if state is None:
@@ -263,7 +149,7 @@ def recalibrate(
 
 def untouched(evidence: Evidence) -> Fit:
     """The owner's values as if the records were what they predict: slopes and covariance, and no deviation."""
-    problem = _Problem(evidence, evidence.campaign.with_values, free_parameters(evidence.campaign))
+    problem = Problem(evidence, evidence.campaign.with_values, free_parameters(evidence.campaign))
     state = problem.at(np.zeros(len(problem.free)))
     if state is None:
         raise InputError("the model cannot be solved", where="model")
@@ -292,96 +178,6 @@ def _inside(z: Reals, free: tuple[Free, ...]) -> Reals:
     return np.clip(z, low, high)
 
 
-@dataclass(frozen=True)
-class _State:
-    z: Reals
-    solved: Solved
-    deviations: Reals
-
-
-@dataclass(frozen=True)
-class _Tangent:
-    """Slopes and smooth errors about a state, also used near it."""
-
-    at: _State
-    whitener: Whitener
-    jacobian: Reals
-    curvature: Reals
-    """J' V^-1 J."""
-    reduced: Reals
-    blocks: float
-    """Log determinant of what the blocks take out themselves."""
-
-    def chi2(self, state: _State) -> float:
-        reduced = self.whitener.reduce(state.deviations)
-        return float(state.deviations @ state.deviations - reduced @ reduced) + self.blocks
-
-    def heated(self, state: _State, heat: float) -> float:
-        return self.chi2(state) / heat + float(state.z @ state.z) + self.whitener.log_determinant
-
-    def mended(self, old: _State, new: _State) -> _Tangent:
-        """With slopes that hold between two states (Broyden 1965)."""
-        step = new.z - old.z
-        missed = (new.deviations - old.deviations - self.jacobian @ step) / float(step @ step)
-        jacobian = self.jacobian + missed[:, None] * step[None, :]
-        return _tangent(self.at, self.whitener, jacobian, self.blocks)
-
-    def normal(self, heat: float) -> Reals:
-        return np.asarray(self.curvature / heat + np.eye(self.jacobian.shape[1]))
-
-    def slope(self, state: _State, heat: float) -> Reals:
-        reduced = self.whitener.reduce(state.deviations)
-        return np.asarray((self.jacobian.T @ state.deviations - self.reduced.T @ reduced) / heat + state.z)
-
-
-def _tangent(at: _State, whitener: Whitener, jacobian: Reals, blocks: float) -> _Tangent:
-    reduced = whitener.reduce(jacobian)
-    return _Tangent(at, whitener, jacobian, jacobian.T @ jacobian - reduced.T @ reduced, reduced, blocks)
-
-
-class _Problem:
-    """Deviations as a function of z."""
-
-    def __init__(self, evidence: Evidence, build: Build, free: tuple[Free, ...]) -> None:
-        self.evidence, self.build, self.free = evidence, build, free
-        self.evaluations = 0
-
-    def deviations(self, z: Reals, near: Solved | None = None) -> tuple[Reals, Solved]:
-        self.evaluations += 1
-        campaign = self.build({f.name: f.value(float(v)) for f, v in zip(self.free, z, strict=True)})
-        predicted = self.evidence.predicted(campaign, near)
-        return self.evidence.deviations(predicted.datasets), predicted
-
-    def at(self, z: Reals) -> _State | None:
-        try:
-            deviations, predicted = self.deviations(z)
-        except (SolveError, InputError):
-            return None
-        return _State(z, predicted, deviations) if np.isfinite(deviations).all() else None
-
-    def again(self, state: _State) -> _State:
-        """The same with the sizes that were learnt."""
-        return _State(state.z, state.solved, self.evidence.deviations(state.solved.datasets))
-
-    def tangent(self, state: _State, slopes: Reals | None = None) -> _Tangent:
-        slopes = self.jacobian(state) if slopes is None else slopes
-        return _tangent(state, _whitener(self.evidence, state.solved), slopes, self.evidence.log_determinant)
-
-    def jacobian(self, state: _State) -> Reals:
-        """Derivative of the deviations by z, by forward differences."""
-        columns = []
-        for index, f in enumerate(self.free):
-            step = STEP if state.z[index] + STEP <= f.limits[1] else -STEP
-            moved = state.z.copy()
-            moved[index] += step
-            columns.append((self.deviations(moved, state.solved)[0] - state.deviations) / step)
-        return np.column_stack(columns) if columns else np.zeros((state.deviations.size, 0))
-
-
-def _whitener(evidence: Evidence, solved: Solved) -> Whitener:
-    return Whitener.of(*evidence.smooth(solved.datasets), evidence.sizes)
-
-
 def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
     """Learn the sizes of smooth errors about a prediction.
 
@@ -392,7 +188,7 @@ def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
     """
     before = evidence.sizes
     for _ in range(MAXIMISATIONS):
-        deviations, whitener = evidence.deviations(solved.datasets), _whitener(evidence, solved)
+        deviations, whitener = evidence.deviations(solved.datasets), evidence.whitener(solved.datasets)
         coefficients, variances = whitener.explained(deviations)
         origins = np.array(whitener.origins)
         sizes, change = dict(evidence.sizes), 0.0

@@ -9,8 +9,9 @@ import numpy as np
 
 from permway.diagnosis.compete import Quick, Ring
 from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Hypothesis
-from permway.diagnosis.recalibrate import Fit, learnt, recalibrate
+from permway.diagnosis.recalibrate import learnt, recalibrate
 from permway.diagnosis.result import Candidate
 
 FOLLOWED, PER_ENTRY = 10, 2

@@ -7,7 +7,6 @@ could do at any size. Measured values play no part: only where, what and how wel
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,15 +16,13 @@ from permway.arrays import Reals
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.decide import CLASS_DEVIANCE
-from permway.diagnosis.evidence import gather
+from permway.diagnosis.evidence import gather, predictable
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.locate import unseen
 from permway.diagnosis.recalibrate import untouched
+from permway.diagnosis.search import Progress
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
-from permway.recordings.predict import why_not
-
-Progress = Callable[[str, int, int], object]
 
 
 @dataclass(frozen=True)
@@ -99,9 +96,7 @@ def separability(
     """
     say = progress or (lambda stage, done, total: None)
     say("read", 0, 0)
-    datasets = [d for d in campaign.load() if why_not(campaign, d) is None]
-    if not datasets:
-        raise InputError("no record can be predicted", where="records")
+    datasets, _ = predictable(campaign)
     fit = untouched(gather(campaign, datasets, threads=threads))
     ring = Ring(fit)
     offered = list(hypotheses(Situation(fit, tuple(unseen(fit)))))

@@ -10,10 +10,11 @@ import numpy as np
 from permway.arrays import Reals
 from permway.diagnosis import decide
 from permway.diagnosis.decide import Conditions
+from permway.diagnosis.fit import Fit
 from permway.diagnosis.heldout import Gain
 from permway.diagnosis.labels import Mislabelled
 from permway.diagnosis.locate import Found
-from permway.diagnosis.recalibrate import Fit
+from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.search import Finalist, Round, lines
 from permway.diagnosis.verdict import NOVEL, Status, Verdict
 from permway.diagnosis.verdict_parts import (
@@ -30,9 +31,6 @@ from permway.diagnosis.verdict_parts import (
 
 LABELS = "sensor_labels"
 """Name of the fault that channels carry each other's labels."""
-
-UNEXPLAINED = 1.5
-"""Mean square of the deviations above which a base does not fit, whatever its smooth errors."""
 
 REASON = 0.5
 """Share of a misfit that a free stiffness at a place has to explain, or else nothing is said to be there."""
@@ -134,7 +132,7 @@ def _nothing(base: Fit, first: Round, found: Sequence[Found]) -> tuple[Status, t
     if found:
         best = found[0]
         # Where the base does not fit at all, one place has to be the reason for a good part of it.
-        reason = base.heat <= UNEXPLAINED or best.gain > REASON * best.total
+        reason = base.heat <= UNFIT or best.gain > REASON * best.total
         if reason and best.gain - best.degrees * np.log(lines(base)) > first.threshold:
             joint = best.spot.kind == "joint"
             place = Place(
@@ -144,7 +142,7 @@ def _nothing(base: Fit, first: Round, found: Sequence[Found]) -> tuple[Status, t
                 within=_alike(found),
             )
             return "located", (Effect(domain="path", place=place, bands=_spans(best.frequency_Hz, best.by_band)),)
-    return ("insufficient" if base.heat > UNEXPLAINED else "recalibrated"), ()
+    return ("insufficient" if base.heat > UNFIT else "recalibrated"), ()
 
 
 def _alike(found: Sequence[Found]) -> tuple[float, float]:

@@ -14,9 +14,10 @@ from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.evidence import gather
+from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation
 from permway.diagnosis.locate import scan
-from permway.diagnosis.recalibrate import Fit, recalibrate
+from permway.diagnosis.recalibrate import recalibrate
 from permway.recordings.campaign import Campaign
 from permway.recordings.predict import predict
 from simulated_track import ballasted, campaign, embedded, viaduct

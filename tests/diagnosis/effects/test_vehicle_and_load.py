@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 from permway.diagnosis.compete import Quick, Ring
 from permway.diagnosis.evidence import gather
+from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
-from permway.diagnosis.recalibrate import Fit, recalibrate
+from permway.diagnosis.recalibrate import recalibrate
 from permway.recordings.campaign import Campaign
 from permway.recordings.predict import predict
 from simulated_train import blank, measured, tables, written

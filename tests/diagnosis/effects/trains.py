@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from permway.diagnosis.evidence import gather
+from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Situation
-from permway.diagnosis.recalibrate import Fit, recalibrate
+from permway.diagnosis.recalibrate import recalibrate
 from permway.laws.toml import to_toml
 from permway.recordings.campaign import Campaign, read_campaign
 from permway.recordings.campaign_load import Dataset, log_variance

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import linalg
 
 from permway.diagnosis.evidence import Whitener
-from permway.diagnosis.recalibrate import Fit
+from permway.diagnosis.fit import Fit
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from permway.diagnosis.catalogue._glance import Glance
 from permway.diagnosis.catalogue._interval import spacing_of, stations_of, weakened
+from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Hypothesis, Situation, Where, between_free, linear_free
-from permway.diagnosis.recalibrate import Free
 from permway.recordings.campaign import Campaign
 
 LONGEST = 12.0

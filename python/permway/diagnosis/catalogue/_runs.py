@@ -12,8 +12,8 @@ from scipy.ndimage import median_filter
 
 from permway.arrays import Reals
 from permway.diagnosis.blocks import SpectraBlock
+from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Situation
-from permway.diagnosis.recalibrate import Fit
 from permway.model.irregularity_spectra import RangeWarning
 from permway.recordings.campaign_parts import Condition
 from permway.recordings.channel import Sensor

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from permway.diagnosis.compare import RAW, RECALIBRATED
-from permway.diagnosis.recalibrate import Fit
+from permway.diagnosis.fit import Fit
 from permway.diagnosis.result import Diagnosis
 from permway.report.compare.curves import FEW_POINTS
 from permway.report.compare.looks import (

@@ -1,0 +1,67 @@
+"""`permway challenge`: concealed effects, made, diagnosed and scored."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from permway.cli_output import Folder, Json, progress_bar, say
+from permway.errors import InputError
+
+challenges = typer.Typer(
+    help="Concealed effects: make campaigns, diagnose them, score the verdicts.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+)
+
+
+@challenges.command("make")
+def challenge_make(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for campaigns and truths.")],
+    seed: Annotated[int, typer.Option(min=0, help="Of the first campaign.")] = 1,
+    cases: Annotated[int, typer.Option(min=1, help="How many campaigns.")] = 10,
+    tier: Annotated[str, typer.Option(help="null, single, twin, multiple, outside or nonlinear.")] = "single",
+    as_json: Json = False,
+) -> None:
+    """Campaigns by finite elements that share no code with the solver, each with something concealed."""
+    from permway.challenge.case import TIERS
+    from permway.challenge.make import make
+
+    if tier not in TIERS:
+        raise InputError("is no tier", where="--tier", value=tier, remedy=f"use one of {list(TIERS)}")
+    with progress_bar("making", as_json) as progress:
+        for index in range(cases):
+            make(seed + index, 1, tier, output)
+            progress(index + 1, cases)
+    say({"folder": str(output), "campaigns": cases}, as_json)
+
+
+@challenges.command("run")
+def challenge_run(
+    folder: Folder,
+    workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
+    report: Annotated[bool, typer.Option("--report", help="Write each one's page.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Diagnose every campaign that has no verdict yet."""
+    from permway.challenge.run import run
+
+    with progress_bar("running", as_json) as progress:
+        result = run(folder, workers=workers, report=report, progress=progress)
+    say(dict(result), as_json)
+
+
+@challenges.command("score")
+def challenge_score(folder: Folder, as_json: Json = False) -> None:
+    """Hold the verdicts against the truths."""
+    from permway.challenge.score import score, summary
+    from permway.diagnosis.catalogue import entries
+
+    scored = score(folder, {name: entry.FAMILY for name, entry in entries().items()})
+    cases = [
+        {"case": s.name, "status": s.status, "truth": ", ".join(s.truth), "said": ", ".join(s.said)}
+        for s in scored
+    ]
+    say({"tiers": summary(scored), "cases": cases}, as_json)

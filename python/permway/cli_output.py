@@ -1,0 +1,100 @@
+"""What commands share: options, progress, and how results and faults are said."""
+
+from __future__ import annotations
+
+import json
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+
+_stderr = Console(stderr=True, highlight=False)
+
+Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, for machines.")]
+Threads = Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; by default all processors.")]
+Folder = Annotated[Path, typer.Argument(help="Folder to read.")]
+
+
+def tell(message: object) -> None:
+    """A line on stderr."""
+    _stderr.print(f"permway: {message}", markup=False, soft_wrap=True)
+
+
+@contextmanager
+def progress_bar(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
+    """A bar on the terminal; nothing when piped. Within it, and after, Ctrl-C unwinds what is under way."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    with Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeRemainingColumn(),
+        console=_stderr,
+        transient=True,
+        disable=quiet or not _stderr.is_terminal,
+    ) as bar:
+        task = bar.add_task(title, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+@contextmanager
+def stage_bar(title: str, quiet: bool) -> Iterator[Callable[[str, int, int], None]]:
+    """A bar that names the stage it is in; of a stage whose length is not known it only shows that it moves."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    with Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TimeElapsedColumn(),
+        console=_stderr,
+        transient=True,
+        disable=quiet or not _stderr.is_terminal,
+    ) as bar:
+        task = bar.add_task(title, total=None)
+
+        def progress(stage: str, done: int, total: int) -> None:
+            bar.update(task, description=f"{title}: {stage}", completed=done, total=total or None)
+
+        yield progress
+
+
+def say(result: dict[str, Any], as_json: bool) -> None:
+    """JSON on one line, or a line for each key; lists of records as columns."""
+    if as_json:
+        typer.echo(json.dumps(result, allow_nan=False))
+        return
+    width = max(len(key) for key in result)
+    for key, value in result.items():
+        first, *others = _lines(value)
+        typer.echo(f"{key:<{width}}  {first}".rstrip())
+        for line in others:
+            typer.echo(f"{'':<{width}}  {line}")
+
+
+def _lines(value: object) -> list[str]:
+    if isinstance(value, dict):
+        return [f"{key}: {_text(item)}" for key, item in value.items()]
+    if not isinstance(value, list):
+        return [_text(value)]
+    if not value or not all(isinstance(item, dict) for item in value):
+        return [_text(item) for item in value] or ["none"]
+    rows = [list(value[0]), *([_text(item.get(key, "")) for key in value[0]] for item in value)]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return ["  ".join(f"{cell:<{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows]
+
+
+def _text(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    return ", ".join(_text(item) for item in value) if isinstance(value, list) else str(value)

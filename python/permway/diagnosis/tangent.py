@@ -1,0 +1,113 @@
+"""Deviations as a function of the free parameters, and their slopes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from permway.arrays import Reals
+from permway.diagnosis.evidence import Evidence, Solved, Whitener
+from permway.diagnosis.fit import Build, Free
+from permway.errors import InputError, SolveError
+
+STEP = 1e-3
+"""Of finite differences, in standard deviations of the prior."""
+
+
+@dataclass(frozen=True)
+class State:
+    """Values of the free parameters in z, and the standardised deviations there."""
+
+    z: Reals
+    solved: Solved
+    deviations: Reals
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """Slopes and smooth errors about a state, also used near it."""
+
+    at: State
+    whitener: Whitener
+    jacobian: Reals
+    curvature: Reals
+    """J' V^-1 J."""
+    reduced: Reals
+    blocks: float
+    """Log determinant of what the blocks take out themselves."""
+
+    def chi2(self, state: State) -> float:
+        """Quadratic form of the deviations, smooth errors integrated out, and the blocks' log determinant."""
+        reduced = self.whitener.reduce(state.deviations)
+        return float(state.deviations @ state.deviations - reduced @ reduced) + self.blocks
+
+    def heated(self, state: State, heat: float) -> float:
+        """Minus twice the log posterior, the records counting so much less."""
+        return self.chi2(state) / heat + float(state.z @ state.z) + self.whitener.log_determinant
+
+    def mended(self, old: State, new: State) -> Tangent:
+        """With slopes that hold between two states (Broyden 1965)."""
+        step = new.z - old.z
+        missed = (new.deviations - old.deviations - self.jacobian @ step) / float(step @ step)
+        jacobian = self.jacobian + missed[:, None] * step[None, :]
+        return tangent_of(self.at, self.whitener, jacobian, self.blocks)
+
+    def normal(self, heat: float) -> Reals:
+        """Half the curvature of the heated objective, (p, p)."""
+        return np.asarray(self.curvature / heat + np.eye(self.jacobian.shape[1]))
+
+    def slope(self, state: State, heat: float) -> Reals:
+        """Half its gradient, (p,)."""
+        reduced = self.whitener.reduce(state.deviations)
+        return np.asarray((self.jacobian.T @ state.deviations - self.reduced.T @ reduced) / heat + state.z)
+
+
+def tangent_of(at: State, whitener: Whitener, jacobian: Reals, blocks: float) -> Tangent:
+    """A tangent, with the products that every use of it needs."""
+    reduced = whitener.reduce(jacobian)
+    return Tangent(at, whitener, jacobian, jacobian.T @ jacobian - reduced.T @ reduced, reduced, blocks)
+
+
+class Problem:
+    """Deviations as a function of z."""
+
+    def __init__(self, evidence: Evidence, build: Build, free: tuple[Free, ...]) -> None:
+        self.evidence, self.build, self.free = evidence, build, free
+        self.evaluations = 0
+
+    def deviations(self, z: Reals, near: Solved | None = None) -> tuple[Reals, Solved]:
+        """Of a model with these values, and its predictions; those of one near by save solves."""
+        self.evaluations += 1
+        campaign = self.build({f.name: f.value(float(v)) for f, v in zip(self.free, z, strict=True)})
+        predicted = self.evidence.predicted(campaign, near)
+        return self.evidence.deviations(predicted.datasets), predicted
+
+    def at(self, z: Reals) -> State | None:
+        """The state; None if the model cannot be solved there."""
+        try:
+            deviations, predicted = self.deviations(z)
+        except (SolveError, InputError):
+            return None
+        return State(z, predicted, deviations) if np.isfinite(deviations).all() else None
+
+    def again(self, state: State) -> State:
+        """The same with the sizes that were learnt."""
+        return State(state.z, state.solved, self.evidence.deviations(state.solved.datasets))
+
+    def tangent(self, state: State, slopes: Reals | None = None) -> Tangent:
+        """About a state, by finite differences unless slopes are given."""
+        slopes = self.jacobian(state) if slopes is None else slopes
+        return tangent_of(
+            state, self.evidence.whitener(state.solved.datasets), slopes, self.evidence.log_determinant
+        )
+
+    def jacobian(self, state: State) -> Reals:
+        """Derivative of the deviations by z, by forward differences."""
+        columns = []
+        for index, f in enumerate(self.free):
+            step = STEP if state.z[index] + STEP <= f.limits[1] else -STEP
+            moved = state.z.copy()
+            moved[index] += step
+            columns.append((self.deviations(moved, state.solved)[0] - state.deviations) / step)
+        return np.column_stack(columns) if columns else np.zeros((state.deviations.size, 0))

@@ -1,0 +1,64 @@
+"""Which rows a part that is left out holds, and what is gained on it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from permway.diagnosis.catalogue._interval import weakened
+from permway.diagnosis.evidence import Evidence, gather
+from permway.diagnosis.heldout import Rest, gains, log_e_value, parts
+from permway.diagnosis.recalibrate import recalibrate
+from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_parts import HeldOut
+from simulated import simulate
+
+
+@pytest.fixture(scope="module")
+def evidence(tmp_path_factory: pytest.TempPathFactory) -> Evidence:
+    case = simulate(tmp_path_factory.mktemp("held") / "c", 3, amend=lambda c: weakened(c, "pad", 7.5, 0.6, 0.05))
+    return gather(case.campaign, threads=1)
+
+
+def with_groups(evidence: Evidence, *groups: HeldOut) -> Evidence:
+    campaign = evidence.campaign
+    said = campaign.said.model_copy(update={"held_out": groups})
+    changed = Campaign(said, campaign.model, campaign.folder, campaign.parameters)
+    return Evidence(changed, evidence.blocks, evidence.sizes, 1)
+
+
+def test_groups_of_the_campaign_hold_their_rows(evidence: Evidence) -> None:
+    groups = (
+        HeldOut(name="deck", axis="channel", members=("deck@3",)),
+        HeldOut(name="low", axis="band", band_Hz=(8.0, 40.0)),
+        HeldOut(name="far end", axis="place", from_to_m=(9.0, 12.0)),
+    )
+    found = {part.name: part.rows for part in parts(with_groups(evidence, *groups))}
+    rows = evidence.rows
+    np.testing.assert_array_equal(found["deck"], rows.sensor == "deck@3")
+    np.testing.assert_array_equal(found["low"], rows.frequency_Hz <= 40.0)
+    np.testing.assert_array_equal(found["far end"], rows.force == "hit far")
+
+
+def test_without_groups_points_and_bands_are_left_out(evidence: Evidence) -> None:
+    found = {part.axis: part.rows for part in parts(evidence)}
+    assert set(found) == {"place", "band"}
+    assert all(rows.any() and not rows.all() for rows in found.values())
+
+
+def test_the_right_model_gains_and_the_same_model_does_not(evidence: Evidence) -> None:
+    base = recalibrate(evidence, learn=False)
+
+    def lost(values: dict[str, float]) -> Campaign:
+        return weakened(evidence.campaign.with_values(values), "pad", 7.5, 0.6, 0.05)
+
+    amended = recalibrate(base.evidence, build=lost, free=base.free, learn=False)
+    chosen = list(parts(evidence))
+    before, after = Rest(base), Rest(amended)
+    for gain in gains(before, after, chosen):
+        assert gain.nats > 100.0
+        assert gain.after_dB < gain.before_dB
+    for gain in gains(before, before, chosen):
+        assert gain.nats == pytest.approx(0.0, abs=1e-6)
+    assert log_e_value(before, after) > np.log(20.0)
+    # The base may fit the judging half itself, which the model it is held against may not.
+    assert log_e_value(before, before) <= 0.0
