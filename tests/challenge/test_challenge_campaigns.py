@@ -14,7 +14,7 @@ import permway.challenge
 import pytest
 from permway.challenge import TIERS, draw, make, write, write_truth
 from permway.challenge.errors_of_measurement import NEPER_PER_DB, struck, wander
-from permway.challenge.irregularity import WITHIN_DB, density, profile
+from permway.challenge.irregularity import WITHIN_DB, density, deviation, profile
 from permway.challenge.layout import TOLERANCE
 from permway.errors import InputError
 from permway.recordings.importers.sheet import import_sheet
@@ -137,7 +137,8 @@ def test_profile_is_of_the_sheets_spectrum_and_not_gaussian() -> None:
     samples, rate, speed = 65536, 1024.0, 60.0
     off, tails = [], []
     for seed in range(6):
-        spectrum = profile(np.random.default_rng(seed), samples=samples, sampling_Hz=rate, speed=speed)
+        random = np.random.default_rng(seed)
+        spectrum = profile(random, deviation(random), samples=samples, sampling_Hz=rate, speed=speed)
         frequency = np.fft.rfftfreq(samples, 1.0 / rate)
         per_hertz = 2.0 * np.abs(spectrum) ** 2 / (samples * rate)
         said = density(2.0 * np.pi * np.maximum(frequency, 1e-3) / speed) * 2.0 * np.pi / speed

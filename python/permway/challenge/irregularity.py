@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from permway.challenge.beams import Complexes, Reals
@@ -31,12 +33,29 @@ def density(wavenumber: Reals) -> Reals:
     return np.asarray(longer * np.maximum(wavenumber / edge, 1.0) ** -3.06)
 
 
-def profile(random: np.random.Generator, *, samples: int, sampling_Hz: float, speed: float) -> Complexes:
+def deviation(random: np.random.Generator) -> Callable[[Reals], Reals]:
+    """By how many dB the line's spectrum differs from the sheet's, at wavenumbers in rad/m: one draw."""
+    wavenumber = np.geomspace(1e-3, 1e3, 400)
+    off = 20.0 * np.log10(np.abs(wander(random, wavenumber * 10.0, size_dB=1.0, length=1.0)))
+    off = np.clip(off, -WITHIN_DB, WITHIN_DB)
+    return lambda at: np.interp(np.log(at), np.log(wavenumber), off)
+
+
+def profile(
+    random: np.random.Generator,
+    off_dB: Callable[[Reals], Reals],
+    *,
+    samples: int,
+    sampling_Hz: float,
+    speed: float,
+) -> Complexes:
     """The profile that the leading wheel meets, as the transform of a periodic record.
 
     Parameters
     ----------
     random : Generator
+    off_dB : callable
+        From :func:`deviation`.
     samples : int
     sampling_Hz : float
     speed : float
@@ -52,10 +71,7 @@ def profile(random: np.random.Generator, *, samples: int, sampling_Hz: float, sp
     frequency = np.fft.rfftfreq(samples, 1.0 / sampling_Hz)
     wavenumber = 2.0 * np.pi * np.maximum(frequency, frequency[1]) / speed
     per_hertz = density(wavenumber) * 2.0 * np.pi / speed
-    off = 20.0 * np.log10(np.abs(wander(random, wavenumber * 10.0, size_dB=1.0, length=1.0)))
-    shaped = (
-        spectrum * np.sqrt(per_hertz * 0.5 * sampling_Hz) * 10.0 ** (0.05 * np.clip(off, -WITHIN_DB, WITHIN_DB))
-    )
+    shaped = spectrum * np.sqrt(per_hertz * 0.5 * sampling_Hz) * 10.0 ** (0.05 * off_dB(wavenumber))
     shaped[0] = 0.0
     return np.asarray(shaped)
 

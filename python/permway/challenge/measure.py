@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from permway.challenge.beams import Complexes, Reals
 from permway.challenge.errors_of_measurement import struck, wander
-from permway.challenge.irregularity import profile
+from permway.challenge.irregularity import deviation, profile
 from permway.challenge.mesh import Mesh
 from permway.challenge.plan import FLOOR, Plan
 from permway.challenge.track import Spot
@@ -60,6 +61,7 @@ def measure(plan: Plan, random: np.random.Generator) -> tuple[list[HammerTest], 
     grid = np.unique(np.concatenate([_grid(), lines]))
     hammers = []
     under = np.empty(0, dtype=np.complex128)
+    errors = _errors(plan, random, lines)
     for index, written in enumerate(tests.temperatures_C):
         at = grid if index == 0 else lines
         moved = mesh.receptance(at, written + plan.chain.warmer_C[index], rows, columns)
@@ -69,8 +71,30 @@ def measure(plan: Plan, random: np.random.Generator) -> tuple[list[HammerTest], 
         rates = moved[np.searchsorted(at, lines)] * -((2.0 * np.pi * lines[:, None, None]) ** 2)
         r = [rows.index(spot) for spot in tests.sensors]
         c = [columns.index(spot) for spot in tests.points]
-        hammers.append(_hammer(plan, random, written, lines, rates[:, r][:, :, c]))
-    return hammers, [_run(plan, random, index, grid, under) for index in range(len(tests.speeds_kmh))]
+        hammers.append(_hammer(plan, random, written, lines, rates[:, r][:, :, c] * errors))
+    off_dB = deviation(random)
+    samples = round(tests.seconds * tests.sampling_Hz)
+    frequency = np.asarray(np.fft.rfftfreq(samples, 1.0 / tests.sampling_Hz), dtype=np.float64)
+    chains = [_wander(plan, random, frequency, "sensor") for _ in tests.channels]
+    runs = [
+        _run(plan, random, index, np.column_stack(chains), off_dB, CubicSpline(grid, under))
+        for index in range(len(tests.speeds_kmh))
+    ]
+    return hammers, runs
+
+
+def _wander(plan: Plan, random: np.random.Generator, frequency_Hz: Reals, of: str) -> Complexes:
+    """The smooth error of one chain, which it has in all tests."""
+    if plan.chain.clean:
+        return np.ones(frequency_Hz.size, dtype=np.complex128)
+    return wander(random, frequency_Hz, size_dB=plan.chain.wander_dB * SHARE[of])
+
+
+def _errors(plan: Plan, random: np.random.Generator, lines: Reals) -> Complexes:
+    """Of all pairs of a hammer test, (F, sensors, points)."""
+    sensors = np.column_stack([_wander(plan, random, lines, "sensor") for _ in plan.tests.sensors])
+    points = np.column_stack([_wander(plan, random, lines, "point") for _ in plan.tests.points])
+    return np.asarray(sensors[:, :, None] * points[:, None, :])
 
 
 def _grid() -> Reals:
@@ -86,10 +110,6 @@ def _hammer(
         response[:, index] *= plan.gain_of(plan.line_gain.get(spot, []), lines)[:, None]
     if chain.clean:
         return HammerTest(written_C, lines, response, np.ones(response.shape))
-    for index in range(len(tests.sensors)):
-        response[:, index] *= wander(random, lines, size_dB=chain.wander_dB * SHARE["sensor"])[:, None]
-    for index in range(len(tests.points)):
-        response[:, :, index] *= wander(random, lines, size_dB=chain.wander_dB * SHARE["point"])[:, None]
     # Ground unrest below, and a hammer that loses force above.
     tint = np.sqrt(1.0 + (6.0 / lines) ** 2) * np.sqrt(1.0 + (lines / 350.0) ** 2)
     each = np.array([plan.line_noise.get(spot, 1.0) for spot in tests.sensors])
@@ -98,7 +118,14 @@ def _hammer(
     return HammerTest(written_C, lines, frf, coherence)
 
 
-def _run(plan: Plan, random: np.random.Generator, index: int, grid: Reals, under: Complexes) -> Run:
+def _run(
+    plan: Plan,
+    random: np.random.Generator,
+    index: int,
+    errors: Complexes,
+    off_dB: Callable[[Reals], Reals],
+    under: CubicSpline[np.complex128],
+) -> Run:
     tests, chain = plan.tests, plan.chain
     written = tests.speeds_kmh[index]
     speed = written / 3.6 * plan.speed_factor[index]
@@ -107,7 +134,7 @@ def _run(plan: Plan, random: np.random.Generator, index: int, grid: Reals, under
     frequency = np.asarray(np.fft.rfftfreq(samples, 1.0 / tests.sampling_Hz), dtype=np.float64)
     kept = (frequency >= SLOW_HZ[0]) & (frequency < FILTER_HZ[1])
     lines = frequency[kept]
-    met = profile(random, samples=samples, sampling_Hz=tests.sampling_Hz, speed=speed)[kept]
+    met = profile(random, off_dB, samples=samples, sampling_Hz=tests.sampling_Hz, speed=speed)[kept]
     for shape in plan.shapes:
         met = met * shape(lines, speed)
     wheels = np.array(plan.layout.wheels_m(plan.values["vehicle"]))
@@ -115,15 +142,13 @@ def _run(plan: Plan, random: np.random.Generator, index: int, grid: Reals, under
     profiles = met[:, None] * late
     for extra in plan.wheel_profiles:
         profiles = profiles + np.fft.rfft(extra(times, speed), axis=1)[:, kept].T
-    track = CubicSpline(grid, under)(lines)
+    track = under(lines)
     moved = plan.vehicle.respond(lines, track, profiles, bins=np.flatnonzero(kept), samples=samples)
     rates = moved * (-((2.0 * np.pi * lines) ** 2) * _window(lines))[:, None]
     names = list(plan.vehicle.channels)
     spectrum = np.zeros((frequency.size, len(tests.channels)), dtype=np.complex128)
     for column, channel in enumerate(tests.channels):
-        gain = plan.gain_of(plan.channel_gain.get(channel, []), lines)
-        if not chain.clean:
-            gain = gain * wander(random, lines, size_dB=chain.wander_dB * SHARE["sensor"])
+        gain = plan.gain_of(plan.channel_gain.get(channel, []), lines) * errors[kept, column]
         spectrum[kept, column] = rates[:, names.index(channel)] * gain
     values = np.fft.irfft(spectrum, n=samples, axis=0)
     for column, channel in enumerate(tests.channels):

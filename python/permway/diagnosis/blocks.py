@@ -7,7 +7,9 @@ Beside them it says how the smooth errors of measuring chains and of the irregul
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -105,8 +107,15 @@ class Basis:
         return np.asarray(np.clip(1.0 - np.abs(x[:, None] - self.knots[None, :]) / step, 0.0, None))
 
 
+SURE = 0.25
+"""Relative error of a response or a transfer below which it counts by its logarithm."""
+
+
 class FrfBlock:
     """Frequency responses: complex deviations by the noise of each line, from coherence, and a floor.
+
+    Errors of chains multiply: a deviation is the logarithm of measured over predicted, in units of the measured
+    response. Where noise is large the logarithm is biased, and the difference stands for it.
 
     Beside the noise, which is new on every line, each pair of sensor and point has a smooth error of its own: of
     the model's idealisation, of where exactly the hammer fell. It is integrated out pair by pair, once, with the
@@ -140,9 +149,13 @@ class FrfBlock:
             self.weight = np.where(used, 1.0 / self.sigma, 0.0)
             decibels = np.where(used, 8.686 * self.sigma / size, np.inf)
         self._measured = np.where(used, self.measured, 0.0)
+        own = np.nan_to_num(np.sqrt(data["log_variance"].values), nan=np.inf)
+        self._logarithmic = used & (np.maximum(own * size, self.sigma) < SURE * size)
+        # Smooth errors of what is mostly noise are nothing beside it.
+        self._there: Complexes = np.where(self._logarithmic, self._measured, 0.0)
         self._basis = Basis(float(self.frequency[0]), float(self.frequency[-1]))
         fine = Basis(float(self.frequency[0]), float(self.frequency[-1]), self.KNOTS_PER_OCTAVE)
-        errors = (self._measured * self.weight)[..., None] * fine.values(self.frequency)
+        errors = (self._there * self.weight)[..., None] * fine.values(self.frequency)
         self._directions, singular, _ = np.linalg.svd(errors, full_matrices=False)
         self._across = np.ascontiguousarray(self._directions.conj().swapaxes(-1, -2))
         self._singular = singular
@@ -174,13 +187,25 @@ class FrfBlock:
     def deviations(self, predicted: xr.Dataset) -> Reals:
         """Real parts, then imaginary parts."""
         if self._last is None or self._last[0] is not predicted:
-            d = self.white((self._measured - predicted["frf"].values) * self.weight).reshape(-1)
+            d = self.white(self.off(predicted) * self.weight).reshape(-1)
             self._last = predicted, np.concatenate([d.real, d.imag])
         return self._last[1]
 
+    def off(self, predicted: xr.Dataset) -> Complexes:
+        """Measured less predicted, in the response's unit, as errors that multiply have it."""
+        model = predicted["frf"].values
+        with np.errstate(divide="ignore", invalid="ignore"):
+            multiplied = self._measured * np.log(self._measured / model)
+        return np.asarray(np.where(self._logarithmic, multiplied, self._measured - model))
+
+    def slope(self, predicted: xr.Dataset) -> Complexes:
+        """By what a change of the predicted response changes it, reversed: 1 where they agree."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(np.where(self._logarithmic, self._measured / predicted["frf"].values, 1.0))
+
     def learnt_pair(self, predicted: xr.Dataset) -> float:
         """The size of the pairs' errors after one step of expectation maximisation."""
-        d = (self._measured - predicted["frf"].values) * self.weight
+        d = self.off(predicted) * self.weight
         within = (self._across @ d[..., None])[..., 0]
         variance = (self.pair * self._singular) ** 2
         share = variance / (1.0 + variance)
@@ -191,14 +216,19 @@ class FrfBlock:
 
     def smooth(self, predicted: xr.Dataset) -> list[Smooth]:
         """Of each sensor's chain and of the hammer's at each point: log gain and phase."""
+        return self._smooth
+
+    @cached_property
+    def _smooth(self) -> list[Smooth]:
         basis = self._basis.values(self.frequency)
         sensors, points = (self.dataset.data[kind].values.astype(str) for kind in ("sensor", "force"))
-        spread = predicted["frf"].values * self.weight
+        spread = self._there * self.weight
         white = np.stack([self.white(spread * column) for column in basis.T], axis=-1)
         # A smooth gain moves a response along itself, a smooth phase across.
         gain = np.concatenate([white.real, white.imag]).reshape(-1, basis.shape[1])
         phase = np.concatenate([-white.imag, white.real]).reshape(-1, basis.shape[1])
-        values = -np.hstack([gain, phase])
+        # Measured is what is there times the error: deviations grow by it.
+        values = np.hstack([gain, phase])
         width, rows = values.shape[1], np.arange(values.shape[0])
         pair = (rows // self.frequency.size) % (sensors.size * points.size)
         first = np.stack([pair // points.size, sensors.size + pair % points.size], axis=1) * width
@@ -231,6 +261,10 @@ def _noise_variance(raw: Reals, reach: int = 4) -> Reals:
     return np.apply_along_axis(line, -1, raw)
 
 
+LEAST_LINES = 20
+"""Of a part, from which its scatter is learnt."""
+
+
 class SpectraBlock:
     """Cross spectra of a run: power of one channel, and every other channel by what it shares with another.
 
@@ -246,14 +280,18 @@ class SpectraBlock:
         The prediction by which the tree is chosen and transfers are weighed.
     floor : float
         Relative error of transfers that adds to their scatter.
+    scatter : sequence of float, optional
+        Of each part, by how much its lines scatter more than so many averages of a stationary record would: the
+        level of a track changes from place to place.
     """
 
-    log_determinant = 0.0
     LEAST_COHERENCE = 0.1
     MOST_COHERENCE = 0.98
 
-    def __init__(self, dataset: Dataset, expected: xr.Dataset, *, floor: float = 0.01) -> None:
-        self.dataset = dataset
+    def __init__(
+        self, dataset: Dataset, expected: xr.Dataset, *, floor: float = 0.01, scatter: Sequence[float] = ()
+    ) -> None:
+        self.dataset, self._expected, self._floor = dataset, expected, floor
         data = dataset.data
         # Neighbouring lines under Hann's window say half the same.
         self._lines = np.arange(0, data.sizes["frequency"], 2)
@@ -265,12 +303,16 @@ class SpectraBlock:
         self.root, self.tree = _tree(np.nanmean(coherence, axis=-1))
         labels, frequency, scale, kind = [], [], [], []
         self._parts: list[tuple[str, int, int, np.ndarray, Reals]] = []
+        self.log_determinant = 0.0
         single = 1.0 / np.sqrt(self.averages)
         everywhere = np.arange(self.frequency.size)
 
         def add(what: str, channel: int, other: int, at: np.ndarray, sigma: Reals) -> None:
-            self._parts.append((what, channel, other, at, sigma))
             copies = 2 if what == "transfer" else 1
+            more = scatter[len(self._parts)] if scatter else 1.0
+            sigma = more * sigma
+            self._parts.append((what, channel, other, at, sigma))
+            self.log_determinant += 2.0 * copies * at.size * float(np.log(more))
             text = names[channel] if what == "power" else f"{names[channel]} {what} {names[other]}"
             for _ in range(copies):
                 labels.extend([text] * at.size)
@@ -282,8 +324,8 @@ class SpectraBlock:
         for child, parent in self.tree:
             g2 = np.clip(coherence[child, parent], 1e-6, 1.0 - 1e-9)
             at = np.flatnonzero(g2 >= self.LEAST_COHERENCE)
-            scatter = np.sqrt((1.0 - g2[at]) / (2.0 * self.averages * g2[at]) + floor**2)
-            add("transfer", child, parent, at, scatter)
+            relative = np.sqrt((1.0 - g2[at]) / (2.0 * self.averages * g2[at]) + floor**2)
+            add("transfer", child, parent, at, relative)
             at = np.flatnonzero(g2 <= self.MOST_COHERENCE)
             add("rest", child, parent, at, np.full(at.size, single))
         text = np.array(labels, dtype=str)
@@ -302,17 +344,32 @@ class SpectraBlock:
         found = []
         for what, c, o, at, sigma in self._parts:
             if what == "power":
-                ratio = (self.measured[c, c, at] / model[c, c, at]).real
-                found.append(np.log(np.maximum(ratio, 1e-12)) / sigma)
+                power = (self.measured[c, c, at] / model[c, c, at]).real
+                found.append(np.log(np.maximum(power, 1e-12)) / sigma)
             elif what == "transfer":
                 measured = self.measured[c, o, at] / self.measured[o, o, at].real
                 expected = model[c, o, at] / model[o, o, at].real
-                d = (measured / expected - 1.0) / sigma
-                found.extend([d.real, d.imag])
+                ratio = measured / expected
+                # Gains multiply; where noise is large, their logarithm is biased, and smooth errors are nothing.
+                off = np.where(sigma < SURE, np.log(ratio), ratio - 1.0)
+                found.extend([off.real / sigma, off.imag / sigma])
             else:
-                ratio = _remainder(self.measured, c, o, at) / _remainder(model, c, o, at)
-                found.append(np.log(np.maximum(ratio, 1e-12)) / sigma)
+                rest = _remainder(self.measured, c, o, at) / _remainder(model, c, o, at)
+                found.append(np.log(np.maximum(rest, 1e-12)) / sigma)
         return np.concatenate(found)
+
+    def scattered(self, predicted: xr.Dataset) -> SpectraBlock:
+        """The same with the scatter of each part learnt from how its lines differ from their neighbours."""
+        plain = SpectraBlock(self.dataset, self._expected, floor=self._floor)
+        deviations, scatter, start = plain.deviations(predicted), [], 0
+        for what, _, _, at, _ in plain._parts:
+            size = (2 if what == "transfer" else 1) * at.size
+            # The second half of a transfer is its imaginary part: one difference of all is none of neighbours.
+            steps = np.diff(deviations[start : start + size])
+            typical = 1.4826 / np.sqrt(2.0) * float(np.median(np.abs(steps))) if size > LEAST_LINES else 1.0
+            scatter.append(max(1.0, typical))
+            start += size
+        return SpectraBlock(self.dataset, self._expected, floor=self._floor, scatter=scatter)
 
     def smooth(self, predicted: xr.Dataset) -> list[Smooth]:
         """Of each channel's chain, log gain and phase, and of the irregularity's level."""

@@ -188,13 +188,15 @@ class Evidence:
         )
         return replace(self, blocks=blocks)
 
-    def learnt_pairs(self, predicted: Sequence[xr.Dataset]) -> Evidence:
-        """The same with the size of the errors of pairs of sensor and point learnt."""
+    def learnt_scatter(self, predicted: Sequence[xr.Dataset]) -> Evidence:
+        """The same with the size of the errors of pairs, and the scatter of spectra, learnt."""
         blocks = []
         for block, prediction in zip(self.blocks, predicted, strict=True):
             if isinstance(block, FrfBlock):
                 size = float(np.clip(block.learnt_pair(prediction), SMALLEST_SMOOTH, LARGEST_PAIR))
                 block = block.with_pair(size) if abs(np.log(size / block.pair)) > 0.02 else block
+            elif isinstance(block, SpectraBlock):
+                block = block.scattered(prediction)
             blocks.append(block)
         return replace(self, blocks=tuple(blocks))
 

@@ -22,6 +22,12 @@ from permway.recordings.campaign_groups import held_out
 from permway.recordings.campaign_parts import HeldOut
 
 STEPS = 4
+OWN = 1e-3
+"""Share of what all records say of a parameter of the recording below which the rest is said not to know it."""
+
+RECORDING = {"campaign.conditions", "campaign.sensors"}
+"""What parameters of the recording act on."""
+
 SURE_DB = 1.0
 """A row of larger standard deviation says nothing of a level in dB."""
 
@@ -125,6 +131,11 @@ class Rest:
         columns, origins = fit.evidence.smooth(fit.evidence.predicted(fit.campaign).datasets)
         self._whole = Whitener.of(columns, origins, fit.evidence.sizes)
         self._columns, self._origins = columns, origins
+        # Speeds and noise floors of what is left out are as all records have them, before and after.
+        known = fit.evidence.campaign.parameters
+        self._recording = np.array(
+            [f.name in known.names and known.touches(f.name) <= RECORDING for f in fit.free], dtype=bool
+        )
         # What the blocks take out themselves, shared out among their rows.
         blocks = fit.evidence.blocks
         self._volume = np.concatenate(
@@ -148,14 +159,17 @@ class Rest:
         fit, whitener = self.fit, self._of(rows)
         jacobian = fit.jacobian[rows]
         reduced = whitener.reduce(jacobian)
-        normal = (jacobian.T @ jacobian - reduced.T @ reduced) / fit.heat + np.eye(fit.z.size)
+        information = jacobian.T @ jacobian - reduced.T @ reduced
+        normal = information / fit.heat + np.eye(fit.z.size)
+        known = ~(self._recording & (np.diag(jacobian.T @ jacobian) < OWN * (fit.jacobian**2).sum(axis=0)))
         low, high = np.array([f.limits for f in fit.free]).T
         z, deviations = fit.z, fit.deviations
         value = _square(whitener, deviations[rows]) / fit.heat + float(z @ z)
         for _ in range(STEPS):
             left = whitener.reduce(deviations[rows])
             slope = (jacobian.T @ deviations[rows] - reduced.T @ left) / fit.heat + z
-            shift, moved = -linalg.solve(normal, slope, assume_a="pos"), False
+            shift, moved = np.zeros(z.size), False
+            shift[known] = -linalg.solve(normal[np.ix_(known, known)], slope[known], assume_a="pos")
             for share in (1.0, 0.3):
                 tried = np.clip(z + share * shift, low, high)
                 new = self._deviations(tried)

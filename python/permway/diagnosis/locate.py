@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
+import xarray as xr
 from scipy import linalg
 
 from permway.arrays import Complexes, Reals
@@ -115,6 +116,8 @@ class Scan:
         The recalibrated base.
     block : FrfBlock
         Frequency responses under one condition.
+    predicted : Dataset
+        By the fit, of the block.
 
     Raises
     ------
@@ -122,7 +125,7 @@ class Scan:
         If the block is none of the fit's.
     """
 
-    def __init__(self, fit: Fit, block: FrfBlock) -> None:
+    def __init__(self, fit: Fit, block: FrfBlock, predicted: xr.Dataset) -> None:
         index = next((i for i, b in enumerate(fit.evidence.blocks) if b is block), None)
         if index is None:
             raise InputError("is no block of the fit", where="block")
@@ -154,6 +157,7 @@ class Scan:
         self._normal = share**2 * fit.jacobian.T @ fit.jacobian + np.eye(fit.z.size)
         self._slope = share**2 * fit.jacobian.T @ left + fit.z
         self._total = share**2 * float(left @ left)
+        self._steep = block.weight * block.slope(predicted)
         self._basis = Basis(float(self.frequency[0]), float(self.frequency[-1]), KNOTS_PER_OCTAVE)
 
     def joints(self) -> Iterator[tuple[Spot, Motion]]:
@@ -202,7 +206,7 @@ class Scan:
         block, basis = self.block, self._basis.values(self.frequency)
         product = motion[0].T[:, None, :] * motion[1].T[None, :, :]
         # Deviations are measured less predicted: an added stiffness lessens the prediction.
-        effect = self._share * block.white(product * self.read * block.weight)
+        effect = self._share * block.white(product * self.read * self._steep)
         columns = (effect[..., None] * basis).reshape(-1, basis.shape[1])
         left, slopes = self.left.reshape(-1), self.slopes.reshape(-1, self.slopes.shape[-1])
         inner = columns.conj().T @ columns
@@ -240,12 +244,11 @@ def scan(fit: Fit) -> list[Found]:
     InputError
         If the campaign has no frequency responses.
     """
-    blocks = [b for b in fit.evidence.blocks if isinstance(b, FrfBlock)]
-    if not blocks:
+    if not any(isinstance(block, FrfBlock) for block in fit.evidence.blocks):
         raise InputError(
             "no frequency response to locate by", where="records", remedy="measure some with a hammer"
         )
-    scans = [Scan(fit, block) for block in blocks]
+    scans = _scans(fit)
     rows = [_rows(one) for one in scans]
 
     def found(key: tuple[str, str], index: int) -> Found:
@@ -263,10 +266,10 @@ def scan(fit: Fit) -> list[Found]:
 
 def unseen(fit: Fit) -> list[Found]:
     """A quarter, the middle and three quarters of each layer and body, as places of which nothing is known yet."""
-    blocks = [b for b in fit.evidence.blocks if isinstance(b, FrfBlock)]
-    if not blocks:
+    scans = _scans(fit)
+    if not scans:
         return []
-    one = Scan(fit, blocks[0])
+    one = scans[0]
     rows = _rows(one)
     nothing, flat = np.zeros(one.frequency.size, dtype=np.complex128), np.ones(one.frequency.size)
     return [
@@ -274,6 +277,13 @@ def unseen(fit: Fit) -> list[Found]:
         for share in (0.5, 0.25, 0.75)
         for row in rows.values()
     ]
+
+
+def _scans(fit: Fit) -> list[Scan]:
+    """One of each hammer test."""
+    predicted = fit.evidence.predicted(fit.campaign).datasets
+    blocks = zip(fit.evidence.blocks, predicted, strict=True)
+    return [Scan(fit, block, data) for block, data in blocks if isinstance(block, FrfBlock)]
 
 
 def _rows(one: Scan) -> dict[tuple[str, str], list[tuple[Spot, Motion]]]:

@@ -15,20 +15,18 @@ from scipy import linalg
 from permway.arrays import Reals
 from permway.diagnosis.evidence import LARGEST_SMOOTH, SMALLEST_SMOOTH, Evidence, Solved
 from permway.diagnosis.fit import Build, Fit, Free, free_parameters
+from permway.diagnosis.speeds import begin
 from permway.diagnosis.tangent import Problem
 from permway.errors import InputError
 
 USUAL, SEEN = 0.02, 4.0
 """Size of smooth errors that is expected beforehand, neper or rad, and how many coefficients it counts for."""
 
-REUSED = 5.0
-"""Gain of a step below which the slopes of the one before do for the next."""
-
 UNFIT, COARSE = 1.5, 1e-3
 """Mean square of the deviations from which a model does not fit, and share of them that a step must then gain."""
 
-FORETOLD = 0.7
-"""Share of the gain foretold by the slopes that a step must bring, or else they are taken anew."""
+FORETOLD = 0.95
+"""Ratio of a step's gain to what the slopes foretold, or the other way round, from which they serve once more."""
 
 MOST_LEARNT, MAXIMISATIONS = 2, 5
 """Times that the sizes of smooth errors are learnt, and steps of expectation maximisation each time."""
@@ -58,7 +56,7 @@ def recalibrate(
     free : tuple of Free, optional
         By default the campaign's own parameters.
     start : ndarray, shape (p,), optional
-        Where to begin, in z; by default at the priors' centres.
+        Where to begin, in z; by default at the priors' centres, and at the speeds that fit best.
     learn : bool
         Whether to learn the sizes of smooth errors.
     reweigh : bool, optional
@@ -79,7 +77,8 @@ def recalibrate(
     build = evidence.campaign.with_values if build is None else build
     free = free_parameters(evidence.campaign) if free is None else free
     problem = Problem(evidence, build, free)
-    z = np.zeros(len(free)) if start is None else np.asarray(start, dtype=np.float64).copy()
+    own = start is None and build == evidence.campaign.with_values
+    z = begin(evidence, problem) if own else np.zeros(len(free)) if start is None else start.copy()
     state = problem.at(_inside(z, free))
     if state is None:
         raise InputError("the model cannot be solved there", where="start", value=z.tolist())
@@ -90,28 +89,27 @@ def recalibrate(
         # Far from the records the priors lead: the deviations count as if each were no better than all are.
         heat = max(1.0, tangent.chi2(state) / max(1, state.deviations.size))
         normal, slope = tangent.normal(heat), tangent.slope(state, heat)
-        moved, gained, foreseen = None, 0.0, 0.0
-        for _ in range(8 if tangent.at is state else 2):
+        fresh = tangent.at is state and exact
+        moved, gained, foretold = None, 0.0, 0.0
+        for _ in range(8 if fresh else 2):
             shift = -linalg.solve(normal + damping * np.diag(np.diag(normal)), slope, assume_a="pos")
             tried = problem.at(_inside(state.z + shift, free))
             gained = 0.0 if tried is None else tangent.heated(state, heat) - tangent.heated(tried, heat)
             if tried is not None and gained > 0.0:
-                foreseen = -float(2.0 * slope @ shift + shift @ normal @ shift)
-                moved, damping = tried, max(damping / 5.0, 1e-9)
+                foretold = -float(2.0 * slope @ shift + shift @ normal @ shift)
+                moved, damping = tried, max(damping / 10.0, 1e-9)
                 break
-            damping = max(damping * 6.0, 1e-6)
-        fresh = tangent.at is state and exact
-        before, state = state, state if moved is None else moved
+            damping = max(damping * 10.0, 1e-6)
+        state = state if moved is None else moved
         if progress is not None:
             progress(f"step {step + 1}, {tangent.heated(state, 1.0):.1f}, heat {heat:.3g}")
         # A base that does not fit is no more than where a search begins.
-        enough = 0.5 if heat < UNFIT else COARSE * state.deviations.size
-        if gained >= max(REUSED, enough):
-            # Where the step did what the slopes foretold, what it showed mends them well enough.
-            good = gained > FORETOLD * foreseen and moved is not None
-            tangent = tangent.mended(before, state) if good else problem.tangent(state)
-            exact = exact or not good
-        elif gained < enough and not fresh:
+        enough = 0.5 if heat < UNFIT else COARSE * state.deviations.size / heat
+        if gained >= enough:
+            # Where the step did what the slopes foretold, they do for the next.
+            if not FORETOLD * foretold < gained < foretold / FORETOLD:
+                tangent, exact = problem.tangent(state), True
+        elif not fresh:
             tangent, exact = problem.tangent(state), True
         elif (learn and rounds < MOST_LEARNT) or reweigh:
             if reweigh:
@@ -122,7 +120,7 @@ def recalibrate(
             state = problem.again(state)
             tangent, exact = problem.tangent(state), True
             damping = 1e-3
-        elif gained < enough:
+        else:
             break
     if tangent.at is not state or not exact:
         tangent = problem.tangent(state)
@@ -200,7 +198,7 @@ def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
             highest = 1.5 if origin == "irregularity" else LARGEST_SMOOTH
             sizes[origin] = float(np.clip(new, SMALLEST_SMOOTH, highest))
             change = max(change, abs(np.log(sizes[origin] / old)))
-        evidence = evidence.with_sizes(sizes).learnt_pairs(solved.datasets)
+        evidence = evidence.with_sizes(sizes).learnt_scatter(solved.datasets)
         if change < 0.1:
             break
     return evidence, max((abs(np.log(evidence.sizes[o] / size)) for o, size in before.items()), default=0.0)

@@ -9,7 +9,9 @@ import numpy as np
 from permway.arrays import Reals
 from permway.diagnosis.evidence import Evidence, Solved, Whitener
 from permway.diagnosis.fit import Build, Free
+from permway.diagnosis.nearby import Nearby
 from permway.errors import InputError, SolveError
+from permway.recordings.campaign import Campaign
 
 STEP = 1e-3
 """Of finite differences, in standard deviations of the prior."""
@@ -46,13 +48,6 @@ class Tangent:
         """Minus twice the log posterior, the records counting so much less."""
         return self.chi2(state) / heat + float(state.z @ state.z) + self.whitener.log_determinant
 
-    def mended(self, old: State, new: State) -> Tangent:
-        """With slopes that hold between two states (Broyden 1965)."""
-        step = new.z - old.z
-        missed = (new.deviations - old.deviations - self.jacobian @ step) / float(step @ step)
-        jacobian = self.jacobian + missed[:, None] * step[None, :]
-        return tangent_of(self.at, self.whitener, jacobian, self.blocks)
-
     def normal(self, heat: float) -> Reals:
         """Half the curvature of the heated objective, (p, p)."""
         return np.asarray(self.curvature / heat + np.eye(self.jacobian.shape[1]))
@@ -79,9 +74,11 @@ class Problem:
     def deviations(self, z: Reals, near: Solved | None = None) -> tuple[Reals, Solved]:
         """Of a model with these values, and its predictions; those of one near by save solves."""
         self.evaluations += 1
-        campaign = self.build({f.name: f.value(float(v)) for f, v in zip(self.free, z, strict=True)})
-        predicted = self.evidence.predicted(campaign, near)
+        predicted = self.evidence.predicted(self._campaign(z), near)
         return self.evidence.deviations(predicted.datasets), predicted
+
+    def _campaign(self, z: Reals) -> Campaign:
+        return self.build({f.name: f.value(float(v)) for f, v in zip(self.free, z, strict=True)})
 
     def at(self, z: Reals) -> State | None:
         """The state; None if the model cannot be solved there."""
@@ -103,11 +100,13 @@ class Problem:
         )
 
     def jacobian(self, state: State) -> Reals:
-        """Derivative of the deviations by z, by forward differences."""
-        columns = []
+        """Derivative of the deviations by z: forward differences, solves spared where derivatives do."""
+        nearby, columns = Nearby(self.evidence, state.solved), []
         for index, f in enumerate(self.free):
             step = STEP if state.z[index] + STEP <= f.limits[1] else -STEP
             moved = state.z.copy()
             moved[index] += step
-            columns.append((self.deviations(moved, state.solved)[0] - state.deviations) / step)
+            campaign = self._campaign(moved)
+            predicted = nearby.predicted(campaign) or self.evidence.predicted(campaign, state.solved)
+            columns.append((self.evidence.deviations(predicted.datasets) - state.deviations) / step)
         return np.column_stack(columns) if columns else np.zeros((state.deviations.size, 0))

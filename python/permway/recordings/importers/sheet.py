@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +42,9 @@ VEHICLE_KEYS = {
 
 LAYERS = ("pad", "mortar", "sliding", "bearing")
 
+SPEED_2SIGMA, SPEED_BOUND = 0.005, 0.01
+"""How well a train's speed is usually noted, and beyond which it is wrong: wheelsets 20 m apart tell 0.05 %."""
+
 _SUFFIXES = (".uff", ".unv", ".mat", ".csv", ".npz", ".h5", ".nc", ".tdms", ".wav")
 _NODES = {1: "rail", 2: "slab", 3: "base", 4: "girder"}
 
@@ -70,7 +73,7 @@ def import_sheet(folder: Path, output: Path, *, copy: bool = True) -> Campaign:
         conditions.append({"name": name, "kind": "hammer", "temperature_C": temperature})
         records.append(_hammer_record(sheet, name, source))
         sources.append(source)
-    runs = None
+    runs, names = None, []
     if sheet.runs is not None:
         names = [f"run_{speed:.0f}kmh" for speed in sheet.runs.speeds_kmh]
         runs = read_runs(sheet, [_find(folder, name) for name in names])
@@ -82,7 +85,7 @@ def import_sheet(folder: Path, output: Path, *, copy: bool = True) -> Campaign:
         "title": title,
         "model": "model.toml",
         "irregularity": {"knowledge": "within", "within_dB": 2.0} if runs else None,
-        "parameters": [*_parameters(sheet), *(_train_parameters(sheet) if runs else [])],
+        "parameters": [*_parameters(sheet), *(_train_parameters(sheet, names) if runs else [])],
         "sensors": [*_line_sensors(sheet, unit), *(runs.sensors() if runs else [])],
         "forces": [{"name": _label(spot), "body": spot[0], "x_m": spot[1]} for spot in sheet.hammer.points],
         "conditions": conditions,
@@ -211,7 +214,7 @@ def _parameters(sheet: Sheet) -> list[dict[str, Any]]:
     return parameters
 
 
-def _train_parameters(sheet: Sheet) -> list[dict[str, Any]]:
+def _train_parameters(sheet: Sheet, runs: Sequence[str]) -> list[dict[str, Any]]:
     level = {
         "name": "irregularity.level",
         "unit": "dB",
@@ -231,7 +234,18 @@ def _train_parameters(sheet: Sheet) -> list[dict[str, Any]]:
         }
         for channel in (sheet.runs.channels if sheet.runs else ())
     ]
-    return [level, *floors]
+    speeds = [
+        {
+            "name": f"speed.{run}",
+            "unit": "m/s",
+            "paths": [f"campaign.conditions.{run}.speed_m_per_s"],
+            "acts": "scales",
+            "tolerance_2sigma": SPEED_2SIGMA,
+            "bounds": [speed / 3.6 * (1.0 - SPEED_BOUND), speed / 3.6 * (1.0 + SPEED_BOUND)],
+        }
+        for run, speed in zip(runs, sheet.runs.speeds_kmh if sheet.runs else (), strict=True)
+    ]
+    return [level, *floors, *speeds]
 
 
 def _held_out(sheet: Sheet) -> list[dict[str, Any]]:

@@ -1,0 +1,154 @@
+"""Predictions of campaigns whose lines differ by little in their numbers: by exact derivatives, without a solve.
+
+Where a parameter changes stiffnesses, masses and loss factors of laws and bodies, and no place, the receptances
+move by `dH = sum of dH/dp times the change of p`, one derivative sweep for all parameters
+(:mod:`permway.response.sensitivity`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from permway.arrays import Complexes
+from permway.diagnosis.evidence import Evidence, Solved
+from permway.model.line import Line
+from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_factors import model_under
+from permway.recordings.predict import Answer, Need, Sweep, need_of, predict_one
+from permway.response.receptance import Place
+from permway.response.sensitivity import PROPERTIES, sensitivity
+
+COLUMNS = ("bending", "shear", "mass", "rotary")
+"""Of the core's tables, in the order of `PROPERTIES`."""
+
+MOST_BEAMS = 60
+"""Beams and masses of a line above which all derivatives together cost more memory than they save time."""
+
+
+@dataclass(frozen=True)
+class _Derivatives:
+    """Of one need's receptances, (frequency, law or beam or mass, row, column)."""
+
+    by_law: Complexes
+    by_beam: Complexes
+    by_mass: Complexes
+
+
+class Nearby:
+    """Campaigns that differ little from one that was solved.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    solved : Solved
+        Of the campaign that they are near to.
+    """
+
+    def __init__(self, evidence: Evidence, solved: Solved) -> None:
+        self.evidence, self.solved = evidence, solved
+        self._known: dict[int, _Derivatives] = {}
+
+    def predicted(self, campaign: Campaign) -> Solved | None:
+        """What a campaign near by predicts; None if its line differs by more than numbers."""
+        near = self.solved
+        one, other = near.campaign.model.line, campaign.model.line
+        few = len(one.beams()) + one.masses_kg().size <= MOST_BEAMS
+        if one == other or not few or campaign.model.formulation != "chain" or not _alike(one, other):
+            return None
+        needs = [need_of(campaign, dataset) for dataset in self.evidence.datasets]
+        if not all(_same_places(new, old) for new, old in zip(needs, near.needs, strict=True)):
+            return None
+        moved = {id(need): self._moved(need, campaign) for need in near.needs if need is not None}
+        datasets = [
+            predict_one(campaign, dataset, old, None if old is None else moved[id(old)])
+            for dataset, old in zip(self.evidence.datasets, near.needs, strict=True)
+        ]
+        return Solved(campaign, near.needs, {}, datasets)
+
+    def _moved(self, need: Need, campaign: Campaign) -> Answer:
+        before = model_under(self.solved.campaign.model, need.factors).line
+        after = model_under(campaign.model, need.factors).line
+        known = self._derivatives(need, before)
+        values = self.solved.answers[need.state].of(need).copy()
+        law = after.stiffness(need.frequency_Hz, need.temperature_C) - before.stiffness(
+            need.frequency_Hz, need.temperature_C
+        )
+        for index in np.flatnonzero((law != 0.0).any(axis=0)):
+            values += law[:, index, None, None] * known.by_law[:, index]
+        old, new = before.beam_columns(), after.beam_columns()
+        for place, name in enumerate(COLUMNS):
+            change = new[name] - old[name]
+            for index in np.flatnonzero(change):
+                values += change[index] * known.by_beam[:, index, place]
+        mass = after.masses_kg() - before.masses_kg()
+        for index in np.flatnonzero(mass):
+            values += mass[index] * known.by_mass[:, index]
+        sweep = Sweep(
+            need.temperature_C, need.frequency_Hz, _places(need.columns), _places(need.rows), need.factors
+        )
+        return Answer(sweep, values)
+
+    def _derivatives(self, need: Need, line: Line) -> _Derivatives:
+        if id(need) not in self._known:
+            # Two runs at one temperature may need the same.
+            like = next((n for n in self.solved.needs if n is not None and _identical(n, need)), need)
+            if id(like) not in self._known:
+                data = sensitivity(
+                    line,
+                    like.frequency_Hz,
+                    forces=_places(like.columns),
+                    sensors=_places(like.rows),
+                    temperature_C=like.temperature_C,
+                    threads=self.evidence.threads,
+                )
+                self._known[id(like)] = _Derivatives(
+                    data["by_law"].values, data["by_beam"].values, data["by_mass"].values
+                )
+            self._known[id(need)] = self._known[id(like)]
+        return self._known[id(need)]
+
+
+def _alike(one: Line, other: Line) -> bool:
+    """Whether two lines differ in numbers of laws, sections and masses only, changes of section in proportion."""
+    if one.bodies.keys() != other.bodies.keys() or one.laws.keys() != other.laws.keys():
+        return False
+    if one.segments() != other.segments() or one.masses_kg().size != other.masses_kg().size:
+        return False
+    if one.joints != other.joints:
+        first, second = one.joint_table(), other.joint_table()
+        if any(
+            not np.array_equal(getattr(first, name), getattr(second, name))
+            for name in ("x", "upper", "lower", "law", "scale")
+        ):
+            return False
+    old, new = one.beam_columns(), other.beam_columns()
+    if any(not np.array_equal(old[name], new[name]) for name in ("interval", "pinned", "modes")):
+        return False
+    stretches, others = old["stretches"], new["stretches"]
+    if any(not np.array_equal(stretches[name], others[name]) for name in ("body", "interval")):
+        return False
+    body = stretches["body"]
+    return all(
+        np.allclose(stretches[name] * new[name][body], others[name] * old[name][body], rtol=1e-12, atol=0.0)
+        for name in COLUMNS
+    )
+
+
+def _same_places(one: Need | None, other: Need | None) -> bool:
+    if one is None or other is None:
+        return one is other
+    return _identical(one, other)
+
+
+def _identical(one: Need, other: Need) -> bool:
+    alike = (one.state, one.rows, one.columns) == (other.state, other.rows, other.columns)
+    return alike and np.array_equal(one.frequency_Hz, other.frequency_Hz)
+
+
+def _places(spots: tuple[tuple[str, float], ...]) -> tuple[Place, ...]:
+    return tuple(Place(body=body, x_m=x, name=f"{body}@{x!r}") for body, x in spots)
+
+
+assert len(COLUMNS) == len(PROPERTIES)

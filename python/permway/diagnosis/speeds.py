@@ -1,0 +1,48 @@
+"""Where recalibration begins in the trains' speeds: phases between wheelsets turn, so that slopes lead astray.
+
+Two wheelsets 20 m apart at 60 m/s and 400 Hz are two radians out of phase for a quarter of a percent of speed.
+Each speed is therefore looked for on a grid, all other values at the centre of their priors; levels hardly matter.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from permway.arrays import Reals
+from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.tangent import Problem
+
+GRID = 41
+"""Points of the grid, from one bound to the other: for bounds of 1 %, steps of 0.05 %."""
+
+LIMITS = 4.0
+"""Standard deviations of the prior to which speeds without bounds are looked for."""
+
+
+def begin(evidence: Evidence, problem: Problem) -> Reals:
+    """Coordinates z to begin at, shape (p,): 0 but for speeds that are free.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    problem : Problem
+        Whose free parameters are the campaign's own.
+    """
+    z = np.zeros(len(problem.free))
+    known = evidence.campaign.parameters
+    mine = [i for i, f in enumerate(problem.free) if "campaign.conditions" in known.touches(f.name)]
+    start = problem.at(z) if mine else None
+    if start is None:
+        return z
+    for index in mine:
+        low, high = problem.free[index].limits
+        best = np.inf
+        for value in np.linspace(max(low, -LIMITS), min(high, LIMITS), GRID):
+            tried = z.copy()
+            tried[index] = value
+            deviations, _ = problem.deviations(tried, start.solved)
+            # Few lines must not outweigh all others: the base may be far off in some.
+            misfit = float(np.log1p(deviations**2).sum()) + value**2
+            if misfit < best:
+                best, z[index] = misfit, value
+    return z
