@@ -21,6 +21,8 @@ extensions = [
     "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
     "mathml",
+    "docstrings",
+    "effects",
     "homes",
     "outside",
 ]
@@ -36,6 +38,9 @@ numfig = True
 html_math_renderer = "mathml"
 
 napoleon_google_docstring = False
+default_role = "literal"
+# Words of types, as "channels", that are attributes of several records.
+suppress_warnings = ["ref.python"]
 napoleon_use_rtype = False
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
