@@ -5,10 +5,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-HERE = Path(__file__).parent
-sys.path[:0] = [str(HERE / "_extensions"), str(HERE.parent / "python")]
-
 from permway import __version__
+
+sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
 
 project = "permway"
 author = "the permway authors"
