@@ -1,6 +1,6 @@
 """Equations as MathML, which browsers draw by themselves: no script, nothing fetched.
 
-docutils turns LaTeX into MathML; what it does not know stops the build.
+docutils turns LaTeX into MathML; what it does not know is a warning, and so stops the build.
 """
 
 from __future__ import annotations
@@ -10,10 +10,21 @@ from typing import Any
 from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
+from sphinx.util import logging
+
+_log = logging.getLogger(__name__)
+
+
+def _mathml(text: str, node: nodes.Element, *, as_block: bool) -> str:
+    try:
+        return str(tex2mathml(text, as_block=as_block))
+    except Exception as error:  # noqa: BLE001 - docutils raises several kinds for what it cannot read
+        _log.warning("equation not understood: %s", error, location=node)
+        return ""
 
 
 def _inline(translator: Any, node: nodes.Element) -> None:
-    translator.body.append(tex2mathml(node.astext(), as_block=False))
+    translator.body.append(_mathml(node.astext(), node, as_block=False))
     raise nodes.SkipNode
 
 
@@ -22,7 +33,7 @@ def _block(translator: Any, node: nodes.Element) -> None:
     if "\\\\" in text and "\\begin" not in text:
         text = f"\\begin{{aligned}}{text}\\end{{aligned}}"
     translator.body.append(translator.starttag(node, "div", CLASS="math equation"))
-    translator.body.append(tex2mathml(text, as_block=True))
+    translator.body.append(_mathml(text, node, as_block=True))
     if node["number"]:
         translator.body.append(f'<span class="eqno">({node["number"]})')
         translator.add_permalink_ref(node, "Link to this equation")

@@ -52,7 +52,7 @@ def numbers(found: Identification) -> dict[str, float]:
         "order of the springpot": order.value,
         "its 90 % interval, from": order.low,
         "to": order.high,
-        "scatter left, per cent of modulus": 100.0 * np.log(10.0) * found.rms_log10_modulus,
+        "scatter left, per cent of storage": 100.0 * np.log(10.0) * found.rms_log10_modulus,
         "modulus at 300 Hz and -20 °C, found over true": float(abs(far)),
     }
 
