@@ -11,6 +11,7 @@ from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
 from sphinx.util import logging
+from sphinx.util.math import get_node_equation_number
 
 _log = logging.getLogger(__name__)
 
@@ -35,7 +36,7 @@ def _block(translator: Any, node: nodes.Element) -> None:
     translator.body.append(translator.starttag(node, "div", CLASS="math equation"))
     translator.body.append(_mathml(text, node, as_block=True))
     if node["number"]:
-        translator.body.append(f'<span class="eqno">({node["number"]})')
+        translator.body.append(f'<span class="eqno">({get_node_equation_number(translator, node)})')
         translator.add_permalink_ref(node, "Link to this equation")
         translator.body.append("</span>")
     translator.body.append("</div>")
