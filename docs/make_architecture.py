@@ -55,7 +55,9 @@ def draw() -> Figure:
         axes.text(x, y - 0.15, said, ha="center", va="center", fontsize=7.6, linespacing=1.15)
     for start, end, said, (right, up) in ARROWS:
         tail, head = _edges(start, end)
-        axes.add_patch(FancyArrowPatch(tail, head, arrowstyle="-|>", mutation_scale=11, color="0.3", linewidth=1.1))
+        axes.add_patch(
+            FancyArrowPatch(tail, head, arrowstyle="-|>", mutation_scale=11, color="0.3", linewidth=1.1)
+        )
         middle = 0.5 * (tail[0] + head[0]) + right, 0.5 * (tail[1] + head[1]) + up
         axes.text(*middle, said, ha="center", va="center", fontsize=7.4, color="0.25")
     return figure

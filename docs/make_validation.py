@@ -58,7 +58,9 @@ def beams() -> Iterator[Case]:
     form = "closed form, printed in the project's reference values"
     for f, printed in (("1", "1.668317e-9"), ("5.72", "1.603321e-8"), ("50", "1.648455e-10")):
         value = b.respond(b.alone(b.GIRDER), [float(f)], 16.25, formulation="chain")[0, 0]
-        yield Case("simply supported girder", f"receptance at its middle, {f} Hz", "m/N", printed, abs(value), form)
+        yield Case(
+            "simply supported girder", f"receptance at its middle, {f} Hz", "m/N", printed, abs(value), form
+        )
     for f, printed in (("10", "7.160116e-8"), ("200", "1.603340e-9")):
         value = b.respond(b.alone(b.SLAB), [float(f)], 0.0, formulation="chain")[0, 0]
         yield Case("free slab", f"receptance at its tip, {f} Hz", "m/N", printed, abs(value), form)
@@ -97,14 +99,21 @@ def rail() -> Iterator[Case]:
             line = Line(bodies={"rail": span}, joints=(), laws={})
             found = resonance(lambda f, line=line: u.respond(line, [f])[0, 0], f"{value:.2f}")
             yield Case(
-                "UIC60 between two pins", f"bay of {bay:g} m, {theory.capitalize()}", "Hz", f"{value:.2f}", found, knothe
+                "UIC60 between two pins",
+                f"bay of {bay:g} m, {theory.capitalize()}",
+                "Hz",
+                f"{value:.2f}",
+                found,
+                knothe,
             )
     values, exponents = u.winkler(u.WINKLER_HZ)
     decay = 8.686 * np.abs(exponents.real).min(axis=0)
     for (f, printed, rate), value, own in zip(u.WINKLER, values, decay, strict=True):
         text = f"{abs(printed):.9e}"
         name = "UIC60 on a bed"
-        yield Case(name, f"receptance, {f:g} Hz", "m/N", text, abs(value), "closed form; the solver meets it to 1e-7")
+        yield Case(
+            name, f"receptance, {f:g} Hz", "m/N", text, abs(value), "closed form; the solver meets it to 1e-7"
+        )
         yield Case(name, f"decay of the slower wave, {f:g} Hz", "dB/m", f"{rate:.4f}", own, "closed form")
     grid = np.linspace(20.0, 3000.0, 1500)[[row[0] for row in u.SUPPORTS]]
     for kg, column, name in ((None, 2, "pads"), (162.0, 3, "pads, sleepers, ballast")):
@@ -120,7 +129,9 @@ def rail() -> Iterator[Case]:
         for row, value in zip(u.SUPPORTS, found, strict=True):
             printed = f"{row[column]:.8e}"
             what = f"mobility, {row[1]:g} Hz"
-            yield Case(f"UIC60 on 241 supports, {name}", what, "m/s/N", printed, value, "benchmark of rolland, TU Berlin")
+            yield Case(
+                f"UIC60 on 241 supports, {name}", what, "m/s/N", printed, value, "benchmark of rolland, TU Berlin"
+            )
 
 
 def vehicles() -> Iterator[Case]:
@@ -135,12 +146,21 @@ def vehicles() -> Iterator[Case]:
         yield Case("trailer", name, "Hz", printed, trailer[index], zeng + remark)
     found = v.manchester_vehicle_1().natural_frequencies_Hz(on_contact=np.inf)
     for number, printed in enumerate(("1.0725", "1.2973", "7.4187", "7.4255", "11.6174", "11.6174")):
-        yield Case("Manchester vehicle 1", f"mode {number + 1}", "Hz", printed, found[number], "Manchester benchmarks")
+        yield Case(
+            "Manchester vehicle 1", f"mode {number + 1}", "Hz", printed, found[number], "Manchester benchmarks"
+        )
     rows = ((1.0, 0, "0.40840"), (5.0, 0, "0.06800"), (1.0, 1, "0.01041"), (7.0, 1, "0.00081"))
     for f, degree, printed in rows:
         value = v.body_acceleration(v.crh380a(share=0.5), np.array([f]), v.simple_track)[0, degree]
         what = f"{('body bounce', 'body pitch')[degree]}, {f:g} Hz"
-        yield Case("CRH380A on a simple track", what, "(m/s2)2/Hz", printed, value, "the paper's Table 6, in its conventions")
+        yield Case(
+            "CRH380A on a simple track",
+            what,
+            "(m/s2)2/Hz",
+            printed,
+            value,
+            "the paper's Table 6, in its conventions",
+        )
 
 
 def moving() -> Iterator[Case]:
@@ -153,7 +173,12 @@ def moving() -> Iterator[Case]:
     def force(eta: float) -> float:
         axles = Axles(lags_m=(0.0,), loads_N=(5750 * m.G,), speed_m_per_s=25.0, body="beam")
         line = m.bridge(3.5e10, 1.3901, 18358.0, eta)
-        options = {"highest_Hz": 150.0, "quantity": "displacement", "window_s": 1.4 / eta, "wraparound_limit": 0.05}
+        options = {
+            "highest_Hz": 150.0,
+            "quantity": "displacement",
+            "window_s": 1.4 / eta,
+            "wraparound_limit": 0.05,
+        }
         data = passby(line, axles, sensors=m.CENTRE, **options)
         return CubicSpline(data["time"], data["history"][0, 0])(0.438)
 
@@ -220,7 +245,14 @@ def paper(tables: dict) -> str:
             continue
         at = "" if row["at_Hz"] is None else f"{row['at_Hz']:g}"
         bar = f"{row['bar']}: {row['status']}" if row["bar"] else ""
-        cells = [row["table"], row["quantity"].replace("_", " "), f"{row['temperature_C']}", at, row["pad"], row["unit"]]
+        cells = [
+            row["table"],
+            row["quantity"].replace("_", " "),
+            f"{row['temperature_C']}",
+            at,
+            row["pad"],
+            row["unit"],
+        ]
         cells += [f"{row['printed']:g}", f"{row['computed']:.4g}", f"{row['ratio']:.3f}", bar]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
