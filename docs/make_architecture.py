@@ -1,4 +1,4 @@
-"""Draws docs/images/architecture.svg, the flow of data through the packages: run `python docs/make_architecture.py`."""
+"""Draws the flow of data, docs/images/architecture.svg: run `python docs/make_architecture.py`."""
 
 from __future__ import annotations
 

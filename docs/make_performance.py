@@ -44,7 +44,8 @@ def _instructions() -> list[str]:
     lines = [
         "## Instructions",
         "",
-        f"Counted by valgrind ({report['path']} path, rustc {report['tools']['rustc']}); `python benches/gates.py` fails if one grows by 2 %.",
+        f"Counted by valgrind ({report['path']} path, rustc {report['tools']['rustc']}).",
+        "`python benches/gates.py` fails if one grows by 2 %.",
         "",
         "| case | instructions per frequency |",
         "|---|---:|",
@@ -76,8 +77,9 @@ def page() -> str:
     lines = [
         "# Performance",
         "",
-        "Written by `python docs/make_performance.py` from the results in `benches/*.json`. Times are of a machine that others used",
-        "at the same time, so they are upper bounds. How each was measured, and what limits it, is told in `benches/README.md`.",
+        "Written by `python docs/make_performance.py` from the results in `benches/*.json`. Times are of a",
+        "machine that others used at the same time, so they are upper bounds. How each was measured, and what",
+        "limits it, is told in `benches/README.md`.",
         "",
         "## Against peers",
         peers.replace("\n#### ", "\n### "),

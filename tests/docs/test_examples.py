@@ -53,6 +53,23 @@ def test_an_example_computes_what_its_pages_quote(name: str) -> None:
     assert (DOCS / "images" / "examples" / f"{name}.png").is_file()
 
 
+@pytest.mark.injection
+def test_the_tutorial_s_diagnosis_says_what_its_page_says(tmp_path: Path) -> None:
+    """Half a minute: the two fasteners that carry 5 %, in folders made as the tutorial makes them."""
+    import numpy as np
+    from permway.diagnosis.diagnose import diagnose
+    from permway.recordings.campaign import read_campaign
+
+    import_module("make_deck").write(tmp_path)
+    np.savez(tmp_path / "blows.npz", **import_module("blows_to_frf").responses(tmp_path))
+    verdict = diagnose(read_campaign(tmp_path / "campaign.toml"), threads=1).verdict
+    page = (DOCS / "tutorials" / "diagnosis.md").read_text("utf-8")
+    assert verdict.status == "named"
+    assert verdict.sentence in " ".join(page.split())
+    factor = verdict.effects[0].parameters["factor"]
+    assert [round(v, 4) for v in (factor.value, factor.low, factor.high)] == [0.0499, 0.0483, 0.0516]
+
+
 def test_every_example_is_in_the_gallery() -> None:
     shown = {example for page, example, _ in quoted() if page == "gallery.md"}
     assert shown == set(EXAMPLES)
