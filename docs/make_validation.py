@@ -1,7 +1,7 @@
 """Writes docs/validation.md: printed values of the literature beside computed ones.
 
-`python docs/make_validation.py` computes the cases by the functions of tests/literature. With `--paper TABLES`, the
-`tables.json` of `permway reproduce`, the paper's tables are written anew too; without it they are kept.
+`python docs/make_validation.py` computes the cases by the functions of tests/literature. With `--paper TABLES`,
+the `tables.json` of `permway reproduce`, the paper's tables are written anew too; without it they are kept.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ PAPER = "## The paper's tables"
 
 HEAD = """# Validation
 
-Written by `python docs/make_validation.py` from the cases of `tests/literature`; a test holds the page against what is computed.
+Written by `python docs/make_validation.py` from the cases of `tests/literature`; a test holds the cheap
+rows against what is computed.
 *Ratio* is computed over printed. Where it is not 1 to the digits printed, the last column says what is known.
 
 | case | quantity | unit | printed | computed | ratio | source, remark |
@@ -217,8 +218,8 @@ def moving() -> Iterator[Case]:
         formulation="receptance",
     )
     remark = (
-        "EN 1991-2; an independent equation of the first mode gives 53.6, and 54.8 only with a bogie more than the "
-        "standard's train is taken to have"
+        "EN 1991-2; an independent equation of the first mode gives 53.6, and 54.8 only with a bogie more than "
+        "the standard's train is taken to have"
     )
     peak = float(np.abs(data["history"]).max())
     yield Case("HSLM-A1 over 15 m, first mode", "largest acceleration, 325 km/h", "m/s2", "54.8", peak, remark)
@@ -234,8 +235,9 @@ def paper(tables: dict) -> str:
     lines = [
         PAPER,
         "",
-        "From `permway reproduce`, in the paper's conventions with the girder free on its bearings. *One law*: for all",
-        "temperatures; *free*: the pad's stiffness identified at each. Table 8 is open: it contradicts tables 5 and 7.",
+        "From `permway reproduce`, in the paper's conventions with the girder free on its bearings. *One law*:",
+        "for all temperatures; *free*: the pad's stiffness identified at each. Table 8 is open: it contradicts",
+        "tables 5 and 7.",
         "",
         "| table | quantity | °C | Hz | pad | unit | printed | computed | ratio | bar |",
         "|---|---|---:|---:|---|---|---:|---:|---:|---|",
