@@ -1,0 +1,50 @@
+"""The page of the catalogue, from the names of its modules: an effect added there is on the page."""
+
+from __future__ import annotations
+
+from itertools import groupby
+
+from permway.diagnosis.catalogue import entries
+from permway.diagnosis.hypothesis import Entry
+from sphinx.application import Sphinx
+
+TITLES = {
+    "path": "Track and structure",
+    "irregularity": "Irregularity and contact",
+    "vehicle": "Vehicle",
+    "measurement": "Measurement",
+}
+
+
+def _section(entry: Entry) -> list[str]:
+    lines = [f"({entry.ID})=", f"### `{entry.ID}`", "", entry.SUMMARY, ""]
+    lines += ["| parameter | unit, range, meaning |", "|---|---|"]
+    lines += [f"| `{name}` | {_cell(said)} |" for name, said in entry.PARAMETERS.items()]
+    lines += ["", f"- **Signature.** {entry.SIGNATURE}"]
+    lines += [f"- **Confused with** `{other}`: {_cell(said)}." for other, said in entry.CONFUSED_WITH.items()]
+    lines += [f"- **Family** {entry.FAMILY}. **Source**: {entry.SOURCE}.", ""]
+    return lines
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")
+
+
+def _read(app: Sphinx, docname: str, source: list[str]) -> None:
+    if "% effects" not in source[0]:
+        return
+    app.env.note_reread()
+    order = list(TITLES)
+    known = sorted(entries().values(), key=lambda e: (order.index(e.DOMAIN), e.ID))
+    lines: list[str] = []
+    for domain, group in groupby(known, key=lambda e: e.DOMAIN):
+        lines += [f"## {TITLES[domain]}", ""]
+        for entry in group:
+            lines += _section(entry)
+    source[0] = source[0].replace("% effects", "\n".join(lines)).replace("% count", str(len(known)))
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Register the reading."""
+    app.connect("source-read", _read)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
