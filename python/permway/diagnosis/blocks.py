@@ -128,12 +128,21 @@ class FrfBlock:
         Relative error that adds to the noise of each line.
     pair : float
         Size of a pair's smooth error, neper and rad.
+    reference : Dataset of xarray, optional
+        A prediction, to stand for what is there where noise hides it.
     """
 
     KNOTS_PER_OCTAVE = 3.0
 
-    def __init__(self, dataset: Dataset, *, floor: float = FLOOR, pair: float = FLOOR) -> None:
-        self.dataset, self.floor, self.pair = dataset, floor, pair
+    def __init__(
+        self,
+        dataset: Dataset,
+        *,
+        floor: float = FLOOR,
+        pair: float = FLOOR,
+        reference: xr.Dataset | None = None,
+    ) -> None:
+        self.dataset, self.floor, self.pair, self._reference = dataset, floor, pair, reference
         data = dataset.data
         self.measured: Complexes = data["frf"].values
         self.frequency: Reals = data["frequency"].values
@@ -151,8 +160,9 @@ class FrfBlock:
         self._measured = np.where(used, self.measured, 0.0)
         own = np.nan_to_num(np.sqrt(data["log_variance"].values), nan=np.inf)
         self._logarithmic = used & (np.maximum(own * size, self.sigma) < SURE * size)
-        # Smooth errors of what is mostly noise are nothing beside it.
-        self._there: Complexes = np.where(self._logarithmic, self._measured, 0.0)
+        # Of what is mostly noise, smooth errors act on what is there.
+        hidden = 0.0 if reference is None else np.where(used, reference["frf"].values, 0.0)
+        self._there: Complexes = np.where(self._logarithmic, self._measured, hidden)
         self._basis = Basis(float(self.frequency[0]), float(self.frequency[-1]))
         fine = Basis(float(self.frequency[0]), float(self.frequency[-1]), self.KNOTS_PER_OCTAVE)
         errors = (self._there * self.weight)[..., None] * fine.values(self.frequency)
@@ -172,7 +182,25 @@ class FrfBlock:
 
     def with_pair(self, pair: float) -> FrfBlock:
         """The same with another size of the pairs' errors."""
-        return FrfBlock(self.dataset, floor=self.floor, pair=pair)
+        return self._other(pair=pair)
+
+    def with_floor(self, floor: float) -> FrfBlock:
+        """The same with another relative error."""
+        return self._other(floor=floor)
+
+    def with_reference(self, reference: xr.Dataset) -> FrfBlock:
+        """The same with another prediction where noise hides what is there."""
+        return self._other(reference=reference)
+
+    def _other(
+        self, *, floor: float | None = None, pair: float | None = None, reference: xr.Dataset | None = None
+    ) -> FrfBlock:
+        return FrfBlock(
+            self.dataset,
+            floor=self.floor if floor is None else floor,
+            pair=self.pair if pair is None else pair,
+            reference=self._reference if reference is None else reference,
+        )
 
     @property
     def log_determinant(self) -> float:

@@ -16,7 +16,7 @@ from permway.diagnosis.compare import assemble
 from permway.diagnosis.compete import Quick, Ring, stacked
 from permway.diagnosis.constancy import constancy
 from permway.diagnosis.decide import CLASS_DEVIANCE
-from permway.diagnosis.evidence import gather, predictable
+from permway.diagnosis.evidence import Evidence, gather, predictable
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.heldout import Rest, gains, log_e_value, parts
 from permway.diagnosis.hypothesis import Hypothesis, Situation
@@ -35,6 +35,9 @@ MOST_EFFECTS, SHOWN_INCONSTANT = 3, 8
 
 SECOND = 0.03
 """Share of the first effect's gain from which a further one counts as an effect."""
+
+NEARLY = 1.3
+"""Mean square of the deviations below which the recalibrated base is searched itself."""
 
 BLUNT = 0.2
 """Relative error of frequency responses with which the search then begins."""
@@ -65,15 +68,7 @@ def diagnose(
     kept, left_out = predictable(campaign)
     evidence = gather(campaign, kept, threads=threads)
     clock("recalibrate")
-    rough = recalibrate(evidence, learn=False, reweigh=True, progress=lambda _: clock.tick())
-    if rough.heat > UNFIT:
-        sharp = rough.evidence
-        searched = recalibrate(sharp.blunted(BLUNT), learn=False, reweigh=False, progress=lambda _: clock.tick())
-        base = recalibrate(sharp, start=searched.z, reweigh=False, progress=lambda _: clock.tick())
-    else:
-        searched = base = recalibrate(
-            rough.evidence, start=rough.z, reweigh=False, progress=lambda _: clock.tick()
-        )
+    base, searched = _bases(evidence, clock)
     clock("locate")
     found = _scanned(searched)
     mixed = mislabelled(base)
@@ -107,6 +102,24 @@ def diagnose(
         seconds=clock.seconds(),
         inconstant=inconstant,
     )
+
+
+def _bases(evidence: Evidence, clock: _Clock) -> tuple[Fit, Fit]:
+    """The recalibrated base, and the one that the search begins from.
+
+    Where learnt smooth errors do not explain what is left, responses are taken less
+    seriously, so that what is missing in one place bends the base less.
+    """
+    rough = recalibrate(evidence, learn=False, reweigh=True, progress=lambda _: clock.tick())
+    base = recalibrate(rough.evidence, start=rough.z, reweigh=False, progress=lambda _: clock.tick())
+    if base.heat < NEARLY:
+        return base, base
+    sharp = rough.evidence
+    searched = recalibrate(
+        sharp.blunted(BLUNT), start=rough.z, learn=False, reweigh=False, progress=lambda _: clock.tick()
+    )
+    other = recalibrate(sharp, start=searched.z, reweigh=False, progress=lambda _: clock.tick())
+    return min((base, other), key=lambda fit: fit.objective), searched
 
 
 def _left(accepted: Sequence[Finalist], clock: _Clock) -> tuple[Found, ...]:

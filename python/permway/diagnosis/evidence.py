@@ -177,20 +177,26 @@ class Evidence:
 
         What one place does to a few pairs then bends a base less that all other pairs hold.
         """
-        blocks = tuple(FrfBlock(b.dataset, floor=floor) if isinstance(b, FrfBlock) else b for b in self.blocks)
+        blocks = tuple(b.with_floor(floor) if isinstance(b, FrfBlock) else b for b in self.blocks)
         return replace(self, blocks=blocks)
 
     def reweighed(self, predicted: Sequence[xr.Dataset]) -> Evidence:
-        """The same with spectra weighed by what a fit predicts, and not by what the owner's values do."""
-        blocks = tuple(
-            SpectraBlock(b.dataset, p) if isinstance(b, SpectraBlock) else b
-            for b, p in zip(self.blocks, predicted, strict=True)
-        )
-        return replace(self, blocks=blocks)
+        """The same with spectra weighed by what a fit predicts, and not by what the owner's values do.
+
+        And with what it predicts of frequency responses where noise hides them.
+        """
+        blocks: list[Block] = []
+        for block, prediction in zip(self.blocks, predicted, strict=True):
+            if isinstance(block, SpectraBlock):
+                block = SpectraBlock(block.dataset, prediction)
+            elif isinstance(block, FrfBlock):
+                block = block.with_reference(prediction)
+            blocks.append(block)
+        return replace(self, blocks=tuple(blocks))
 
     def learnt_scatter(self, predicted: Sequence[xr.Dataset]) -> Evidence:
         """The same with the size of the errors of pairs, and the scatter of spectra, learnt."""
-        blocks = []
+        blocks: list[Block] = []
         for block, prediction in zip(self.blocks, predicted, strict=True):
             if isinstance(block, FrfBlock):
                 size = float(np.clip(block.learnt_pair(prediction), SMALLEST_SMOOTH, LARGEST_PAIR))
