@@ -75,8 +75,7 @@ def separation(item: Item, right: Fit, other: Fit) -> float:
         moved[i] += step
         columns.append((deviations(moved) - plain) / step)
     jacobian = np.column_stack(columns)
-    rival = evidence.predicted(item.planned(other.campaign))
-    whitener = evidence.whitener(rival.datasets)
+    whitener = evidence.whitener
     reduced, left = whitener.reduce(jacobian), whitener.reduce(plain)
     curvature = jacobian.T @ jacobian - reduced.T @ reduced
     slope = jacobian.T @ plain - reduced.T @ left

@@ -53,7 +53,8 @@ class TableBlock:
         ratio = np.log((self.measured / predicted[self.name].values).reshape(-1)) / self.sigma
         return np.concatenate([ratio.real, ratio.imag]) if self.complex else np.asarray(ratio)
 
-    def smooth(self, predicted: xr.Dataset) -> list[Smooth]:
+    @property
+    def smooth(self) -> list[Smooth]:
         """Of the rig, or of the method: a smooth error of the logarithm."""
         basis = self._basis.values(self.frequency) / self.sigma
         zero = np.zeros_like(basis)

@@ -90,7 +90,7 @@ class Ring:
         self.evidence: Evidence = fit.evidence
         solved = self.evidence.predicted(fit.campaign)
         self._solved: Solved = solved
-        self.whitener = self.evidence.whitener(solved.datasets)
+        self.whitener = self.evidence.whitener
         self.reduced = self.whitener.reduce(fit.jacobian)
         normal = (fit.jacobian.T @ fit.jacobian - self.reduced.T @ self.reduced) / fit.heat
         self.factor = linalg.cho_factor(normal + np.eye(fit.z.size))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -140,9 +141,10 @@ class Evidence:
         """Standardised deviations of all rows."""
         return np.concatenate([b.deviations(p) for b, p in zip(self.blocks, predicted, strict=True)])
 
-    def smooth(self, predicted: Sequence[xr.Dataset]) -> tuple[sparse.csr_array, list[str]]:
+    @cached_property
+    def smooth(self) -> tuple[sparse.csr_array, list[str]]:
         """Columns of all smooth errors, and the origin of each: one origin met by two records is one."""
-        parts = [block.smooth(p) for block, p in zip(self.blocks, predicted, strict=True)]
+        parts = [block.smooth for block in self.blocks]
         origins: list[str] = []
         first: dict[str, int] = {}
         for origin in (o for part in parts for smooth in part for o in smooth.origins):
@@ -159,9 +161,10 @@ class Evidence:
         ]
         return sparse.csr_array(sparse.vstack(rows, format="csr")), origins
 
-    def whitener(self, predicted: Sequence[xr.Dataset]) -> Whitener:
-        """What takes out the smooth errors about a prediction."""
-        return Whitener.of(*self.smooth(predicted), self.sizes)
+    @cached_property
+    def whitener(self) -> Whitener:
+        """What takes out the smooth errors."""
+        return Whitener.of(*self.smooth, self.sizes)
 
     @property
     def log_determinant(self) -> float:
@@ -256,7 +259,7 @@ def _blocked(campaign: Campaign, datasets: Sequence[Dataset], threads: int | Non
     predicted = predict(campaign, loaded, threads=threads)
     blocks = tuple(_block(dataset, prediction) for dataset, prediction in zip(loaded, predicted, strict=True))
     evidence = Evidence(campaign, blocks, {}, threads)
-    _, origins = evidence.smooth(predicted)
+    _, origins = evidence.smooth
     return evidence, list(dict.fromkeys(origins))
 
 
@@ -287,7 +290,7 @@ def _first_size(campaign: Campaign, origin: str) -> float:
 def _block(dataset: Dataset, predicted: xr.Dataset) -> Block:
     match dataset.record.statistic:
         case "frf":
-            return FrfBlock(dataset)
+            return FrfBlock(dataset, reference=predicted)
         case "csd" | "psd":
             return SpectraBlock(dataset, predicted)
         case _:

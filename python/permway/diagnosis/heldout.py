@@ -128,8 +128,8 @@ class Rest:
 
     def __init__(self, fit: Fit) -> None:
         self.fit = fit
-        columns, origins = fit.evidence.smooth(fit.evidence.predicted(fit.campaign).datasets)
-        self._whole = Whitener.of(columns, origins, fit.evidence.sizes)
+        columns, origins = fit.evidence.smooth
+        self._whole = fit.evidence.whitener
         self._columns, self._origins = columns, origins
         # Speeds and noise floors of what is left out are as all records have them, before and after.
         known = fit.evidence.campaign.parameters

@@ -109,7 +109,7 @@ def recalibrate(
             # Where the step did what the slopes foretold, they do for the next.
             if not FORETOLD * foretold < gained < foretold / FORETOLD:
                 tangent, exact = problem.tangent(state), True
-        elif not fresh:
+        elif moved is None and not fresh:
             tangent, exact = problem.tangent(state), True
         elif (learn and rounds < MOST_LEARNT) or reweigh:
             if reweigh:
@@ -186,7 +186,7 @@ def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
     """
     before = evidence.sizes
     for _ in range(MAXIMISATIONS):
-        deviations, whitener = evidence.deviations(solved.datasets), evidence.whitener(solved.datasets)
+        deviations, whitener = evidence.deviations(solved.datasets), evidence.whitener
         coefficients, variances = whitener.explained(deviations)
         origins = np.array(whitener.origins)
         sizes, change = dict(evidence.sizes), 0.0

@@ -95,9 +95,7 @@ class Problem:
     def tangent(self, state: State, slopes: Reals | None = None) -> Tangent:
         """About a state, by finite differences unless slopes are given."""
         slopes = self.jacobian(state) if slopes is None else slopes
-        return tangent_of(
-            state, self.evidence.whitener(state.solved.datasets), slopes, self.evidence.log_determinant
-        )
+        return tangent_of(state, self.evidence.whitener, slopes, self.evidence.log_determinant)
 
     def jacobian(self, state: State) -> Reals:
         """Derivative of the deviations by z: forward differences, solves spared where derivatives do."""

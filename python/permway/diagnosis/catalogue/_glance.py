@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from scipy import linalg
 
-from permway.diagnosis.evidence import Whitener
 from permway.diagnosis.fit import Fit
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
@@ -23,7 +22,7 @@ class Glance:
     def __init__(self, fit: Fit) -> None:
         self._fit = fit
         self._solved = fit.evidence.predicted(fit.campaign)
-        self._whitener = Whitener.of(*fit.evidence.smooth(self._solved.datasets), fit.evidence.sizes)
+        self._whitener = fit.evidence.whitener
         self._reduced = self._whitener.reduce(fit.jacobian)
         normal = (fit.jacobian.T @ fit.jacobian - self._reduced.T @ self._reduced) / fit.heat
         self._factor = linalg.cho_factor(normal + np.eye(fit.z.size))
