@@ -10,7 +10,8 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
-from permway.diagnosis.blocks import Block, FrfBlock
+from permway.diagnosis.blocks import Block
+from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.evidence import Evidence, Solved, gather, predictable
 from permway.diagnosis.fit import Fit, Free, free_parameters
 from permway.diagnosis.recalibrate import recalibrate

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from permway.diagnosis.blocks import FrfBlock
+from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.compete import Ring
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from permway.diagnosis import decide, grammar
 from permway.diagnosis.advise import advise
-from permway.diagnosis.blocks import FrfBlock
+from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.compare import assemble
 from permway.diagnosis.compete import Quick, Ring, stacked

@@ -12,7 +12,9 @@ import xarray as xr
 from scipy import linalg, sparse
 
 from permway.arrays import Reals
-from permway.diagnosis.blocks import Block, FrfBlock, Rows, Smooth, SpectraBlock
+from permway.diagnosis.blocks import Block, Rows, Smooth
+from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign

@@ -14,7 +14,8 @@ import xarray as xr
 from scipy import linalg, sparse
 
 from permway.arrays import Reals
-from permway.diagnosis.blocks import Block, FrfBlock
+from permway.diagnosis.blocks import Block
+from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.evidence import Evidence, Whitener
 from permway.diagnosis.fit import Fit
 from permway.errors import InputError, SolveError

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from permway.arrays import Reals
-from permway.diagnosis.blocks import FrfBlock
+from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.fit import Fit
 
 BETTER = 0.25

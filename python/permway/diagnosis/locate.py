@@ -16,7 +16,8 @@ import xarray as xr
 from scipy import linalg
 
 from permway.arrays import Complexes, Reals
-from permway.diagnosis.blocks import Basis, FrfBlock
+from permway.diagnosis.blocks import Basis
+from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.fit import Fit
 from permway.errors import InputError
 from permway.recordings.campaign_factors import campaign_under

@@ -8,7 +8,8 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
-from permway.diagnosis.blocks import Block, FrfBlock
+from permway.diagnosis.blocks import Block
+from permway.diagnosis.blocks_frf import FrfBlock
 
 PARTS = ("level", "phase")
 LAGS = 12
@@ -65,7 +66,7 @@ def _frf(
     half = block.measured.size
     found = []
     for model, values in deviations.items():
-        turn = np.where(block.weight > 0.0, np.exp(-1j * np.angle(predicted[model]["frf"].values)), np.nan)
+        turn = np.where(block.weight > 0.0, block.along(predicted[model]).conj(), np.nan)
         turned = (values[:half] + 1j * values[half:]).reshape(shape) * turn
         found.append(np.stack([turned.real, turned.imag]).reshape(2, -1, shape[-1]))
     first = np.arange(0, half, shape[-1])

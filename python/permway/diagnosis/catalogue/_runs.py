@@ -11,7 +11,7 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from permway.arrays import Reals
-from permway.diagnosis.blocks import SpectraBlock
+from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Situation
 from permway.model.irregularity_spectra import RangeWarning

@@ -7,7 +7,7 @@ from importlib.metadata import version
 from typing import Any
 
 from permway import _core
-from permway.diagnosis.blocks import FrfBlock
+from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.compare import KIND
 from permway.diagnosis.result import Diagnosis
 from permway.report.compare.tables import decibels, smooth_rows

@@ -1,0 +1,199 @@
+"""Frequency responses held against a prediction."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+from scipy import sparse
+
+from permway.arrays import Complexes, Reals
+from permway.diagnosis.blocks import SURE, Basis, Rows, Smooth
+from permway.recordings.campaign_load import Dataset
+
+FLOOR = 0.003
+"""Relative error that no record is free of: rounding, discretisation, the last decimals (0.026 dB)."""
+
+
+class FrfBlock:
+    """Frequency responses: complex deviations by the noise of each line, from coherence, and a floor.
+
+    Errors of chains multiply: a deviation is the logarithm of measured over predicted, in units of the measured
+    response. Where noise is large the logarithm is biased, and the difference stands for it.
+
+    Beside the noise, which is new on every line, each pair of sensor and point has a smooth error of its own: of
+    the model's idealisation, of where exactly the hammer fell. It is integrated out pair by pair, once, with the
+    measured response for the true one.
+
+    Parameters
+    ----------
+    dataset : Dataset
+    floor : float
+        Relative error that adds to the noise of each line.
+    pair : float
+        Size of a pair's smooth error, neper and rad.
+    reference : Dataset of xarray
+        A prediction, which stands for what is there where noise hides it.
+    """
+
+    KNOTS_PER_OCTAVE = 3.0
+
+    def __init__(
+        self,
+        dataset: Dataset,
+        *,
+        floor: float = FLOOR,
+        pair: float = FLOOR,
+        reference: xr.Dataset,
+    ) -> None:
+        self.dataset, self.floor, self.pair, self._reference = dataset, floor, pair, reference
+        data = dataset.data
+        self.measured: Complexes = data["frf"].values
+        self.frequency: Reals = data["frequency"].values
+        size = np.abs(self.measured)
+        # The coherence comes from the same blows: its scatter widens what it says of them.
+        averages = float(data.attrs.get("averages", np.inf))
+        widened = averages / (averages - 2.0) if np.isfinite(averages) and averages > 2.5 else 1.0
+        noise = _noise_variance(widened * data["log_variance"].values * size**2, reach=2)
+        self.sigma = np.sqrt(noise + (floor * size) ** 2)
+        used = np.isfinite(self.measured) & np.isfinite(self.sigma) & (self.sigma > 0.0)
+        # What is not used weighs nothing, and stays in its place.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            self.weight = np.where(used, 1.0 / self.sigma, 0.0)
+            decibels = np.where(used, 8.686 * self.sigma / size, np.inf)
+        self._measured = np.where(used, self.measured, 0.0)
+        own = np.nan_to_num(np.sqrt(data["log_variance"].values), nan=np.inf)
+        expected = np.where(used, reference["frf"].values, 0.0)
+        # Noise alone looks large, and sure of itself, where it happens to be both.
+        seen = np.minimum(size, np.abs(expected))
+        self._logarithmic = used & (np.maximum(own * size, self.sigma) < SURE * seen)
+        # Of what is mostly noise, smooth errors act on what is there.
+        self._there: Complexes = np.where(self._logarithmic, self._measured, expected)
+        self._basis = Basis(float(self.frequency[0]), float(self.frequency[-1]))
+        fine = Basis(float(self.frequency[0]), float(self.frequency[-1]), self.KNOTS_PER_OCTAVE)
+        errors = (self._there * self.weight)[..., None] * fine.values(self.frequency)
+        self._directions, singular, _ = np.linalg.svd(errors, full_matrices=False)
+        self._across = np.ascontiguousarray(self._directions.conj().swapaxes(-1, -2))
+        self._singular = singular
+        self._last: tuple[xr.Dataset, Reals] | None = None
+        self._shrink = 1.0 - 1.0 / np.sqrt(1.0 + (pair * singular) ** 2)
+        names = [data["sensor"].values.astype(str), data["force"].values.astype(str)]
+        sensor, force, frequency = (
+            np.broadcast_to(v, self.measured.shape).reshape(-1)
+            for v in (names[0][:, None, None], names[1][None, :, None], self.frequency)
+        )
+        label = np.char.add(np.char.add(sensor, " < "), force)
+        columns = (label, sensor, force, frequency, decibels.reshape(-1))
+        self.rows = Rows(*(np.tile(v, 2) for v in columns))
+
+    def with_pair(self, pair: float) -> FrfBlock:
+        """The same with another size of the pairs' errors."""
+        return self._other(pair=pair)
+
+    def with_floor(self, floor: float) -> FrfBlock:
+        """The same with another relative error."""
+        return self._other(floor=floor)
+
+    def with_reference(self, reference: xr.Dataset) -> FrfBlock:
+        """The same with another prediction where noise hides what is there."""
+        return self._other(reference=reference)
+
+    def _other(
+        self, *, floor: float | None = None, pair: float | None = None, reference: xr.Dataset | None = None
+    ) -> FrfBlock:
+        return FrfBlock(
+            self.dataset,
+            floor=self.floor if floor is None else floor,
+            pair=self.pair if pair is None else pair,
+            reference=self._reference if reference is None else reference,
+        )
+
+    @property
+    def log_determinant(self) -> float:
+        """Of the covariance of the pairs' errors and the noise, by that of the noise."""
+        return float(2.0 * np.log1p((self.pair * self._singular) ** 2).sum())
+
+    def white(self, values: Complexes) -> Complexes:
+        """Takes out of weighted values (sensor, force, frequency) what the pairs' smooth errors would explain."""
+        within = self._across @ values[..., None]
+        return np.asarray(values - (self._directions @ (self._shrink[..., None] * within))[..., 0])
+
+    def deviations(self, predicted: xr.Dataset) -> Reals:
+        """Real parts, then imaginary parts."""
+        if self._last is None or self._last[0] is not predicted:
+            d = self.white(self.off(predicted) * self.weight).reshape(-1)
+            self._last = predicted, np.concatenate([d.real, d.imag])
+        return self._last[1]
+
+    def off(self, predicted: xr.Dataset) -> Complexes:
+        """Measured less predicted, in the response's unit, as errors that multiply have it."""
+        model = predicted["frf"].values
+        with np.errstate(divide="ignore", invalid="ignore"):
+            multiplied = self._measured * np.log(self._measured / model)
+        return np.asarray(np.where(self._logarithmic, multiplied, self._measured - model))
+
+    def along(self, predicted: xr.Dataset) -> Complexes:
+        """Direction in which a gain moves a deviation; a phase moves it across."""
+        return np.asarray(
+            np.exp(1j * np.angle(np.where(self._logarithmic, self._measured, predicted["frf"].values)))
+        )
+
+    def slope(self, predicted: xr.Dataset) -> Complexes:
+        """By what a change of the predicted response changes it, reversed: 1 where they agree."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(np.where(self._logarithmic, self._measured / predicted["frf"].values, 1.0))
+
+    def learnt_pair(self, predicted: xr.Dataset) -> float:
+        """The size of the pairs' errors after one step of expectation maximisation."""
+        d = self.off(predicted) * self.weight
+        within = (self._across @ d[..., None])[..., 0]
+        variance = (self.pair * self._singular) ** 2
+        share = variance / (1.0 + variance)
+        # Coefficients along the directions, in units of their size: posterior mean and variance.
+        mean = share * within / np.maximum(self.pair * self._singular, 1e-300)
+        power = 0.5 * np.abs(mean) ** 2 + 1.0 / (1.0 + variance)
+        return float(self.pair * np.sqrt(power[variance > 0.0].mean()))
+
+    @cached_property
+    def smooth(self) -> list[Smooth]:
+        """Of each sensor's chain and of the hammer's at each point: log gain and phase."""
+        basis = self._basis.values(self.frequency)
+        sensors, points = (self.dataset.data[kind].values.astype(str) for kind in ("sensor", "force"))
+        spread = self._there * self.weight
+        white = np.stack([self.white(spread * column) for column in basis.T], axis=-1)
+        # A smooth gain moves a response along itself, a smooth phase across.
+        gain = np.concatenate([white.real, white.imag]).reshape(-1, basis.shape[1])
+        phase = np.concatenate([-white.imag, white.real]).reshape(-1, basis.shape[1])
+        # Measured is what is there times the error: deviations grow by it.
+        values = np.hstack([gain, phase])
+        width, rows = values.shape[1], np.arange(values.shape[0])
+        pair = (rows // self.frequency.size) % (sensors.size * points.size)
+        first = np.stack([pair // points.size, sensors.size + pair % points.size], axis=1) * width
+        where = (first[:, :, None] + np.arange(width)).reshape(-1)
+        whole = sparse.csr_array(
+            (np.hstack([values, values]).reshape(-1), where, np.arange(0, where.size + 1, 2 * width)),
+            shape=(rows.size, width * (sensors.size + points.size)),
+        )
+        origins = [f"sensor {name}" for name in sensors] + [f"force {name}" for name in points]
+        return [Smooth(tuple(np.repeat(origins, width)), whole)]
+
+
+def _noise_variance(raw: Reals, reach: int = 4) -> Reals:
+    """Smoothed over neighbouring lines, so that a line's weight does not follow its own error.
+
+    Parameters
+    ----------
+    raw : ndarray, shape (..., F)
+        Variance of real and of imaginary part, line by line; NaN where it is not known.
+    """
+    kernel = np.ones(2 * reach + 1)
+
+    def line(values: Reals) -> Reals:
+        there = np.isfinite(values)
+        total = np.convolve(np.where(there, values, 0.0), kernel, "same")
+        count = np.convolve(there.astype(float), kernel, "same")
+        with np.errstate(invalid="ignore"):
+            return np.asarray(np.where(there, total / count, np.nan))
+
+    return np.apply_along_axis(line, -1, raw)

@@ -1,0 +1,180 @@
+"""Cross spectra of a run held against a prediction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+from scipy import sparse
+
+from permway.arrays import Complexes, Reals
+from permway.diagnosis.blocks import SURE, Basis, Rows, Smooth
+from permway.recordings.campaign_load import Dataset
+
+LEAST_LINES = 20
+"""Of a part, from which its scatter is learnt."""
+
+
+class SpectraBlock:
+    """Cross spectra of a run: power of one channel, and every other channel by what it shares with another.
+
+    The complex Wishart density of all channels falls into factors (Goodman 1963): one channel's power is Gamma,
+    the transfer from it to a second is normal given that power, and what remains of the second's power is Gamma
+    again. Each channel hangs on the one that it is most coherent with: a tree, which leaves out what a channel
+    shares with more than one other.
+
+    Parameters
+    ----------
+    dataset : Dataset
+    expected : Dataset of xarray
+        The prediction by which the tree is chosen and transfers are weighed.
+    floor : float
+        Relative error of transfers that adds to their scatter.
+    scatter : sequence of float, optional
+        Of each part, by how much its lines scatter more than so many averages of a stationary record would: the
+        level of a track changes from place to place.
+    """
+
+    LEAST_COHERENCE = 0.1
+    MOST_COHERENCE = 0.98
+
+    def __init__(
+        self, dataset: Dataset, expected: xr.Dataset, *, floor: float = 0.01, scatter: Sequence[float] = ()
+    ) -> None:
+        self.dataset, self._expected, self._floor = dataset, expected, floor
+        data = dataset.data
+        # Neighbouring lines under Hann's window say half the same.
+        self._lines = np.arange(0, data.sizes["frequency"], 2)
+        self.frequency: Reals = data["frequency"].values[self._lines]
+        self.measured: Complexes = data["csd"].values[:, :, self._lines]
+        self.averages = float(data.attrs["averages"])
+        names = data["channel"].values.astype(str)
+        coherence = _coherence(expected["csd"].values[:, :, self._lines])
+        self.root, self.tree = _tree(np.nanmean(coherence, axis=-1))
+        labels, frequency, scale, kind = [], [], [], []
+        self._parts: list[tuple[str, int, int, np.ndarray, Reals]] = []
+        self.log_determinant = 0.0
+        single = 1.0 / np.sqrt(self.averages)
+        everywhere = np.arange(self.frequency.size)
+
+        def add(what: str, channel: int, other: int, at: np.ndarray, sigma: Reals) -> None:
+            copies = 2 if what == "transfer" else 1
+            more = scatter[len(self._parts)] if scatter else 1.0
+            sigma = more * sigma
+            self._parts.append((what, channel, other, at, sigma))
+            self.log_determinant += 2.0 * copies * at.size * float(np.log(more))
+            text = names[channel] if what == "power" else f"{names[channel]} {what} {names[other]}"
+            for _ in range(copies):
+                labels.extend([text] * at.size)
+                kind.extend([names[channel]] * at.size)
+                frequency.append(self.frequency[at])
+                scale.append((8.686 if what == "transfer" else 4.343) * sigma)
+
+        add("power", self.root, self.root, everywhere, np.full(everywhere.size, single))
+        for child, parent in self.tree:
+            g2 = np.clip(coherence[child, parent], 1e-6, 1.0 - 1e-9)
+            at = np.flatnonzero(g2 >= self.LEAST_COHERENCE)
+            relative = np.sqrt((1.0 - g2[at]) / (2.0 * self.averages * g2[at]) + floor**2)
+            add("transfer", child, parent, at, relative)
+            at = np.flatnonzero(g2 <= self.MOST_COHERENCE)
+            add("rest", child, parent, at, np.full(at.size, single))
+        text = np.array(labels, dtype=str)
+        self.rows = Rows(
+            text,
+            np.array(kind, dtype=str),
+            np.full(text.size, ""),
+            np.concatenate(frequency),
+            np.concatenate(scale),
+        )
+        self._basis = Basis(float(self.frequency[0]), float(self.frequency[-1]))
+
+    def deviations(self, predicted: xr.Dataset) -> Reals:
+        """Part by part, transfers as real then imaginary."""
+        model = predicted["csd"].values[:, :, self._lines]
+        found = []
+        for what, c, o, at, sigma in self._parts:
+            if what == "power":
+                power = (self.measured[c, c, at] / model[c, c, at]).real
+                found.append(np.log(np.maximum(power, 1e-12)) / sigma)
+            elif what == "transfer":
+                measured = self.measured[c, o, at] / self.measured[o, o, at].real
+                expected = model[c, o, at] / model[o, o, at].real
+                ratio = measured / expected
+                # Gains multiply; where noise is large, their logarithm is biased, and smooth errors are nothing.
+                off = np.where(sigma < SURE, np.log(ratio), ratio - 1.0)
+                found.extend([off.real / sigma, off.imag / sigma])
+            else:
+                rest = _remainder(self.measured, c, o, at) / _remainder(model, c, o, at)
+                found.append(np.log(np.maximum(rest, 1e-12)) / sigma)
+        return np.concatenate(found)
+
+    def scattered(self, predicted: xr.Dataset) -> SpectraBlock:
+        """The same with the scatter of each part learnt from how its lines differ from their neighbours."""
+        plain = SpectraBlock(self.dataset, self._expected, floor=self._floor)
+        deviations, scatter, start = plain.deviations(predicted), [], 0
+        for what, _, _, at, _ in plain._parts:
+            size = (2 if what == "transfer" else 1) * at.size
+            # The second half of a transfer is its imaginary part: one difference of all is none of neighbours.
+            steps = np.diff(deviations[start : start + size])
+            typical = 1.4826 / np.sqrt(2.0) * float(np.median(np.abs(steps))) if size > LEAST_LINES else 1.0
+            scatter.append(max(1.0, typical))
+            start += size
+        return SpectraBlock(self.dataset, self._expected, floor=self._floor, scatter=scatter)
+
+    @cached_property
+    def smooth(self) -> list[Smooth]:
+        """Of each channel's chain, log gain and phase, and of the irregularity's level."""
+        names = self.dataset.data["channel"].values.astype(str)
+        speed = self.dataset.condition.speed_m_per_s
+        found = []
+        for channel, name in enumerate(names):
+            gains, phases = [], []
+            for what, c, o, at, sigma in self._parts:
+                basis = self._basis.values(self.frequency[at]) / sigma[:, None]
+                sign = float(c == channel) - float(o == channel and what == "transfer")
+                zero = np.zeros_like(basis)
+                if what == "transfer":
+                    gains.extend([-sign * basis, zero])
+                    phases.extend([zero, -sign * basis])
+                else:
+                    gains.append(-2.0 * float(c == channel) * basis)
+                    phases.append(zero)
+            columns = sparse.csr_array(np.hstack([np.vstack(gains), np.vstack(phases)]))
+            found.append(Smooth((f"channel {name}",) * columns.shape[1], columns))
+        if speed is not None:
+            # The same track under every speed: knots over wavenumber, two per octave.
+            wavenumber = IRREGULARITY_KNOTS
+            level = []
+            for what, _, _, at, sigma in self._parts:
+                basis = wavenumber.values(self.frequency[at] / speed) / sigma[:, None]
+                level.extend([-basis] if what != "transfer" else [np.zeros_like(basis)] * 2)
+            found.append(Smooth(("irregularity",) * wavenumber.knots.size, sparse.csr_array(np.vstack(level))))
+        return found
+
+
+IRREGULARITY_KNOTS = Basis(0.005, 20.0, per_octave=1.0)
+"""Over cycles per metre."""
+
+
+def _coherence(csd: Complexes) -> Reals:
+    power = np.einsum("ccf->cf", csd).real
+    return np.asarray(np.abs(csd) ** 2 / (power[:, None] * power[None, :]))
+
+
+def _remainder(csd: Complexes, c: int, o: int, at: np.ndarray) -> Reals:
+    """Power of c that o does not share, and a thousandth of all of it: no record is clean below."""
+    own = csd[c, c, at].real
+    return np.asarray(own - np.abs(csd[c, o, at]) ** 2 / csd[o, o, at].real + 1e-3 * own)
+
+
+def _tree(coherence: Reals) -> tuple[int, list[tuple[int, int]]]:
+    """A root and (child, parent) pairs, most coherent first (Prim); the root is the first channel."""
+    inside, tree = [0], []
+    while len(inside) < coherence.shape[0]:
+        outside = [c for c in range(coherence.shape[0]) if c not in inside]
+        child, parent = max(((c, p) for c in outside for p in inside), key=lambda pair: coherence[pair])
+        tree.append((child, parent))
+        inside.append(child)
+    return 0, tree
