@@ -81,8 +81,7 @@ class Block(Protocol):
 class Basis:
     """Cubic splines over the logarithm of frequency: a value at each knot, smooth between (Keys 1981).
 
-    A smooth error that wanders over an octave is followed to half a percent of its size by two knots per octave;
-    by straight lines to five.
+    Two knots per octave follow a smooth error that wanders over an octave to one percent of its size.
 
     Parameters
     ----------

@@ -1,0 +1,104 @@
+"""Predictions by exact derivatives against predictions by solves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from effects.trains import campaign_in, drawn
+from permway.diagnosis.blocks import Basis
+from permway.diagnosis.evidence import Evidence, gather
+from permway.diagnosis.fit import free_parameters
+from permway.diagnosis.nearby import Nearby
+from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.tangent import STEP, Problem
+from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_values import ParameterSet
+from permway.recordings.parameters import Parameter
+from simulated import simulate
+
+
+def _problem(evidence: Evidence) -> Problem:
+    campaign = evidence.campaign
+    return Problem(evidence, campaign.with_values, free_parameters(campaign))
+
+
+@pytest.mark.parametrize("kind", ["hammer", "train"])
+def test_slopes_are_those_of_solves(tmp_path: Path, kind: str) -> None:
+    """Every parameter of laws and bodies, at random values: to what a forward difference leaves."""
+    if kind == "hammer":
+        campaign = simulate(tmp_path / "c", 5).campaign
+        evidence = gather(campaign, threads=1)
+    else:
+        campaign = campaign_in(tmp_path)
+        evidence = gather(campaign, drawn(campaign, 3), threads=1)
+    problem = _problem(evidence)
+    z = np.random.default_rng(8).uniform(-0.5, 0.5, len(problem.free))
+    state = problem.at(z)
+    assert state is not None
+    nearby, spared = Nearby(evidence, state.solved), 0
+    for index, free in enumerate(problem.free):
+        moved = z.copy()
+        moved[index] += STEP
+        values = {f.name: f.value(float(v)) for f, v in zip(problem.free, moved, strict=True)}
+        found = nearby.predicted(campaign.with_values(values))
+        if found is None:
+            continue
+        spared += 1
+        slope = (evidence.deviations(found.datasets) - state.deviations) / STEP
+        solved = (problem.deviations(moved)[0] - state.deviations) / STEP
+        assert np.linalg.norm(slope - solved) < 5e-3 * np.linalg.norm(solved), free.name
+    assert spared >= len(problem.free) // 2
+
+
+def test_a_line_of_another_shape_is_solved(tmp_path: Path) -> None:
+    campaign: Campaign = simulate(tmp_path / "c", 1).campaign
+    evidence = gather(campaign, threads=1)
+    solved = evidence.predicted(campaign)
+    model = campaign.model
+    joints = (*model.line.joints, model.line.joints[-1].model_copy(update={"scale": 0.5}))
+    other = model.model_copy(update={"line": model.line.model_copy(update={"joints": joints})})
+    assert Nearby(evidence, solved).predicted(campaign.with_model(other)) is None
+
+
+@pytest.mark.parametrize("per_octave", [1.0, 2.0, 3.0])
+def test_splines_hold_straight_lines(per_octave: float) -> None:
+    basis = Basis(2.0, 400.0, per_octave)
+    frequency = np.geomspace(2.0, 400.0, 301)
+    values = basis.values(frequency)
+    np.testing.assert_allclose(values.sum(axis=1), 1.0, atol=1e-12)
+    np.testing.assert_allclose(values @ basis.knots, np.log(frequency), atol=1e-12)
+
+
+def test_splines_follow_what_wanders_over_an_octave() -> None:
+    """One percent of its size, two knots an octave: what the docstring says."""
+    frequency = np.geomspace(2.0, 400.0, 400)
+    x = np.log(frequency) / np.log(2.0)
+    covariance = np.exp(-0.5 * (x[:, None] - x[None, :]) ** 2) + 1e-10 * np.eye(x.size)
+    drawn_errors = np.linalg.cholesky(covariance) @ np.random.default_rng(4).standard_normal((x.size, 40))
+    values = Basis(2.0, 400.0).values(frequency)
+    left = drawn_errors - values @ np.linalg.lstsq(values, drawn_errors, rcond=None)[0]
+    assert left.std() < 0.01
+
+
+def test_a_speed_noted_wrongly_is_found(tmp_path: Path) -> None:
+    """0.4 % off, with phases between wheelsets turned by more than a quarter: slopes alone would not get there."""
+    owner = campaign_in(tmp_path)
+    speed = Parameter(
+        name="speed.fast",
+        unit="m/s",
+        paths=["campaign.conditions.fast.speed_m_per_s"],
+        acts="scales",
+        tolerance_2sigma=0.005,
+    )
+    said = owner.said.model_copy(update={"parameters": (*owner.said.parameters, speed)})
+    parameters = ParameterSet(said.parameters, owner.model, {}, said, owner.folder)
+    owner = Campaign(said, owner.model, owner.folder, parameters)
+    noted = owner.condition("fast").speed_m_per_s
+    assert noted is not None
+    evidence = gather(owner, drawn(owner.with_values({"speed.fast": 0.996 * noted}), 6), threads=1)
+    fit = recalibrate(evidence, learn=False)
+    low, high = fit.intervals()["speed.fast"]
+    assert fit.values()["speed.fast"] == pytest.approx(0.996 * noted, rel=5e-4)
+    assert 0.5 * (high - low) < 5e-4 * noted
