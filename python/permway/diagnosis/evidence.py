@@ -143,7 +143,7 @@ class Evidence:
         """Standardised deviations of all rows."""
         return np.concatenate([b.deviations(p) for b, p in zip(self.blocks, predicted, strict=True)])
 
-    @cached_property
+    @property
     def smooth(self) -> tuple[sparse.csr_array, list[str]]:
         """Columns of all smooth errors, and the origin of each: one origin met by two records is one."""
         parts = [block.smooth for block in self.blocks]
