@@ -13,7 +13,7 @@ import typer
 
 from permway.cli_challenge import challenges
 from permway.cli_import import imports
-from permway.cli_output import Json, Threads, progress_bar, say, stage_bar, tell
+from permway.cli_output import Json, Outside, Threads, progress_bar, say, stage_bar, tell
 from permway.errors import InputError, PermwayError
 
 
@@ -113,6 +113,7 @@ def compare(
         typer.Option("--output", "-o", help="Folder for page, numbers, pictures; by default beside the campaign."),
     ] = None,
     raw_only: Annotated[bool, typer.Option("--raw-only", help="With the owner's values only.")] = False,
+    allow_outside: Outside = False,
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
@@ -122,7 +123,7 @@ def compare(
     from permway.recordings.campaign import read_campaign
     from permway.report.compare import write_comparison
 
-    described = read_campaign(campaign)
+    described = read_campaign(campaign, allow_outside=allow_outside)
     folder = prepare_folder(output or campaign.parent / "comparison")
     with progress_bar("comparing", as_json) as progress:
         result = run(described, raw_only=raw_only, threads=threads, progress=progress)
@@ -140,6 +141,7 @@ def diagnose(
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Of simulated campaigns with nothing missing.")] = 0,
     no_report: Annotated[bool, typer.Option("--no-report", help="Without report.html.")] = False,
+    allow_outside: Outside = False,
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
@@ -149,7 +151,7 @@ def diagnose(
     from permway.recordings.campaign import read_campaign
     from permway.report.diagnosis import write_diagnosis
 
-    described = read_campaign(campaign)
+    described = read_campaign(campaign, allow_outside=allow_outside)
     folder = prepare_folder(output or campaign.parent / "diagnosis")
     with stage_bar("diagnosing", as_json) as progress:
         result = run(described, seed=seed, threads=threads, progress=progress)
@@ -159,6 +161,7 @@ def diagnose(
 @app.command()
 def separability(
     campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
+    allow_outside: Outside = False,
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
@@ -166,7 +169,7 @@ def separability(
     from permway.diagnosis.separability import separability as run
     from permway.recordings.campaign import read_campaign
 
-    described = read_campaign(campaign)
+    described = read_campaign(campaign, allow_outside=allow_outside)
     with stage_bar("separability", as_json) as progress:
         result = run(described, threads=threads, progress=progress)
     say(result.summary(), as_json)

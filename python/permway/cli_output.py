@@ -24,6 +24,10 @@ _stderr = Console(stderr=True, highlight=False)
 
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, for machines.")]
 Threads = Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; by default all processors.")]
+Outside = Annotated[
+    bool,
+    typer.Option("--allow-outside", help="Read files outside the campaign's folder, if the campaign names such."),
+]
 Folder = Annotated[Path, typer.Argument(help="Folder to read.")]
 
 
