@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from permway.cli_output import Folder, Json, progress_bar, say
+from permway.cli_output import Folder, Json, examples, progress_bar, say
 from permway.errors import InputError
 
 challenges = typer.Typer(
@@ -17,7 +17,7 @@ challenges = typer.Typer(
 )
 
 
-@challenges.command("make")
+@challenges.command("make", epilog=examples("permway challenge make -o cases --tier single --cases 20"))
 def challenge_make(
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder for campaigns and truths.")],
     seed: Annotated[int, typer.Option(min=0, help="Of the first campaign.")] = 1,
@@ -38,7 +38,7 @@ def challenge_make(
     say({"folder": str(output), "campaigns": cases}, as_json)
 
 
-@challenges.command("run")
+@challenges.command("run", epilog=examples("permway challenge run cases --workers 2"))
 def challenge_run(
     folder: Folder,
     workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
@@ -53,7 +53,7 @@ def challenge_run(
     say(dict(result), as_json)
 
 
-@challenges.command("score")
+@challenges.command("score", epilog=examples("permway challenge score cases --json"))
 def challenge_score(folder: Folder, as_json: Json = False) -> None:
     """Hold the verdicts against the truths."""
     from permway.challenge.score import score, summary

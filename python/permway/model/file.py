@@ -163,6 +163,11 @@ class Model(FrozenModel):
             raise fault(what, "temperature_C", value=self.temperature_C)
         return self
 
+    def _repr_html_(self) -> str:
+        from permway.report.notebook import model_html
+
+        return model_html(self)
+
     def check(self) -> None:
         """Check what the parts say of each other: names, places, and the laws at the ends of the band.
 

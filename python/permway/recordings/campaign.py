@@ -80,6 +80,11 @@ class Campaign:
     folder: Path
     parameters: ParameterSet = field(repr=False, compare=False)
 
+    def _repr_html_(self) -> str:
+        from permway.report.notebook import campaign_html
+
+        return campaign_html(self)
+
     def sensor(self, name: str) -> Sensor:
         """The sensor of that name."""
         return self.said.sensors[_named(self.said.sensors, name, "sensors")]
