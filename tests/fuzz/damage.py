@@ -55,6 +55,9 @@ TEXTS = [
 ]
 
 
+KINDS = [*["value"] * 3, *["scale"] * 4, "drop", "double", "move", "rename", "nest"]
+
+
 def values() -> st.SearchStrategy[Any]:
     """What may stand anywhere in a table, right or wrong."""
     plain = st.one_of(
@@ -101,15 +104,14 @@ def damaged_table(draw: st.DrawFn, tables: list[dict[str, Any]]) -> dict[str, An
             break
         path = draw(st.sampled_from(known))
         holder, key = at(table, path[:-1]), path[-1]
-        kind = draw(
-            st.sampled_from(["value", "value", "value", "scale", "drop", "double", "move", "rename", "nest"])
-        )
+        kind = draw(st.sampled_from(KINDS))
         if kind == "value":
             holder[key] = draw(values())
         elif kind == "scale":
             number = holder[key]
             if isinstance(number, int | float) and not isinstance(number, bool) and abs(number) < 1e300:
-                holder[key] = type(number)(number * draw(st.sampled_from([-1, 0, 2, 10, 1000, 10**6])))
+                factor = draw(st.sampled_from([-1, 0, 2, 10, 1000, 10**6]) | st.floats(0.2, 5.0))
+                holder[key] = type(number)(number * factor)
         elif kind == "drop":
             del holder[key]
         elif kind == "double" and isinstance(holder, list):

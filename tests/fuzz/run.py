@@ -36,7 +36,7 @@ PATIENCE_S = 60.0
 """Of clock, for machines are busy: a worker that is silent for so long hangs."""
 
 KEPT_OF_A_KIND = 3
-BATCH = 500
+BATCH = 5000
 
 
 def processor_s() -> float:
