@@ -11,7 +11,7 @@ from permway.cli_output import Folder, Json, examples, progress_bar, say
 from permway.errors import InputError
 
 challenges = typer.Typer(
-    help="Concealed effects: make campaigns, diagnose them, score the verdicts.",
+    help="Concealed effects: make, diagnose, score.",
     no_args_is_help=True,
     rich_markup_mode=None,
 )
@@ -25,7 +25,10 @@ def challenge_make(
     tier: Annotated[str, typer.Option(help="null, single, twin, multiple, outside or nonlinear.")] = "single",
     as_json: Json = False,
 ) -> None:
-    """Campaigns by finite elements that share no code with the solver, each with something concealed."""
+    """Campaigns with something concealed in each.
+
+    Made by finite elements that share no code with the solver. The truths lie in a folder of their own.
+    """
     from permway.challenge.case import TIERS
     from permway.challenge.make import make
 

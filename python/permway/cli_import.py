@@ -32,7 +32,7 @@ def import_rubber_rig(
     law: Annotated[str, typer.Option(help="Form of the law.")] = "fractional_zener",
     as_json: Json = False,
 ) -> None:
-    """DMA tables and shaker records of rubbers: a campaign for each."""
+    """DMA tables and shaker records, a campaign for each rubber."""
     from permway.recordings.importers.rubber_rig import import_rubber_rig as run
 
     say({"campaigns": [campaign.summary() for campaign in run(folder, output, copy=copy, law=law)]}, as_json)
@@ -46,7 +46,7 @@ def import_pad_materials(
     law: Annotated[str, typer.Option(help="Form of the law.")] = "springpot_parallel",
     as_json: Json = False,
 ) -> None:
-    """Moduli of rail pad rubbers over frequency: a campaign for each."""
+    """Moduli of rail pads over frequency, a campaign for each."""
     from permway.recordings.importers.pad_materials import import_pad_materials as run
 
     say({"campaigns": [campaign.summary() for campaign in run(folder, output, copy=copy, law=law)]}, as_json)

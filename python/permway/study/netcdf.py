@@ -11,9 +11,10 @@ from collections import OrderedDict
 from threading import Lock
 from typing import Any
 
-import h5netcdf
 import h5py
 import xarray as xr
+
+from permway.response.solve import netcdf_bytes
 
 MOST_STRUCTURES = 8
 
@@ -44,10 +45,7 @@ def _structure(empty: xr.Dataset) -> bytes:
         if key in _structures:
             _structures.move_to_end(key)
             return _structures[key]
-    made = io.BytesIO()
-    with h5netcdf.File(made, "w", invalid_netcdf=True) as file:
-        empty.dump_to_store(xr.backends.H5NetCDFStore(file))
-    content = made.getvalue()
+    content = netcdf_bytes({"": empty})
     with _lock:
         _structures[key] = content
         while len(_structures) > MOST_STRUCTURES:
