@@ -14,6 +14,7 @@ import argparse
 import hashlib
 import json
 import multiprocessing
+import os
 import resource
 import sys
 import tempfile
@@ -32,9 +33,13 @@ from targets import TARGETS, BrokenLawError, Outcome
 
 MOST_S = 5.0
 MOST_KB = 1_000_000
-PATIENCE_S = 60.0
-"""Of clock, for machines are busy: a worker that is silent for so long hangs."""
+PATIENCE_S = 30.0
+"""Of processor time: a worker that is silent for so long hangs."""
 
+LOST_S = 1800.0
+"""The same of clock, for one that waits for something; machines are busy."""
+
+TOLD_EVERY_S = 30.0
 KEPT_OF_A_KIND = 3
 BATCH = 5000
 
@@ -103,6 +108,28 @@ def keep(found: Path, target: str, name: str, content: bytes, said: str) -> None
     path.with_name(path.name + ".said").write_text(said + "\n")
 
 
+def _heard(pipe: Connection, worker: int) -> tuple[str, Any, Any]:
+    """The next that a worker says; or that it died, or hangs."""
+    begin, spent = time.monotonic(), _spent_s(worker)
+    try:
+        while not pipe.poll(1.0):
+            if _spent_s(worker) - spent > PATIENCE_S or time.monotonic() - begin > LOST_S:
+                return "hang", "", ""
+        said: tuple[str, Any, Any] = pipe.recv()
+    except EOFError:
+        return "died", "", ""
+    return said
+
+
+def _spent_s(process: int) -> float:
+    """Processor time of another process; where the system does not tell, the clock."""
+    try:
+        fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return time.monotonic()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def fuzz(target: str, inputs: int, random: int, found: Path, seconds: float) -> dict[str, Any]:
     """Fuzz one target; how many inputs came to what, and the findings by kind."""
     counts: Counter[str] = Counter()
@@ -117,10 +144,7 @@ def fuzz(target: str, inputs: int, random: int, found: Path, seconds: float) -> 
         there.close()
         before, now = done, ("", b"")
         while True:
-            try:
-                what, first, second = here.recv() if here.poll(PATIENCE_S) else ("hang", "", "")
-            except EOFError:
-                what, first, second = "died", "", ""
+            what, first, second = _heard(here, worker.pid or 0)
             if what == "begin":
                 now = (first, second)
                 continue
@@ -135,16 +159,17 @@ def fuzz(target: str, inputs: int, random: int, found: Path, seconds: float) -> 
                 if kinds[kind] <= KEPT_OF_A_KIND:
                     keep(found, target, *now, said)
                     print(f"{target}: {now[0]}: {said}", file=sys.stderr, flush=True)
-            if what != "end":
+            late = time.monotonic() - begin > seconds
+            if time.monotonic() - last > TOLD_EVERY_S:
+                last = time.monotonic()
+                print(f"{target}: {done} of {inputs}, {dict(counts)}", file=sys.stderr, flush=True)
+            if what != "end" or late:
                 worker.kill()
                 break
         worker.join(10.0)
         here.close()
         if done == before:
             raise SystemExit(f"{target}: the worker makes no inputs")
-        if time.monotonic() - last > 30.0:
-            last = time.monotonic()
-            print(f"{target}: {done} of {inputs}, {dict(counts)}", file=sys.stderr, flush=True)
     return {
         "target": target,
         "inputs": done,

@@ -218,7 +218,7 @@ def _inside_text(draw: st.DrawFn, content: bytes) -> bytes:
 class Readers(Target):
     """Every format that is read but HDF5's kin."""
 
-    reads = (read_time, read_frf, read_table)
+    reads: tuple[Callable[..., Any], ...] = (read_time, read_frf, read_table)
 
     def inputs(self) -> st.SearchStrategy[tuple[str, bytes]]:
         return _damaged_file()
@@ -244,7 +244,10 @@ class Readers(Target):
 class Hdf5(Readers):
     """HDF5, NetCDF-4, MAT 7.3; each opened in a process of its own first, which takes its time."""
 
-    reads = (read_time, read_table)
+    def run(self, name: str, content: bytes, folder: Path) -> Outcome:
+        # One reader is enough for what it takes.
+        self.reads = ((read_time, read_table)[sum(content) % 2],)
+        return super().run(name, content, folder)
 
     def inputs(self) -> st.SearchStrategy[tuple[str, bytes]]:
         return st.sampled_from(HDF5).flatmap(lambda name: st.tuples(st.just(name), damaged_bytes(seed_file(name))))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import resource
+import struct
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -126,6 +127,19 @@ def test_a_file_on_which_hdf5_hangs_or_crashes(tmp_path: Path, monkeypatch: pyte
     monkeypatch.setattr(hdf5, "_LONGEST_WAIT", 3.0)
     with pytest.raises(InputError, match="hangs or crashes"):
         read_time(path)
+
+
+@pytest.mark.parametrize("heap", [(0, 0, 0, 0), (1, 1, 0, 2**64 - 16)], ids=["of no length", "length wraps"])
+def test_a_damaged_heap_of_texts_on_which_hdf5_hangs(tmp_path: Path, heap: tuple[int, ...]) -> None:
+    """The library's reader of the heap goes on by the length that stands there, and by none for ever."""
+    path = tmp_path / "a.nc"
+    written.netcdf(path, written.samples(40))
+    content = bytearray(path.read_bytes())
+    first = content.index(b"GCOL") + 16
+    content[first : first + 16] = struct.pack("<HHIQ", *heap)
+    path.write_bytes(content)
+    with pytest.raises(InputError, match="hangs or crashes"):
+        read_table(path)
 
 
 def test_axes_that_are_too_long_together(tmp_path: Path) -> None:

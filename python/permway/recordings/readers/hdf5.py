@@ -19,7 +19,7 @@ from permway.recordings.readers import hdf5_trial
 from permway.recordings.readers.limits import MOST_CHANNELS
 from permway.recordings.readers.store import MOST_TEXT_BYTES, Store, Variable
 
-TRIAL_S = 3.0
+TRIAL_S = 2.0
 """Processor time that going through a file may take, s; and a second more for every :data:`BYTES_PER_S` of it."""
 
 BYTES_PER_S = 10_000_000
