@@ -166,7 +166,8 @@ pub fn sweep_into(
             };
             let tape = Tape::new(line, request.forces, request.sensors, highest, wanted);
             if tape.is_too_long() {
-                let what = format!("waves at {highest} Hz are too short: the line would need millions of elements");
+                let what =
+                    format!("waves at {highest} Hz are too short: the line would need millions of elements");
                 return Err(CoreError::Invalid(what));
             }
             Plan::Chain(tape)
