@@ -98,7 +98,7 @@ def at(table: Any, path: tuple[Any, ...]) -> Any:
 def damaged_table(draw: st.DrawFn, tables: list[dict[str, Any]]) -> dict[str, Any]:
     """One of some tables with one to four changes in it: values, keys, parts dropped, doubled, moved, nested."""
     table = copy.deepcopy(draw(st.sampled_from(tables)))
-    for _ in range(draw(st.integers(1, 4))):
+    for _ in range(draw(st.sampled_from([1, 1, 1, 2, 2, 3, 4]))):
         known = list(places(table))
         if not known:
             break
