@@ -4,9 +4,10 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TablesError", "__version__", "solve_line"]
+__all__ = ["TablesError", "__version__", "solve_line", "vectors"]
 
 __version__: Final[str]
+vectors: Final[str]
 
 class TablesError(ValueError): ...
 

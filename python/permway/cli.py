@@ -11,9 +11,10 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 
+from permway.cli_campaign import campaigns
 from permway.cli_challenge import challenges
 from permway.cli_import import imports
-from permway.cli_output import Json, Threads, progress_bar, say, stage_bar, tell
+from permway.cli_output import Json, Threads, examples, progress_bar, say, tell
 from permway.errors import InputError, PermwayError
 
 
@@ -28,19 +29,39 @@ class _Commands(typer.core.TyperGroup):
             raise typer.Exit(130) from None
 
 
+EPILOG = """\b
+Exit status:
+  0    done
+  1    a model that cannot be solved, or cases of a sweep that failed
+  2    wrong input or usage: one line on stderr says what, where, and what to do
+  130  interrupted
+
+\b
+Each command has --help with examples, and --json for machines.
+Completion by the shell: permway --install-completion"""
+
 app = typer.Typer(
     name="permway",
     cls=_Commands,
-    help="Predicts how a train, its track and the viaduct below vibrate, frequency by frequency.",
+    help="Predicts how a train, its track and the viaduct below vibrate, frequency by frequency, holds that "
+    "against recordings, and says what physics is missing. Begin with: permway demo",
+    epilog=EPILOG,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
+app.add_typer(campaigns)
 app.add_typer(imports, name="import")
 app.add_typer(challenges, name="challenge")
 
 
-@app.command()
+@app.command(
+    epilog=examples(
+        "permway solve model.toml",
+        "permway solve model.toml -o answer.nc --plot pictures",
+        "permway solve model.toml --json | jq .dataset",
+    )
+)
 def solve(
     model: Annotated[Path, typer.Argument(help="Model file (TOML).")],
     output: Annotated[
@@ -51,7 +72,11 @@ def solve(
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
-    """Receptances, wheel-rail forces and power spectra of a model."""
+    """Receptances, forces and spectra of a model.
+
+    The model file says bodies, joints and laws in SI units, and what is wanted: [[forces]] and [[sensors]] give
+    receptances, [train] and [irregularity] wheel-rail forces and power spectra, [passby] the train's run in time.
+    """
     from permway.model.file import read_model
     from permway.response.solve import solve as run
     from permway.response.solve import write_dataset
@@ -77,7 +102,13 @@ def solve(
     say(result, as_json)
 
 
-@app.command("fit-pad")
+@app.command(
+    "fit-pad",
+    epilog=examples(
+        "permway fit-pad dma.csv -o law.toml --plot pictures",
+        "permway fit-pad dma.csv --law fractional_zener --shift none",
+    ),
+)
 def fit_pad(
     dma: Annotated[Path, typer.Argument(help="DMA table (CSV or TSV, units in the header).")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Law to write (TOML).")] = Path("law.toml"),
@@ -88,7 +119,11 @@ def fit_pad(
     plot: Annotated[Path | None, typer.Option(help="Folder for pictures (PNG).")] = None,
     as_json: Json = False,
 ) -> None:
-    """Identify a pad's law and its shift over temperature from DMA tests."""
+    """A pad's law and its shift from DMA tests.
+
+    The table has a row for each test: frequency, temperature, storage modulus or stiffness, loss factor, units in
+    the header. The law is written as a file that a model can name.
+    """
     from permway.laws.fitting import fit_table
 
     with progress_bar("identifying", as_json) as progress:
@@ -105,74 +140,7 @@ def fit_pad(
     say(result, as_json)
 
 
-@app.command()
-def compare(
-    campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", help="Folder for page, numbers, pictures; by default beside the campaign."),
-    ] = None,
-    raw_only: Annotated[bool, typer.Option("--raw-only", help="With the owner's values only.")] = False,
-    threads: Threads = None,
-    as_json: Json = False,
-) -> None:
-    """Predicted against measured: with the owner's values, and recalibrated."""
-    from permway.diagnosis.compare import compare as run
-    from permway.files import prepare_folder
-    from permway.recordings.campaign import read_campaign
-    from permway.report.compare import write_comparison
-
-    described = read_campaign(campaign)
-    folder = prepare_folder(output or campaign.parent / "comparison")
-    with progress_bar("comparing", as_json) as progress:
-        result = run(described, raw_only=raw_only, threads=threads, progress=progress)
-    say(write_comparison(result, folder), as_json)
-
-
-@app.command()
-def diagnose(
-    campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", help="Folder for report, verdict and model; by default beside the campaign."
-        ),
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Of simulated campaigns with nothing missing.")] = 0,
-    no_report: Annotated[bool, typer.Option("--no-report", help="Without report.html.")] = False,
-    threads: Threads = None,
-    as_json: Json = False,
-) -> None:
-    """What a model leaves out: where, what, how surely, and how much better it fits with it."""
-    from permway.diagnosis.diagnose import diagnose as run
-    from permway.files import prepare_folder
-    from permway.recordings.campaign import read_campaign
-    from permway.report.diagnosis import write_diagnosis
-
-    described = read_campaign(campaign)
-    folder = prepare_folder(output or campaign.parent / "diagnosis")
-    with stage_bar("diagnosing", as_json) as progress:
-        result = run(described, seed=seed, threads=threads, progress=progress)
-    say(write_diagnosis(result, folder, page=not no_report), as_json)
-
-
-@app.command()
-def separability(
-    campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
-    threads: Threads = None,
-    as_json: Json = False,
-) -> None:
-    """What a campaign's sensors can and cannot tell apart, whatever they read."""
-    from permway.diagnosis.separability import separability as run
-    from permway.recordings.campaign import read_campaign
-
-    described = read_campaign(campaign)
-    with stage_bar("separability", as_json) as progress:
-        result = run(described, threads=threads, progress=progress)
-    say(result.summary(), as_json)
-
-
-@app.command()
+@app.command(epilog=examples("permway reproduce -o paper --threads 2"))
 def reproduce(
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder for report.html and tables.json.")] = Path(
         "permway-paper"
@@ -180,7 +148,11 @@ def reproduce(
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
-    """Every figure and table of the paper, printed beside computed."""
+    """The paper's figures and tables, recomputed.
+
+    Writes report.html and tables.json, in which every printed number stands beside the computed one. About half a
+    minute on two processors.
+    """
     from permway.report.paper import write_report
 
     with progress_bar("reproducing", as_json) as progress:
@@ -188,7 +160,13 @@ def reproduce(
     say(result, as_json)
 
 
-@app.command()
+@app.command(
+    epilog=examples(
+        "permway sweep study.toml -o results",
+        "permway sweep study.toml -o results --scheduler tcp://cluster:8786",
+        "permway sweep study.toml -o results --fresh",
+    )
+)
 def sweep(
     study: Annotated[Path, typer.Argument(help="Study file (TOML).")],
     output: Annotated[
@@ -202,7 +180,11 @@ def sweep(
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
-    """Many models: a file per case, resumed where it stopped; status 1 if cases failed."""
+    """Many models: a file per case, resumable.
+
+    Killed or interrupted at any time, the same command goes on where it stopped: finished cases lie there whole.
+    Status 1 if cases failed.
+    """
     from permway.study.file import read_study
     from permway.study.run import run_study
 
@@ -223,29 +205,18 @@ def sweep(
         raise typer.Exit(1)
 
 
-@app.command()
+@app.command(epilog=examples("permway doctor", "permway doctor --json | jq .vectors"))
 def doctor(as_json: Json = False) -> None:
-    """What machine and versions permway runs with."""
-    import platform
+    """Machine, versions, and whether the core works.
 
-    import numpy
-    import scipy
-    import xarray
+    Holds the core's answer for a mass on a spring against the closed form; status 1 if it is wrong.
+    """
+    from permway.cli_machine import account
 
-    from permway import __version__
-
-    say(
-        {
-            "permway": __version__,
-            "python": platform.python_version(),
-            "machine": f"{platform.system()} {platform.machine()}",
-            "processors": os.cpu_count(),
-            "numpy": numpy.__version__,
-            "scipy": scipy.__version__,
-            "xarray": xarray.__version__,
-        },
-        as_json,
-    )
+    result = account()
+    say(result, as_json)
+    if result["self_test"] != "passed":
+        raise typer.Exit(1)
 
 
 def _version(wanted: bool) -> None:
@@ -276,7 +247,7 @@ def main() -> NoReturn:
     signal.signal(signal.SIGINT, _leave)
     warnings.showwarning = lambda message, *_, **__: tell(f"note: {message}")
     try:
-        app(standalone_mode=True)
+        app(standalone_mode=True, prog_name="permway")
     except PermwayError as error:
         tell(error)
         sys.exit(2 if isinstance(error, InputError) else 1)

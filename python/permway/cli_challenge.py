@@ -7,17 +7,17 @@ from typing import Annotated
 
 import typer
 
-from permway.cli_output import Folder, Json, progress_bar, say
+from permway.cli_output import Folder, Json, examples, progress_bar, say
 from permway.errors import InputError
 
 challenges = typer.Typer(
-    help="Concealed effects: make campaigns, diagnose them, score the verdicts.",
+    help="Concealed effects: make, diagnose, score.",
     no_args_is_help=True,
     rich_markup_mode=None,
 )
 
 
-@challenges.command("make")
+@challenges.command("make", epilog=examples("permway challenge make -o cases --tier single --cases 20"))
 def challenge_make(
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder for campaigns and truths.")],
     seed: Annotated[int, typer.Option(min=0, help="Of the first campaign.")] = 1,
@@ -25,7 +25,10 @@ def challenge_make(
     tier: Annotated[str, typer.Option(help="null, single, twin, multiple, outside or nonlinear.")] = "single",
     as_json: Json = False,
 ) -> None:
-    """Campaigns by finite elements that share no code with the solver, each with something concealed."""
+    """Campaigns with something concealed in each.
+
+    Made by finite elements that share no code with the solver. The truths lie in a folder of their own.
+    """
     from permway.challenge.case import TIERS
     from permway.challenge.make import make
 
@@ -38,7 +41,7 @@ def challenge_make(
     say({"folder": str(output), "campaigns": cases}, as_json)
 
 
-@challenges.command("run")
+@challenges.command("run", epilog=examples("permway challenge run cases --workers 2"))
 def challenge_run(
     folder: Folder,
     workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
@@ -53,7 +56,7 @@ def challenge_run(
     say(dict(result), as_json)
 
 
-@challenges.command("score")
+@challenges.command("score", epilog=examples("permway challenge score cases --json"))
 def challenge_score(folder: Folder, as_json: Json = False) -> None:
     """Hold the verdicts against the truths."""
     from permway.challenge.score import score, summary

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from permway.cli_output import Folder, Json, say
+from permway.cli_output import Folder, Json, examples, say
 
 imports = typer.Typer(
     help="Turn a folder as others hand it over into a campaign.", no_args_is_help=True, rich_markup_mode=None
@@ -16,7 +16,7 @@ Into = Annotated[Path, typer.Option("--output", "-o", help="Folder for campaign.
 Copy = Annotated[bool, typer.Option(help="Copy the records beside the campaign, or refer to where they lie.")]
 
 
-@imports.command("sheet")
+@imports.command("sheet", epilog=examples("permway import sheet team-folder -o campaign"))
 def import_sheet(folder: Folder, output: Into, copy: Copy = True, as_json: Json = False) -> None:
     """A measuring team's sheet.json, hammer FRFs and runs."""
     from permway.recordings.importers.sheet import import_sheet as run
@@ -24,7 +24,7 @@ def import_sheet(folder: Folder, output: Into, copy: Copy = True, as_json: Json 
     say(run(folder, output, copy=copy).summary(), as_json)
 
 
-@imports.command("rubber-rig")
+@imports.command("rubber-rig", epilog=examples("permway import rubber-rig folder -o campaigns"))
 def import_rubber_rig(
     folder: Folder,
     output: Into,
@@ -32,13 +32,13 @@ def import_rubber_rig(
     law: Annotated[str, typer.Option(help="Form of the law.")] = "fractional_zener",
     as_json: Json = False,
 ) -> None:
-    """DMA tables and shaker records of rubbers: a campaign for each."""
+    """DMA tables and shaker records, a campaign for each rubber."""
     from permway.recordings.importers.rubber_rig import import_rubber_rig as run
 
     say({"campaigns": [campaign.summary() for campaign in run(folder, output, copy=copy, law=law)]}, as_json)
 
 
-@imports.command("pad-materials")
+@imports.command("pad-materials", epilog=examples("permway import pad-materials folder -o campaigns"))
 def import_pad_materials(
     folder: Folder,
     output: Into,
@@ -46,13 +46,15 @@ def import_pad_materials(
     law: Annotated[str, typer.Option(help="Form of the law.")] = "springpot_parallel",
     as_json: Json = False,
 ) -> None:
-    """Moduli of rail pad rubbers over frequency: a campaign for each."""
+    """Moduli of rail pads over frequency, a campaign for each."""
     from permway.recordings.importers.pad_materials import import_pad_materials as run
 
     say({"campaigns": [campaign.summary() for campaign in run(folder, output, copy=copy, law=law)]}, as_json)
 
 
-@imports.command("track-decay")
+@imports.command(
+    "track-decay", epilog=examples("permway import track-decay folder -o campaign --support continuous")
+)
 def import_track_decay(
     folder: Folder,
     output: Into,

@@ -4,47 +4,47 @@ from __future__ import annotations
 
 import json
 import signal
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    Progress,
-    TaskProgressColumn,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
-
-_stderr = Console(stderr=True, highlight=False)
 
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, for machines.")]
 Threads = Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; by default all processors.")]
+Outside = Annotated[
+    bool,
+    typer.Option("--allow-outside", help="Read files outside the campaign's folder, if the campaign names such."),
+]
 Folder = Annotated[Path, typer.Argument(help="Folder to read.")]
+
+
+def examples(*lines: str) -> str:
+    """What stands at the end of a command's help: lines as they would be typed."""
+    # The first character keeps the lines from being filled into a paragraph.
+    return "\b\n" + "\n".join(["Examples:" if len(lines) > 1 else "Example:", *(f"  {line}" for line in lines)])
 
 
 def tell(message: object) -> None:
     """A line on stderr."""
-    _stderr.print(f"permway: {message}", markup=False, soft_wrap=True)
+    typer.echo(f"permway: {message}", err=True)
 
 
 @contextmanager
 def progress_bar(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
     """A bar on the terminal; nothing when piped. Within it, and after, Ctrl-C unwinds what is under way."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    with Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TaskProgressColumn(),
-        TimeRemainingColumn(),
-        console=_stderr,
-        transient=True,
-        disable=quiet or not _stderr.is_terminal,
-    ) as bar:
+    if quiet or not sys.stderr.isatty():
+        yield lambda _done, _total: None
+        return
+    # A fifth of a second to load, which only a terminal needs.
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn()
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(title, total=None)
         yield lambda done, total: bar.update(task, completed=done, total=total)
 
@@ -53,14 +53,14 @@ def progress_bar(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]
 def stage_bar(title: str, quiet: bool) -> Iterator[Callable[[str, int, int], None]]:
     """A bar that names the stage it is in; of a stage whose length is not known it only shows that it moves."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    with Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TimeElapsedColumn(),
-        console=_stderr,
-        transient=True,
-        disable=quiet or not _stderr.is_terminal,
-    ) as bar:
+    if quiet or not sys.stderr.isatty():
+        yield lambda _stage, _done, _total: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(title, total=None)
 
         def progress(stage: str, done: int, total: int) -> None:

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
+import glob
 import os
 import tempfile
+import time
 from collections.abc import Iterable
 from pathlib import Path
 
 from permway.errors import InputError
 
+LEFT_BEHIND_S = 3600.0
+"""A part of a file that is older was left by a process that was killed."""
+
 
 def prepare_folder(folder: Path, names: Iterable[str] = ()) -> Path:
     """Make a folder, and see that files of these names can be written in it.
+
+    Parts of files of these names that a killed process has left there, an hour ago or more, are taken away.
 
     Parameters
     ----------
@@ -43,6 +51,10 @@ def prepare_folder(folder: Path, names: Iterable[str] = ()) -> Path:
     for name in names:
         if (folder / name).is_dir():
             raise InputError("is a folder, not a file", where=str(folder / name), remedy="name another folder")
+        for part in folder.glob(f".{glob.escape(name)}.*.part"):
+            with contextlib.suppress(OSError):
+                if time.time() - part.stat().st_mtime > LEFT_BEHIND_S:
+                    part.unlink()
     return folder
 
 

@@ -638,7 +638,7 @@ def test_name_with_a_nul():
 
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="no endless file on this system")
 def test_endless_file():
-    with pytest.raises(InputError, match="/dev/zero: is larger than 64 MiB"):
+    with pytest.raises(InputError, match="/dev/zero: is larger than 16 MiB"):
         read_model(Path("/dev/zero"))
 
 

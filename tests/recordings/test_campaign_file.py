@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -206,29 +209,82 @@ def test_files_that_are_no_campaign(tmp_path: Path, content: bytes, what: str) -
         read_campaign(tmp_path / "none.toml")
 
 
-def test_a_path_may_lead_outside_where_that_is_said(tmp_path: Path) -> None:
+@pytest.fixture
+def leading_out(tmp_path: Path) -> Path:
+    """A campaign whose run lies beside its folder."""
     inner = tmp_path / "inner"
     inner.mkdir()
     campaign, _ = tables()
     path = write(inner, campaign)
     (inner / "run.csv").rename(tmp_path / "run.csv")
-    campaign["records"][1]["file"] = "../run.csv"
-    write(inner, campaign)
-    (inner / "run.csv").unlink()
-    with pytest.raises(InputError, match=r"records\[1\].file: lies outside the campaign's folder"):
-        read_campaign(path)
-    write(inner, {"allow_outside": True, **campaign})
-    assert read_campaign(path).path(read_campaign(path).said.records[1]).is_file()
+    return path
 
 
-def test_a_link_out_of_the_folder_is_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize("said", [False, True])
+def test_a_path_leads_outside_only_where_the_reader_allows_it(
+    leading_out: Path, tmp_path: Path, said: bool
+) -> None:
+    """What the file itself allows counts for nothing: it may be another's."""
+    campaign, _ = tables()
+    for name in ("../run.csv", "../inner/../run.csv", str(tmp_path / "run.csv")):
+        campaign["records"][1]["file"] = name
+        write(leading_out.parent, {"allow_outside": said, **campaign})
+        (leading_out.parent / "run.csv").unlink()
+        with pytest.raises(InputError, match=r"records\[1\].file: lies outside the campaign's folder.*allow"):
+            read_campaign(leading_out)
+        read = read_campaign(leading_out, allow_outside=True)
+        assert read.path(read.said.records[1]).samefile(tmp_path / "run.csv")
+
+
+def test_a_link_out_of_the_folder_is_refused(leading_out: Path, tmp_path: Path) -> None:
+    (leading_out.parent / "run.csv").symlink_to(tmp_path / "run.csv")
+    with pytest.raises(InputError, match="outside the campaign's folder"):
+        read_campaign(leading_out)
+    assert read_campaign(leading_out, allow_outside=True)
+
+
+def test_a_folder_that_leads_out_is_refused(leading_out: Path, tmp_path: Path) -> None:
+    campaign, _ = tables()
+    (leading_out.parent / "deep").symlink_to(tmp_path)
+    campaign["records"][1]["file"] = "deep/run.csv"
+    write(leading_out.parent, campaign)
+    with pytest.raises(InputError, match="outside the campaign's folder"):
+        read_campaign(leading_out)
+
+
+def test_a_model_outside_is_refused_too(tmp_path: Path) -> None:
     inner = tmp_path / "inner"
     inner.mkdir()
-    path = write(inner)
-    (inner / "run.csv").rename(tmp_path / "run.csv")
-    (inner / "run.csv").symlink_to(tmp_path / "run.csv")
-    with pytest.raises(InputError, match="outside the campaign's folder"):
+    campaign, _ = tables()
+    path = write(inner, {**campaign, "model": "../model.toml"})
+    (inner / "model.toml").rename(tmp_path / "model.toml")
+    with pytest.raises(InputError, match="model: lies outside the campaign's folder"):
         read_campaign(path)
+    assert read_campaign(path, allow_outside=True).model.line.bodies
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
+@pytest.mark.parametrize("key", ["model", "file"])
+def test_a_pipe_in_the_folder_is_not_waited_for(tmp_path: Path, key: str) -> None:
+    campaign, _ = tables()
+    (campaign if key == "model" else campaign["records"][1])[key] = "pipe"
+    path = write(tmp_path, campaign)
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(InputError, match=f"{key}: is no plain file"):
+        read_campaign(path)
+
+
+def test_the_command_asks_before_it_reads_outside(leading_out: Path, tmp_path: Path) -> None:
+    campaign, _ = tables()
+    campaign["records"][1]["file"] = "../run.csv"
+    write(leading_out.parent, campaign)
+    (leading_out.parent / "run.csv").unlink()
+    command = [sys.executable, "-m", "permway", "separability", str(leading_out), "--threads", "1"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "--allow-outside" in done.stderr
+    done = subprocess.run([*command, "--allow-outside"], capture_output=True, text=True, timeout=120, check=False)
+    assert "lies outside" not in done.stderr
 
 
 def test_models_with_other_values(tmp_path: Path) -> None:

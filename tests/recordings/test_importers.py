@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -152,7 +153,7 @@ def test_a_sheet_at_fault_is_told_with_its_place(
     broken = tmp_path / "team"
     broken.mkdir()
     for path in folder.iterdir():
-        (broken / path.name).symlink_to(path)
+        shutil.copyfile(path, broken / path.name)
     (broken / "sheet.json").unlink()
     sheet = json.loads(json.dumps(SHEET))
     change(sheet)
@@ -184,7 +185,7 @@ def test_two_files_of_one_name_are_not_chosen_between(folder: Path, tmp_path: Pa
     broken = tmp_path / "team"
     broken.mkdir()
     for path in folder.iterdir():
-        (broken / path.name).symlink_to(path)
+        shutil.copyfile(path, broken / path.name)
     (broken / "run_180kmh.csv").write_text("axlebox1\n1.0\n")
     with pytest.raises(InputError, match="there are two of that name"):
         import_sheet(broken, tmp_path / "out")

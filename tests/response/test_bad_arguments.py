@@ -219,7 +219,7 @@ def test_tables_are_good():
         ({"beams_mass": [0.0]}, "rail: mass per length"),
         ({"beams_rotary": [-1.0]}, "rail: rotary inertia"),
         ({"beams_modes": [5]}, "rail: modes are for finite"),
-        ({"beams_modes": [-5]}, "modes must not be negative"),
+        ({"beams_modes": [-5]}, "number of modes must be 0 to 100000"),
         ({"masses": np.array([np.nan])}, "block: mass must be positive"),
         ({"masses": np.array([-1.0])}, "block: mass must be positive"),
         ({"joints_upper": [0, 2]}, "joint 1 at x = 0 m: there is no body 2"),

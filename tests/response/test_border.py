@@ -266,7 +266,10 @@ def test_dataset_holds_the_model_it_came_from():
     assert model_from_dict(json.loads(text)) == model
 
 
-def test_file_keeps_every_bit(tmp_path):
+@pytest.mark.parametrize("in_memory", [True, False])
+def test_file_keeps_every_bit(in_memory, tmp_path, monkeypatch):
+    if not in_memory:
+        monkeypatch.setattr("permway.response.solve.LARGEST_IN_MEMORY", 0)
     data = solve(model_from_dict(MODEL), threads=1)
     path = write_dataset(data, tmp_path / "answer.nc")
     with xr.open_dataset(path, engine="h5netcdf") as read:
@@ -316,6 +319,7 @@ def test_failed_write_leaves_nothing_behind(error, comes_out, tmp_path, monkeypa
             file.write(b"half a file")
         raise error
 
+    monkeypatch.setattr("permway.response.solve.LARGEST_IN_MEMORY", 0)
     monkeypatch.setattr(xr.Dataset, "to_netcdf", half)
     with pytest.raises(comes_out):
         write_dataset(data, path)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import io
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from permway.files import prepare_folder, write_bytes
 from permway.laws.compare import CANDIDATES, Comparison, compare_laws
 from permway.laws.dma import DmaTable, read_dma
 from permway.laws.identify import Identification, identify
@@ -60,6 +62,8 @@ def fit_table(
         For a table, a law or a path that cannot be used; nothing is written then.
     """
     table = read_dma(dma)
+    if pictures is not None:
+        prepare_folder(Path(pictures))
     notes: tuple[str, ...] = ()
     if shift != "none" and _one_temperature(table):
         notes = (f"the table holds one temperature, so no shift was identified ({shift} asked for)",)
@@ -107,15 +111,15 @@ def _affordable(name: str, table: DmaTable, shift: str) -> bool:
 
 
 def _draw(found: Identification, folder: Path) -> list[str]:
-    folder.mkdir(parents=True, exist_ok=True)
     figures = {"master_curve": master_curve, "residuals": residuals}
     if found.shift != "none":
         figures |= {"shift": shift_factors, "surfaces": surfaces}
     written = []
     for name, draw in figures.items():
         path = folder / f"{name}.png"
-        draw(found).savefig(path, dpi=_DPI)
-        written.append(str(path))
+        buffer = io.BytesIO()
+        draw(found).savefig(buffer, format="png", dpi=_DPI)
+        written.append(str(write_bytes(path, buffer.getvalue())))
     return written
 
 

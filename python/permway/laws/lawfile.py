@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import tempfile
-import tomllib
 from pathlib import Path
 
 from permway.errors import InputError
@@ -12,6 +11,7 @@ from permway.laws import AnyLaw, law_from_dict, law_to_dict
 from permway.laws.base import Law
 from permway.laws.identify import Identification
 from permway.laws.toml import to_toml
+from permway.reading import read_toml
 
 _FORMAT = 1
 
@@ -80,14 +80,7 @@ def load_law(path: str | Path) -> AnyLaw:
         it.
     """
     source = Path(path)
-    try:
-        content = tomllib.loads(source.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(
-            f"cannot be read: {error.strerror}", where=str(source), remedy="give an existing file"
-        ) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"not TOML: {error}", where=str(source)) from error
+    content = read_toml(source, "give an existing file")
     if content.get("format", _FORMAT) != _FORMAT:
         raise InputError(
             "written in a format this version does not know",

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from permway.errors import InputError
+from permway.reading import LARGEST_TABLE, read_bytes
 
 
 @dataclass(frozen=True)
@@ -23,16 +24,12 @@ def read_lines(path: Path) -> list[Line]:
     Raises
     ------
     InputError
-        If the file is missing, unreadable, not text, or empty.
+        If the file is missing, unreadable, larger than :data:`~permway.reading.LARGEST_TABLE`, not text, or empty.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_bytes(path, LARGEST_TABLE).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError("not a text file in UTF-8", where=str(path), remedy="export it as CSV") from error
-    except OSError as error:
-        raise InputError(
-            f"cannot be read: {error.strerror}", where=str(path), remedy="give an existing file"
-        ) from error
     kept = [
         (index, line)
         for index, line in enumerate(text.splitlines(), start=1)

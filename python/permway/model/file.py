@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 import re
-import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Literal, get_args
@@ -25,12 +24,12 @@ from permway.model.presets import LAWS, LINES
 from permway.model.roll import Roll, antisymmetric
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_presets import VEHICLES
+from permway.reading import inside, read_toml
 from permway.records import FrozenModel
 from permway.response.passby.settings import PassBy
 from permway.response.receptance import Formulation, Place, check_places, check_sweep
 from permway.response.train import Train
 
-LARGEST_FILE = 64 * 1024 * 1024
 MOST_FREQUENCIES = 10_000_000
 
 
@@ -164,6 +163,11 @@ class Model(FrozenModel):
             raise fault(what, "temperature_C", value=self.temperature_C)
         return self
 
+    def _repr_html_(self) -> str:
+        from permway.report.notebook import model_html
+
+        return model_html(self)
+
     def check(self) -> None:
         """Check what the parts say of each other: names, places, and the laws at the ends of the band.
 
@@ -206,24 +210,7 @@ def read_model(path: str | Path) -> Model:
         something that cannot be.
     """
     path = Path(path)
-    try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(
-            f"cannot be read: {reason}", where=str(path), remedy="name a model file (TOML)"
-        ) from error
-    if len(content) > LARGEST_FILE:
-        raise InputError(f"is larger than {LARGEST_FILE // 2**20} MiB: not a model file", where=str(path))
-    try:
-        table = tomllib.loads(content.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        raise InputError(
-            "is not text in UTF-8", where=f"{path}, byte {error.start}", remedy="save it as UTF-8"
-        ) from error
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"is not TOML: {error}", where=str(path)) from error
+    table = read_toml(path, "name a model file (TOML)")
     try:
         return model_from_dict(table, folder=path.parent)
     except InputError as error:
@@ -337,15 +324,9 @@ def _law_file(table: dict[str, Any], where: str, folder: Path | None) -> Law:
         raise InputError(
             "does not go with a file", where=f"{where}.{next(iter(table))}", remedy="name the file alone"
         )
-    if not isinstance(name, str) or not name or "\0" in name:
-        raise InputError("must be the name of a file", where=f"{where}.file", value=name)
     if folder is None:
         raise InputError("a table without a folder cannot name a file", where=f"{where}.file", value=name)
-    path = (folder / name).resolve()
-    if not path.is_relative_to(folder.resolve()):
-        raise InputError(
-            "lies outside the model's folder", where=f"{where}.file", value=name, remedy="put it beside the model"
-        )
+    path = inside(name, folder, where=f"{where}.file", of="the model's", remedy="put it beside the model")
     try:
         return load_law(path) if quantity is None else read_measured(path, quantity)
     except InputError as error:

@@ -64,6 +64,11 @@ class Line(FrozenModel):
         check_rows(self.bodies)
         return self
 
+    def _repr_html_(self) -> str:
+        from permway.report.notebook import line_html
+
+        return line_html(self)
+
     def segments(self) -> list[Segment]:
         """Beams and shafts one by one, then masses: the bodies of the core."""
         return segments_of(self.bodies)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,7 +11,8 @@ from pydantic import Field, ValidationError
 
 from permway.errors import InputError
 from permway.model.faults import model_error, refuse_coercion
-from permway.model.file import LARGEST_FILE, Model, read_model
+from permway.model.file import Model, read_model
+from permway.reading import inside, read_toml
 from permway.recordings.campaign_checks import check_campaign
 from permway.recordings.campaign_parts import Condition, HeldOut, IrregularityKnown, Record
 from permway.recordings.campaign_values import ParameterSet
@@ -35,7 +35,8 @@ class Said(FrozenModel):
     model : str
         Name of the model file, beside the campaign file or in a folder below it.
     allow_outside : bool
-        Whether `model` and the files of records may lie outside the campaign's folder.
+        Says that `model` or the files of records lie outside the campaign's folder on purpose. It allows nothing:
+        whoever reads the campaign does.
     parameters : sequence of Parameter
     sensors : sequence of Sensor
     forces : sequence of Point
@@ -78,6 +79,11 @@ class Campaign:
     model: Model
     folder: Path
     parameters: ParameterSet = field(repr=False, compare=False)
+
+    def _repr_html_(self) -> str:
+        from permway.report.notebook import campaign_html
+
+        return campaign_html(self)
 
     def sensor(self, name: str) -> Sensor:
         """The sensor of that name."""
@@ -144,13 +150,16 @@ class Campaign:
         return load(self)
 
 
-def read_campaign(path: str | Path) -> Campaign:
+def read_campaign(path: str | Path, *, allow_outside: bool = False) -> Campaign:
     """Read and check a campaign file; the records are only seen to be there.
 
     Parameters
     ----------
     path : path
         TOML; see `docs/campaign-file.md`.
+    allow_outside : bool
+        Whether the model and the records may lie outside the campaign's folder: of one's own campaigns, not of
+        those that others sent.
 
     Raises
     ------
@@ -158,16 +167,16 @@ def read_campaign(path: str | Path) -> Campaign:
         With file, place in the file, value and remedy.
     """
     path = Path(path)
-    table = _read_table(path, "name a campaign file (TOML)")
+    table = read_toml(path, "name a campaign file (TOML)")
     try:
-        return campaign_from_dict(table, folder=path.parent)
+        return campaign_from_dict(table, folder=path.parent, allow_outside=allow_outside)
     except InputError as error:
         raise InputError(
             error.what, where=f"{path}: {error.where}", value=error.value, remedy=error.remedy
         ) from error
 
 
-def campaign_from_dict(table: Mapping[str, Any], *, folder: Path) -> Campaign:
+def campaign_from_dict(table: Mapping[str, Any], *, folder: Path, allow_outside: bool = False) -> Campaign:
     """Build a campaign from a table, as TOML gives it.
 
     Parameters
@@ -175,6 +184,8 @@ def campaign_from_dict(table: Mapping[str, Any], *, folder: Path) -> Campaign:
     table : mapping
     folder : path
         Where the model file and the records lie.
+    allow_outside : bool
+        As of :func:`read_campaign`.
 
     Raises
     ------
@@ -186,7 +197,7 @@ def campaign_from_dict(table: Mapping[str, Any], *, folder: Path) -> Campaign:
     except ValidationError as error:
         raise model_error(error, table, "") from error
     refuse_coercion(table, said, "")
-    model_path = beside(said.model, folder, "model", outside=said.allow_outside)
+    model_path = beside(said.model, folder, "model", outside=allow_outside)
     try:
         model = read_model(model_path)
     except InputError as error:
@@ -196,10 +207,10 @@ def campaign_from_dict(table: Mapping[str, Any], *, folder: Path) -> Campaign:
     for index, record in enumerate(said.records):
         for key, name in (("file", record.file), ("loss_file", record.loss_file)):
             where = f"records[{index}].{key}"
-            if name is not None and not beside(name, folder, where, outside=said.allow_outside).is_file():
+            if name is not None and not beside(name, folder, where, outside=allow_outside).is_file():
                 raise InputError("there is no such file", where=where, value=name)
     check_campaign(said, model)
-    raw = _read_table(model_path, "name a model file (TOML)")
+    raw = read_toml(model_path, "name a model file (TOML)")
     return Campaign(said, model, folder, ParameterSet(said.parameters, model, raw, said, model_path.parent))
 
 
@@ -211,17 +222,8 @@ def beside(name: str, folder: Path, where: str, *, outside: bool) -> Path:
     InputError
         For a name that leads out of the folder, unless that is allowed.
     """
-    if not name or "\0" in name:
-        raise InputError("must be the name of a file", where=where, value=name)
-    path = folder / name
-    if not outside and not path.resolve().is_relative_to(folder.resolve()):
-        raise InputError(
-            "lies outside the campaign's folder",
-            where=where,
-            value=name,
-            remedy="put it beside the campaign file, or say allow_outside = true",
-        )
-    return path
+    remedy = "put it beside the campaign file, or allow it: --allow-outside, in Python allow_outside=True"
+    return inside(name, folder, where=where, of="the campaign's", remedy=remedy, outside=outside)
 
 
 def _named(items: Sequence[Sensor | Point | Condition], name: str, where: str) -> int:
@@ -229,22 +231,3 @@ def _named(items: Sequence[Sensor | Point | Condition], name: str, where: str) -
         if item.name == name:
             return index
     raise InputError("there is none of that name", where=where, value=name)
-
-
-def _read_table(path: Path, remedy: str) -> dict[str, Any]:
-    try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(f"cannot be read: {reason}", where=str(path), remedy=remedy) from error
-    if len(content) > LARGEST_FILE:
-        raise InputError(f"is larger than {LARGEST_FILE // 2**20} MiB", where=str(path), remedy=remedy)
-    try:
-        return tomllib.loads(content.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        raise InputError(
-            "is not text in UTF-8", where=f"{path}, byte {error.start}", remedy="save it as UTF-8"
-        ) from error
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"is not TOML: {error}", where=str(path)) from error

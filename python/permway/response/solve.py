@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import os
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import h5netcdf
 import xarray as xr
 
 from permway.errors import InputError
+from permway.files import write_bytes
 from permway.model.file import Model
 from permway.response.passby.run import passby
 from permway.response.rails import both_rails
@@ -108,6 +112,23 @@ def _passage(model: Model, threads: int | None, progress: Progress | None) -> xr
     return renamed
 
 
+LARGEST_IN_MEMORY = 2**30
+"""Bytes of a dataset that is made a file in memory first."""
+
+
+def netcdf_bytes(groups: Mapping[str, xr.Dataset]) -> bytes:
+    """Datasets as the content of one NetCDF file, by group; "" is the root.
+
+    Made in memory: the HDF5 library crashes where it finds the disk full, and a process that is killed leaves no
+    temporary file behind.
+    """
+    made = io.BytesIO()
+    with h5netcdf.File(made, "w", invalid_netcdf=True) as file:
+        for group, data in groups.items():
+            data.dump_to_store(xr.backends.H5NetCDFStore(file, group=group or None, mode="a"))
+    return made.getvalue()
+
+
 def write_dataset(data: xr.Dataset, path: str | Path) -> Path:
     """Write a dataset as NetCDF, whole or not at all.
 
@@ -119,11 +140,15 @@ def write_dataset(data: xr.Dataset, path: str | Path) -> Path:
         If the place cannot be written.
     """
     path = Path(path)
+    if data.nbytes < LARGEST_IN_MEMORY:
+        return write_bytes(path, netcdf_bytes({"": data}))
     temporary = None
     try:
         # In the same folder, for only within one file system is a rename a single step.
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-        os.close(handle)
+        with os.fdopen(handle, "wb") as file:
+            if hasattr(os, "posix_fallocate"):
+                os.posix_fallocate(file.fileno(), 0, data.nbytes + 2**20)
         data.to_netcdf(temporary, engine="h5netcdf", invalid_netcdf=True)
         # mkstemp's files are for the owner alone; a dataset is as public as any other file.
         Path(temporary).chmod(0o666 & ~_umask())

@@ -19,6 +19,9 @@ from permway.study.places import Steps, parse_place
 
 MOST_CASES = 1_000_000
 
+MOST_CELLS = 2 * MOST_CASES
+"""Values that all axes may have together, one for each place: they are held in memory."""
+
 
 class Range(FrozenModel):
     """Numbers between two ends: in steps, so many, or left open for a sample.
@@ -107,6 +110,28 @@ class Axis:
         if all(isinstance(v, str) for v in values):
             return values
         return [json.dumps(v, sort_keys=True) for v in values]
+
+
+def read_axes(tables: Mapping[str, object]) -> list[Axis]:
+    """Build all axes of a study.
+
+    Raises
+    ------
+    InputError
+        With the place in the study file; for axes that are too long together.
+    """
+    axes: list[Axis] = []
+    cells = 0
+    for name, table in tables.items():
+        axes.append(read_axis(name, table))
+        cells += len(axes[-1].rows) * len(axes[-1].places)
+        if cells > MOST_CELLS:
+            raise InputError(
+                f"makes more than {MOST_CELLS} values with the axes before it",
+                where=f"axes.{name}",
+                remedy="take fewer axes, or shorter ones",
+            )
+    return axes
 
 
 def read_axis(name: str, table: object) -> Axis:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,9 +13,10 @@ from pydantic import ValidationError
 from permway import _core
 from permway.errors import InputError
 from permway.model.faults import model_error
-from permway.model.file import LARGEST_FILE, Model, model_from_dict
+from permway.model.file import Model, model_from_dict
+from permway.reading import LARGEST_TABLE, inside, read_bytes, read_toml
 from permway.records import FrozenModel
-from permway.study.axes import read_axis
+from permway.study.axes import read_axes
 from permway.study.places import replaced
 from permway.study.plan import Combine, Plan, Sample, digest, make_dimensions
 
@@ -87,7 +87,7 @@ def read_study(path: str | Path) -> Study:
         With file, place in the file, value and remedy.
     """
     path = Path(path)
-    table = _read_table(path, "name a study file (TOML)")
+    table = read_toml(path, "name a study file (TOML)")
     try:
         return study_from_dict(table, folder=path.parent)
     except InputError as error:
@@ -116,11 +116,13 @@ def study_from_dict(table: Mapping[str, Any], *, folder: Path | None = None) -> 
         raise model_error(error, table, "") from error
     model = given.model
     if isinstance(model, str):
-        path = _beside(model, folder)
-        model, folder = _read_table(path, "name a model file (TOML)", f"model: {model}"), path.parent
+        if folder is None:
+            raise InputError("a table without a folder cannot name a file", where="model", value=model)
+        path = inside(model, folder, where="model", of="the study's", remedy="put it beside the study")
+        model, folder = read_toml(path, "name a model file (TOML)", where=f"model: {model}"), path.parent
     if not given.axes:
         raise InputError("there is no axis", where="axes", remedy="say what is varied: [axes.NAME]")
-    axes = [read_axis(name, axis) for name, axis in given.axes.items()]
+    axes = read_axes(given.axes)
     if given.keep is not None and (not given.keep or len(set(given.keep)) < len(given.keep)):
         raise InputError("must name variables, none twice", where="keep", value=list(given.keep))
     dimensions = make_dimensions(axes, given.combine, given.sample)
@@ -136,37 +138,6 @@ def study_from_dict(table: Mapping[str, Any], *, folder: Path | None = None) -> 
     files = {name: _content(name, folder) for name in sorted(names)}
     base = digest([_core.__version__, model, files, sorted(given.keep) if given.keep else None])
     return Study(given.title, model, folder, given.keep, Plan(dimensions, base))
-
-
-def _read_table(path: Path, remedy: str, where: str | None = None) -> dict[str, Any]:
-    where = where or str(path)
-    try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(f"cannot be read: {reason}", where=where, remedy=remedy) from error
-    if len(content) > LARGEST_FILE:
-        raise InputError(f"is larger than {LARGEST_FILE // 2**20} MiB", where=where, remedy=remedy)
-    try:
-        return tomllib.loads(content.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        raise InputError("is not text in UTF-8", where=f"{where}, byte {error.start}", remedy=remedy) from error
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"is not TOML: {error}", where=where) from error
-
-
-def _beside(name: str, folder: Path | None) -> Path:
-    if not name or "\0" in name:
-        raise InputError("must be the name of a file", where="model", value=name)
-    if folder is None:
-        raise InputError("a table without a folder cannot name a file", where="model", value=name)
-    path = folder / name
-    if not path.resolve().is_relative_to(folder.resolve()):
-        raise InputError(
-            "lies outside the study's folder", where="model", value=name, remedy="put it beside the study"
-        )
-    return path
 
 
 def _file_names(value: object) -> Iterator[str]:
@@ -186,11 +157,9 @@ def _content(name: str, folder: Path | None) -> str | None:
     if folder is None:
         return None
     try:
-        path = (folder / name).resolve()
-        if not path.is_relative_to(folder.resolve()):
-            return None
-        return hashlib.sha256(path.read_bytes()).hexdigest()
-    except (OSError, ValueError):
+        path = inside(name, folder, where="file", of="the model's", remedy="")
+        return hashlib.sha256(read_bytes(path, LARGEST_TABLE)).hexdigest()
+    except InputError:
         return None
 
 

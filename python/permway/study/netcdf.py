@@ -5,17 +5,16 @@ Writing it anew takes h5netcdf ten times as long as filling it, and longer than 
 
 from __future__ import annotations
 
+import io
 import pickle
-import tempfile
 from collections import OrderedDict
-from pathlib import Path
 from threading import Lock
 from typing import Any
 
 import h5py
 import xarray as xr
 
-from permway.response.solve import write_dataset
+from permway.response.solve import netcdf_bytes
 
 MOST_STRUCTURES = 8
 
@@ -30,24 +29,23 @@ def to_netcdf(data: xr.Dataset) -> bytes:
     """
     values = {str(name): v.values for name, v in data.data_vars.items() if v.dtype.kind in "fc"}
     empty = data.drop_attrs(deep=False).assign({name: xr.zeros_like(data[name]) for name in values})
-    with tempfile.TemporaryDirectory(prefix="permway-") as folder:
-        path = Path(folder) / "case.nc"
-        path.write_bytes(_structure(empty, path))
-        with h5py.File(path, "r+") as file:
-            for name, array in values.items():
-                file[name][()] = array
-            for key, value in data.attrs.items():
-                file.attrs[key] = value
-        return path.read_bytes()
+    # In memory: a process that is killed leaves nothing behind.
+    content = io.BytesIO(_structure(empty))
+    with h5py.File(content, "r+") as file:
+        for name, array in values.items():
+            file[name][()] = array
+        for key, value in data.attrs.items():
+            file.attrs[key] = value
+    return content.getvalue()
 
 
-def _structure(empty: xr.Dataset, path: Path) -> bytes:
+def _structure(empty: xr.Dataset) -> bytes:
     key = pickle.dumps([_described(name, v) for name, v in empty.variables.items()])
     with _lock:
         if key in _structures:
             _structures.move_to_end(key)
             return _structures[key]
-    content = write_dataset(empty, path).read_bytes()
+    content = netcdf_bytes({"": empty})
     with _lock:
         _structures[key] = content
         while len(_structures) > MOST_STRUCTURES:

@@ -133,6 +133,9 @@ pub fn derived(table: &Derived<'_>) -> PyResult<Wanted> {
     })
 }
 
+/// Most modes of one beam: more are a slip, and would be summed for hours.
+const MOST_MODES: i64 = 100_000;
+
 /// Checks that the columns of a table have one length.
 fn same_length(table: &str, lengths: &[usize]) -> PyResult<usize> {
     let n = lengths.first().copied().unwrap_or(0);
@@ -201,8 +204,8 @@ pub fn line(
     if n > 0 && (interval.ncols() != 2 || pinned.ncols() != 2) {
         return Err(TablesError::new_err("beams: interval and pinned have two columns"));
     }
-    if modes.iter().any(|m| *m < 0) {
-        return Err(TablesError::new_err("beams: a number of modes must not be negative"));
+    if modes.iter().any(|m| !(0..=MOST_MODES).contains(m)) {
+        return Err(TablesError::new_err(format!("beams: a number of modes must be 0 to {MOST_MODES}")));
     }
     let end = |p: bool| if p { End::Pinned } else { End::Free };
     let mut bodies = Vec::with_capacity(n);

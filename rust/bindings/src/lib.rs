@@ -15,6 +15,7 @@ mod _core {
     fn init(m: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
         use pyo3::types::PyModuleMethods;
         m.add("TablesError", m.py().get_type::<crate::convert::TablesError>())?;
-        m.add("__version__", env!("CARGO_PKG_VERSION"))
+        m.add("__version__", env!("CARGO_PKG_VERSION"))?;
+        m.add("vectors", permway_core::chain::Vectors::here().name())
     }
 }

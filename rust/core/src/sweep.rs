@@ -164,7 +164,13 @@ pub fn sweep_into(
                 None if request.joints => Wanted::Everywhere,
                 None => Wanted::Sensors,
             };
-            Plan::Chain(Tape::new(line, request.forces, request.sensors, highest, wanted))
+            let tape = Tape::new(line, request.forces, request.sensors, highest, wanted);
+            if tape.is_too_long() {
+                let what =
+                    format!("waves at {highest} Hz are too short: the line would need millions of elements");
+                return Err(CoreError::Invalid(what));
+            }
+            Plan::Chain(tape)
         }
         Formulation::Receptance => Plan::Receptance(Dense::new(line, request.forces, request.sensors)),
     };

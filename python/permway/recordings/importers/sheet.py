@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from permway.errors import InputError
+from permway.reading import inside
 from permway.recordings.campaign import Campaign
 from permway.recordings.importers.sheet_form import Sheet, Spot, read_sheet
 from permway.recordings.importers.sheet_model import model_table
@@ -98,7 +99,9 @@ def import_sheet(folder: Path, output: Path, *, copy: bool = True) -> Campaign:
 def _find(folder: Path, name: str) -> Path:
     found = [path for suffix in _SUFFIXES if (path := folder / (name + suffix)).is_file()]
     if len(found) == 1:
-        return found[0]
+        return inside(
+            found[0].name, folder, where=str(folder), of="the sheet's", remedy="put the file itself there"
+        )
     if found:
         names = [path.name for path in found]
         raise InputError("there are two of that name", where=str(folder), value=names, remedy="leave one")

@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, PositiveFloat, Validati
 
 from permway.errors import InputError
 from permway.model.faults import fault, model_error, refuse_coercion
+from permway.reading import read_bytes
 from permway.records import FrozenModel, Number
 
 LARGEST_SHEET = 4 * 1024 * 1024
@@ -169,15 +170,7 @@ def read_sheet(folder: Path) -> Sheet:
 
 
 def _load(path: Path) -> Mapping[str, Any]:
-    try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_SHEET + 1)
-    except OSError as error:
-        raise InputError(
-            f"cannot be read: {error.strerror or error}", where=str(path), remedy="name a folder that holds one"
-        ) from error
-    if len(content) > LARGEST_SHEET:
-        raise InputError(f"is larger than {LARGEST_SHEET // 2**20} MiB: not a sheet", where=str(path))
+    content = read_bytes(path, LARGEST_SHEET, remedy="name a folder that holds one")
     try:
         table = json.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:

@@ -56,7 +56,7 @@ def write_campaign(
         table = {"format": table.pop("format"), "allow_outside": True, **table}
     write_text(folder / "model.toml", to_toml(model))
     write_text(folder / "campaign.toml", to_toml(table))
-    return read_campaign(folder / "campaign.toml")
+    return read_campaign(folder / "campaign.toml", allow_outside=not copy)
 
 
 def _copy(source: Path, target: Path) -> None:

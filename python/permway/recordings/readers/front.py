@@ -233,8 +233,9 @@ def _store(source: Path, kind: Format, part: str | None, max_bytes: int) -> Iter
     elif kind == "mat":
         opened = mat.open_store(source, max_bytes=max_bytes)
     elif kind == "netcdf3":
-        opened = netcdf3.open_store(source)
+        opened = netcdf3.open_store(source, max_bytes=max_bytes)
     else:
+        hdf5.check_sound(source)
         group = part if part is not None and hdf5.is_group(source, part) else None
         opened, part = hdf5.open_store(source, group=group), None if group is not None else part
     with opened as store:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,8 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from permway.errors import InputError
+from permway.recordings.readers import hdf5_trial
 from permway.recordings.readers.limits import MOST_CHANNELS
-from permway.recordings.readers.store import Store, Variable
+from permway.recordings.readers.store import MOST_TEXT_BYTES, Store, Variable
+
+TRIAL_S = 2.0
+"""Processor time that going through a file may take, s; and a second more for every :data:`BYTES_PER_S` of it."""
+
+BYTES_PER_S = 10_000_000
+
+_LONGEST_WAIT = 20.0
+"""How long a trial may last, as a multiple of its processor time: machines are busy."""
 
 _MOST_OBJECTS = 100_000
 _HIDDEN = ("#refs#", "#subsystem#")
@@ -53,6 +65,35 @@ def open_store(source: Path, *, group: str | None = None) -> Iterator[Store]:
         if common:
             attributes |= _attributes(root[common.rstrip("/")])
         yield Store(str(source), variables, attributes)
+
+
+def check_sound(source: Path) -> None:
+    """Go through a file in a process of its own, which can be ended if the HDF5 library does not come to an end.
+
+    Raises
+    ------
+    InputError
+        For a file on which the library hangs or crashes, or whose texts take more memory than texts do.
+    """
+    seconds = TRIAL_S + source.stat().st_size / BYTES_PER_S
+    command = [sys.executable, "-P", hdf5_trial.__file__, str(source), str(MOST_TEXT_BYTES), str(round(seconds))]
+    try:
+        done = subprocess.run(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            timeout=_LONGEST_WAIT * seconds,
+            check=False,
+        ).returncode
+    except subprocess.TimeoutExpired:
+        done = -signal.SIGTERM
+    if done == hdf5_trial.TOO_LARGE:
+        what = "its texts or attributes take more memory than texts do"
+        raise InputError(what, where=str(source), remedy="the file is damaged; export it again")
+    if done < 0:
+        what = "damaged: the HDF5 library hangs or crashes on it"
+        raise InputError(what, where=str(source), remedy="export it again")
 
 
 def _datasets(root: Any, source: Path) -> dict[str, Any]:
@@ -114,7 +155,8 @@ def _variable(data: Any, name: str, where: str) -> Variable | None:
         return _plain(np.asarray(part), kind)
 
     step = float(np.finfo(data.dtype).eps) if data.dtype.kind == "f" else 2.0**-52
-    return Variable(name, tuple(int(n) for n in data.shape), kind, read, attributes, _axes(data), step)
+    shape = tuple(int(n) for n in data.shape)
+    return Variable(name, shape, kind, read, attributes, _axes(data), step, data.dtype.itemsize)
 
 
 def _kind(dtype: np.dtype[np.generic]) -> str | None:

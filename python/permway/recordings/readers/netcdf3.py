@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 from scipy import io
 
 from permway.errors import InputError
+from permway.recordings.readers.limits import MOST_BYTES, check_size
 from permway.recordings.readers.store import Store, Variable
 
 
 @contextmanager
-def open_store(source: Path) -> Iterator[Store]:
-    """The arrays of a classic NetCDF file; characters along a last axis are texts."""
+def open_store(source: Path, *, max_bytes: int = MOST_BYTES) -> Iterator[Store]:
+    """The arrays of a classic NetCDF file, which is read as a whole; characters along a last axis are texts."""
+    check_size(source.stat().st_size, str(source), max_bytes=max_bytes, item=1)
     # Not mapped: a map that outlives the file is scipy's warning, and arrays are copied here anyway.
     with io.netcdf_file(str(source), "r", mmap=False) as file:
         variables = {name: _variable(name, file.variables[name]) for name in file.variables}

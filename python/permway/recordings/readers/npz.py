@@ -71,7 +71,7 @@ def _variable(archive: zipfile.ZipFile, info: zipfile.ZipInfo, name: str, where:
         return _read(archive, info, start, dtype, tuple(shape), fortran, slices)
 
     step = float(np.finfo(dtype).eps) if dtype.kind == "f" else 2.0**-52
-    return Variable(name, tuple(int(n) for n in shape), kind, read, step=step)
+    return Variable(name, tuple(int(n) for n in shape), kind, read, step=step, item_bytes=dtype.itemsize)
 
 
 def _read(

@@ -29,6 +29,9 @@ RATES = {
 RATES |= {"sampling_frequency", "sampling_frequency_hz", "sample_rate_hz", "sampling"}
 STEPS = {"dt", "ts", "sample_interval", "sampling_interval", "dt_s"}
 NAMES = {"channels", "channel", "channel_names", "channel_name", "names", "labels", "sensors", "sensor"}
+MOST_TEXT_BYTES = 2**26
+"""Names and units that take more memory are a damaged file's."""
+
 UNITS = {"units", "unit", "channel_units"}
 REMARKS = {"description", "comment", "title", "date", "name", "note", "notes"}
 
@@ -52,6 +55,8 @@ class Variable:
         Names of the axes where the format has them, else empty.
     step : float or None
         Resolution of the numbers relative to their size, of binary formats their machine epsilon.
+    item_bytes : int
+        What one value takes in memory: a text's may be long.
     """
 
     name: str
@@ -61,6 +66,7 @@ class Variable:
     attributes: Mapping[str, object] = field(default_factory=dict)
     axes: tuple[str, ...] = ()
     step: float = 2.0**-52
+    item_bytes: int = 8
 
     @property
     def size(self) -> int:
@@ -73,7 +79,10 @@ class Variable:
     def all(self, where: str, *, max_bytes: int = MOST_BYTES) -> NDArray[np.generic]:
         """The whole array, if it is not too large."""
         check_size(
-            self.size, f"{where}: '{self.name}'", max_bytes=max_bytes, item=16 if self.kind == "complex" else 8
+            self.size,
+            f"{where}: '{self.name}'",
+            max_bytes=max_bytes,
+            item=16 if self.kind == "complex" else max(self.item_bytes, 8),
         )
         return self.read(tuple(slice(None) for _ in self.shape))
 
@@ -95,7 +104,8 @@ class Store:
         for name, variable in self.variables.items():
             if name.lower() in names and variable.kind == "text":
                 check_size(variable.size, f"{self.source}: '{name}'", max_bytes=8 * MOST_CHANNELS)
-                return tuple(str(x).strip().strip("\x00") for x in np.ravel(variable.all(self.source)))
+                cells = np.ravel(variable.all(self.source, max_bytes=MOST_TEXT_BYTES))
+                return tuple(str(x).strip().strip("\x00") for x in cells)
         for name, value in self.attributes.items():
             if name.lower() in names:
                 return (value,) if isinstance(value, str) else _texts(value)

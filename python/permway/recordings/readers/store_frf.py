@@ -9,7 +9,7 @@ import numpy as np
 from permway.arrays import Reals
 from permway.errors import InputError
 from permway.recordings.readers.headers import clean_unit, split_header
-from permway.recordings.readers.limits import MOST_BYTES
+from permway.recordings.readers.limits import MOST_BYTES, check_size
 from permway.recordings.readers.store import UNITS, Store, Variable
 from permway.recordings.record import Cells, FrfRecord, TableRecord
 
@@ -74,9 +74,12 @@ def as_table(store: Store, *, max_bytes: int = MOST_BYTES) -> TableRecord:
     """
     columns: dict[str, Cells] = {}
     units: dict[str, str | None] = {}
+    taken = 0
     for key, variable in store.variables.items():
         if variable.kind == "complex" or sum(length != 1 for length in variable.shape) > 1 or not variable.shape:
             continue
+        taken += variable.size
+        check_size(taken, store.source, max_bytes=max_bytes)
         name, unit = split_header(key)
         cells = np.ravel(variable.all(store.source, max_bytes=max_bytes))
         columns[name] = tuple(str(x) for x in cells) if variable.kind == "text" else cells.astype(np.float64)

@@ -22,7 +22,7 @@ def read_text_table(source: Path, *, texts: Sequence[str] = (), max_bytes: int =
     A column whose first cell that is not empty is a number is a column of numbers, and every other cell of it must
     be one or empty (NaN); other columns are texts, and so are those named in `texts`.
     """
-    check_size(source.stat().st_size, str(source), max_bytes=max_bytes, item=16)
+    check_size(source.stat().st_size, str(source), max_bytes=max_bytes, item=32)
     lines = read_lines(source)
     names, units, rows = _head(source, lines)
     if not rows:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 import re
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ import xarray as xr
 
 from permway.diagnosis.compare import Comparison
 from permway.files import prepare_folder, write_bytes, write_text
+from permway.response.solve import netcdf_bytes
 
 PAGE, NUMBERS, PICTURES = "report.html", "comparison.nc", "pictures"
 
@@ -73,13 +73,7 @@ def netcdf(comparison: Comparison) -> bytes:
         base = f"records/{file_name(str(record.attrs['record']))}"
         groups |= {f"{base}/curves": record, f"{base}/third_octaves": bands, f"{base}/standardised": z}
     summary = json.dumps(comparison.summary(), allow_nan=False, ensure_ascii=False)
-    with tempfile.TemporaryDirectory(prefix="permway-") as folder:
-        # h5netcdf warns of complex numbers by the name's end.
-        path = Path(folder) / "comparison.part"
-        xr.Dataset(attrs={"summary": summary}).to_netcdf(path, engine="h5netcdf", invalid_netcdf=True)
-        for group, data in groups.items():
-            data.to_netcdf(path, mode="a", group=group, engine="h5netcdf", invalid_netcdf=True)
-        return path.read_bytes()
+    return netcdf_bytes({"": xr.Dataset(attrs={"summary": summary}), **groups})
 
 
 def file_name(label: str) -> str:

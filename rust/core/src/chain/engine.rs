@@ -100,23 +100,59 @@ fn run_avx2(w: &mut Work<Fused>, job: &Job<'_>, out: &mut Response<'_>) {
     w.run(job, out);
 }
 
-impl Engine {
-    /// Room for a tape, so many forces, and what is derived.
-    pub fn new(tape: &Tape, forces: usize, derived: Option<(&Sensitivity<'_>, &Line)>) -> Self {
+/// Vector instructions that the march uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vectors {
+    /// Eight numbers at once.
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+    /// Four numbers at once.
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    /// What every processor of the architecture has.
+    Portable,
+}
+
+impl Vectors {
+    /// The widest of this processor.
+    #[must_use]
+    pub fn here() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
             let fused = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
             let wide = is_x86_feature_detected!("avx512f")
                 && is_x86_feature_detected!("avx512vl")
                 && is_x86_feature_detected!("avx512dq");
-            if fused && wide {
-                return Self(Kind::Avx512(Work::new(tape, forces, derived)));
-            }
             if fused {
-                return Self(Kind::Avx2(Work::new(tape, forces, derived)));
+                return if wide { Self::Avx512 } else { Self::Avx2 };
             }
         }
-        Self::portable(tape, forces, derived)
+        Self::Portable
+    }
+
+    /// Name and width for people.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => "AVX-512, 512 bits",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => "AVX2, 256 bits",
+            Self::Portable => "portable",
+        }
+    }
+}
+
+impl Engine {
+    /// Room for a tape, so many forces, and what is derived.
+    pub fn new(tape: &Tape, forces: usize, derived: Option<(&Sensitivity<'_>, &Line)>) -> Self {
+        match Vectors::here() {
+            #[cfg(target_arch = "x86_64")]
+            Vectors::Avx512 => Self(Kind::Avx512(Work::new(tape, forces, derived))),
+            #[cfg(target_arch = "x86_64")]
+            Vectors::Avx2 => Self(Kind::Avx2(Work::new(tape, forces, derived))),
+            Vectors::Portable => Self::portable(tape, forces, derived),
+        }
     }
 
     /// The code that every processor of the architecture runs.

@@ -23,7 +23,7 @@ mod own;
 mod solve;
 mod tape;
 
-pub use engine::{Engine, Job};
+pub use engine::{Engine, Job, Vectors};
 pub use factor::Group;
 pub use solve::Response;
 pub use tape::{Tape, Wanted};

@@ -68,6 +68,9 @@ pub enum Wanted {
     States,
 }
 
+/// Most elements that a line is cut into; more would fill the memory.
+const MOST_ELEMENTS: usize = 4_000_000;
+
 /// Record of an operation that nothing will read again.
 const SCRATCH: usize = usize::MAX;
 
@@ -92,6 +95,16 @@ pub struct Tape {
     pub states: bool,
     /// What lies beyond the last force and sensor, marched from the right end leftwards.
     pub right: Option<Box<Tape>>,
+    /// Whether the line has more elements than can be marched over, and this tape no meaning.
+    pub too_long: bool,
+}
+
+impl Tape {
+    /// Whether this tape or what lies beyond it has no meaning.
+    #[must_use]
+    pub fn is_too_long(&self) -> bool {
+        self.too_long || self.right.as_ref().is_some_and(|right| right.is_too_long())
+    }
 }
 
 /// What happens at a place on a body; ordered as it must be done there.
@@ -186,7 +199,11 @@ impl Compiler<'_> {
             Body::Shaft(shaft) => Twist::new(shaft, omega).exponent().norm(),
             Body::Mass(_) => return,
         };
-        let parts = (steepest * length / LONGEST).ceil().max(1.0);
+        let mut parts = (steepest * length / LONGEST).ceil().max(1.0);
+        if parts > MOST_ELEMENTS.saturating_sub(self.tape.ops.len()) as f64 {
+            self.tape.too_long = true;
+            parts = 1.0;
+        }
         let piece = self.piece(body, stretch, length / parts, steepest);
         for _ in 0..parts as usize {
             let rows = self.record(body, 8, self.tape.states);

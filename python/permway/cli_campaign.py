@@ -1,0 +1,125 @@
+"""Commands on campaigns: compare, diagnose, separability, and the demonstration."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from permway.cli_output import Json, Outside, Threads, examples, progress_bar, say, stage_bar
+
+campaigns = typer.Typer(rich_markup_mode=None)
+
+
+@campaigns.command(
+    epilog=examples(
+        "permway compare campaign/campaign.toml -o page", "permway compare campaign/campaign.toml --raw-only"
+    )
+)
+def compare(
+    campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Folder for page, numbers, pictures; by default beside the campaign."),
+    ] = None,
+    raw_only: Annotated[bool, typer.Option("--raw-only", help="With the owner's values only.")] = False,
+    allow_outside: Outside = False,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """Predicted against measured, as a page.
+
+    With the owner's values, and recalibrated within the tolerances that the campaign file states.
+    """
+    from permway.diagnosis.compare import compare as run
+    from permway.files import prepare_folder
+    from permway.recordings.campaign import read_campaign
+    from permway.report.compare import write_comparison
+
+    described = read_campaign(campaign, allow_outside=allow_outside)
+    folder = prepare_folder(output or campaign.parent / "comparison")
+    with progress_bar("comparing", as_json) as progress:
+        result = run(described, raw_only=raw_only, threads=threads, progress=progress)
+    say(write_comparison(result, folder), as_json)
+
+
+@campaigns.command(
+    epilog=examples(
+        "permway diagnose campaign/campaign.toml -o diagnosis",
+        "permway diagnose campaign/campaign.toml --no-report --json",
+    )
+)
+def diagnose(
+    campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", help="Folder for report, verdict and model; by default beside the campaign."
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Of simulated campaigns with nothing missing.")] = 0,
+    no_report: Annotated[bool, typer.Option("--no-report", help="Without report.html.")] = False,
+    allow_outside: Outside = False,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """What a model leaves out, where, how surely.
+
+    Recalibrates the model, looks for what no value of it explains, names the effect or says that the records do
+    not tell, and proves it on records that were not fitted. Writes report.html, verdict.json and amended.toml;
+    takes minutes. The same seed gives the same verdict.
+    """
+    from permway.diagnosis.diagnose import diagnose as run
+    from permway.files import prepare_folder
+    from permway.recordings.campaign import read_campaign
+    from permway.report.diagnosis import write_diagnosis
+
+    described = read_campaign(campaign, allow_outside=allow_outside)
+    folder = prepare_folder(output or campaign.parent / "diagnosis")
+    with stage_bar("diagnosing", as_json) as progress:
+        result = run(described, seed=seed, threads=threads, progress=progress)
+    say(write_diagnosis(result, folder, page=not no_report), as_json)
+
+
+@campaigns.command(epilog=examples("permway separability campaign/campaign.toml --json"))
+def separability(
+    campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
+    allow_outside: Outside = False,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """What a campaign's sensors can tell apart.
+
+    Before any record is read: which effects the sensors would confuse, whatever they measure.
+    """
+    from permway.diagnosis.separability import separability as run
+    from permway.recordings.campaign import read_campaign
+
+    described = read_campaign(campaign, allow_outside=allow_outside)
+    with stage_bar("separability", as_json) as progress:
+        result = run(described, threads=threads, progress=progress)
+    say(result.summary(), as_json)
+
+
+@campaigns.command(
+    epilog=examples("permway demo", "permway demo -o trial --no-open", "permway demo --json | jq .verdict")
+)
+def demo(
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder that gets the campaign and its diagnosis.")
+    ] = Path("permway-demo"),
+    no_open: Annotated[bool, typer.Option("--no-open", help="Do not open the report in a browser.")] = False,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """A whole diagnosis of an embedded campaign.
+
+    Lays a small campaign with something concealed in it into a folder, diagnoses it in under a minute, opens the
+    report, and says what was concealed.
+    """
+    from permway.demo import run
+
+    with stage_bar("demo", as_json) as progress:
+        result = run(output, threads=threads, show=not (no_open or as_json), progress=progress)
+    say(result, as_json)

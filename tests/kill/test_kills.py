@@ -1,0 +1,66 @@
+"""Killed while it writes: what is there is whole, and what was left is taken away. Sweeps: see `tests/study`."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from permway.demo.run import campaign_files
+from permway.files import LEFT_BEHIND_S, prepare_folder
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals")
+
+KILLED_AT_THE_WORST = """
+import os, signal, sys
+from pathlib import Path
+from permway import files
+os.replace = lambda *_: os.kill(os.getpid(), signal.SIGKILL)
+files.write_text(Path(sys.argv[1]), "new" * 100_000)
+"""
+
+
+@pytest.mark.parametrize("older", [None, "older"])
+def test_killed_between_writing_and_naming(tmp_path: Path, older: str | None) -> None:
+    path = tmp_path / "verdict.json"
+    if older is not None:
+        path.write_text(older)
+    done = subprocess.run([sys.executable, "-c", KILLED_AT_THE_WORST, str(path)], timeout=60, check=False)
+    assert done.returncode == -signal.SIGKILL
+    assert path.exists() == (older is not None)
+    assert older is None or path.read_text() == older
+    (left,) = (p for p in tmp_path.iterdir() if p != path)
+    prepare_folder(tmp_path, ["verdict.json"])
+    # It may be another's, at work just now.
+    assert left.exists()
+    long_ago = time.time() - LEFT_BEHIND_S - 1.0
+    os.utime(left, (long_ago, long_ago))
+    prepare_folder(tmp_path, ["report.html"])
+    assert left.exists()
+    prepare_folder(tmp_path, ["verdict.json", "report.html"])
+    assert not left.exists()
+
+
+def test_a_diagnosis_killed_at_work_leaves_nothing(tmp_path: Path) -> None:
+    """It writes at its end alone; begun again it begins anew."""
+    for name, content in campaign_files().items():
+        (tmp_path / name).write_bytes(content)
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    folder = tmp_path / "diagnosis"
+    command = [sys.executable, "-m", "permway", "diagnose", str(tmp_path / "campaign.toml"), "-o", str(folder)]
+    environment = {**os.environ, "TMPDIR": str(scratch)}
+    process = subprocess.Popen([*command, "--threads", "1"], env=environment)
+    end = time.monotonic() + 60.0
+    while not folder.is_dir() and time.monotonic() < end:
+        time.sleep(0.05)
+    time.sleep(1.0)
+    assert process.poll() is None
+    process.kill()
+    process.wait(30)
+    assert list(folder.iterdir()) == []
+    assert list(scratch.iterdir()) == []
