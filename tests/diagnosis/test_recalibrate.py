@@ -96,9 +96,9 @@ def test_what_is_left_knows_nothing_of_its_neighbours(cases: list[tuple[Simulate
         chance = left["chance"].values / 1.96
         assert (left["correlation"].values < 4.0 * chance).all()
         assert (left["correlation"].values > -4.0 * chance - 1.0 / 7.0).all()
-        # The owner's values leave what no noise would.
+        # The owner's values leave what no noise would, in gain or in phase of every sensor.
         raw = lag_correlation(z.sel(model=RAW), lags=4)["correlation"].values[..., 0]
-        assert (raw > 3.0 * chance[..., 0]).all()
+        assert (raw > 3.0 * chance[..., 0]).any(axis=0).all()
 
 
 def test_nothing_is_learnt_of_what_no_record_sees(tmp_path: Path) -> None:

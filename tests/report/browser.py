@@ -13,6 +13,9 @@ import pytest
 PLACES = ("chromium", "chromium-browser", "google-chrome")
 PHONE, DESK = (390, 844), (1280, 900)
 
+LONGEST_MS = 180_000
+"""For a page with many plots on a busy machine."""
+
 
 @contextmanager
 def opened(path: Path, size: tuple[int, int] = DESK) -> Iterator[tuple[Any, list[str]]]:
@@ -28,6 +31,7 @@ def opened(path: Path, size: tuple[int, int] = DESK) -> Iterator[tuple[Any, list
         browser = driver.chromium.launch(executable_path=found, args=["--no-sandbox"])
         try:
             page = browser.new_page(viewport={"width": size[0], "height": size[1]})
+            page.set_default_timeout(LONGEST_MS)
             complaints: list[str] = []
             page.on("console", lambda m: complaints.append(m.text) if m.type == "error" else None)
             page.on("pageerror", lambda error: complaints.append(str(error)))

@@ -195,6 +195,7 @@ class Rest:
         rest = self._of(~part)
         square = _square(self._whole, deviations) - _square(rest, deviations[~part])
         volume = self._whole.log_determinant - rest.log_determinant + float(self._volume[part].sum())
+        heat = self.fit.heat
         coefficients, _ = rest.explained(deviations[~part])
         scale = np.array([self.fit.evidence.sizes[o] for o in self._origins])
         left = deviations[part] - sparse.csr_array(self._columns[part]) @ (scale * coefficients)
@@ -202,13 +203,18 @@ class Rest:
         sure = size < SURE_DB
         level = (deviations[part] * size)[sure]
         error = float(np.sqrt(np.mean(level**2))) if sure.any() else float("nan")
-        return Scored(-0.5 * (square + volume), 0.5 * (left**2 + self._volume[part]), error)
+        # A model that does not fit knows so: its deviations are as much larger on what it has not seen.
+        spread = float(np.log(heat))
+        log_density = -0.5 * (square / heat + volume + spread * float(part.sum()))
+        return Scored(log_density, 0.5 * (left**2 / heat + spread + self._volume[part]), error)
 
     def log_density(self, rows: np.ndarray, deviations: Reals) -> float:
         """Of some rows by themselves, smooth errors integrated out, nats."""
         whitener = self._of(rows)
         volume = whitener.log_determinant + float(self._volume[rows].sum())
-        return -0.5 * (_square(whitener, deviations[rows]) + volume)
+        heat = self.fit.heat
+        spread = float(np.log(heat)) * float(rows.sum())
+        return -0.5 * (_square(whitener, deviations[rows]) / heat + volume + spread)
 
 
 def _square(whitener: Whitener, values: Reals) -> float:

@@ -7,7 +7,7 @@ could do at any size. Measured values play no part: only where, what and how wel
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import linalg
@@ -23,6 +23,7 @@ from permway.diagnosis.recalibrate import untouched
 from permway.diagnosis.search import Progress
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
+from permway.recordings.predict import predict
 
 
 @dataclass(frozen=True)
@@ -97,6 +98,10 @@ def separability(
     say = progress or (lambda stage, done, total: None)
     say("read", 0, 0)
     datasets, _ = predictable(campaign)
+    datasets = [
+        replace(dataset, data=dataset.data.assign({name: right[name] for name in right.data_vars}))
+        for dataset, right in zip(datasets, predict(campaign, datasets, threads=threads), strict=True)
+    ]
     fit = untouched(gather(campaign, datasets, threads=threads))
     ring = Ring(fit)
     offered = list(hypotheses(Situation(fit, tuple(unseen(fit)))))

@@ -83,6 +83,9 @@ def verdict_of(
             status=status, effects=effects, evidence=weight, recalibrated=recalibrated, detectable=sizes
         )
     amended = accepted[-1].fit
+    if amended.heat > max(UNFIT, decide.HALF * base.heat):
+        # Next to nothing of a misfit is no suspicion of anything.
+        return Verdict(status="insufficient", evidence=weight, recalibrated=recalibrated, detectable=sizes)
     gap = decide.explained(base, amended, left)
     by_prefix = {r.finalists[0].prefix: r for r in rounds if r.finalists}
     effects = tuple(_effect(one, by_prefix[one.prefix], amended, base, gap) for one in accepted)
