@@ -51,7 +51,7 @@ def _answered(needs: Sequence[Need | None], campaign: Campaign, near: Solved | N
     others = {
         need.state
         for need, old in zip(needs, near.needs, strict=True)
-        if need is not None and (old is None or not _same(need, old))
+        if need is not None and (old is None or not need.is_like(old))
     }
     return {state: answer for state, answer in near.answers.items() if state not in others}
 
@@ -73,11 +73,6 @@ def _kept(
         and answers[need.state] is near.answers.get(need.state)
         for dataset, need in zip(datasets, needs, strict=True)
     ]
-
-
-def _same(one: Need, other: Need) -> bool:
-    alike = (one.state, one.rows, one.columns) == (other.state, other.rows, other.columns)
-    return alike and np.array_equal(one.frequency_Hz, other.frequency_Hz)
 
 
 @dataclass(frozen=True)

@@ -17,11 +17,11 @@ from permway.model.line import Line
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_factors import model_under
 from permway.recordings.predict import Answer, Need, Sweep, need_of, predict_one
-from permway.response.receptance import Place
-from permway.response.sensitivity import PROPERTIES, sensitivity
+from permway.recordings.predict.sweeps import places_of
+from permway.response.sensitivity import sensitivity
 
 COLUMNS = ("bending", "shear", "mass", "rotary")
-"""Of the core's tables, in the order of `PROPERTIES`."""
+"""Of the core's tables, in the order of :data:`permway.response.sensitivity.PROPERTIES`."""
 
 MOST_BEAMS = 60
 """Beams and masses of a line above which all derivatives together cost more memory than they save time."""
@@ -86,20 +86,20 @@ class Nearby:
         for index in np.flatnonzero(mass):
             values += mass[index] * known.by_mass[:, index]
         sweep = Sweep(
-            need.temperature_C, need.frequency_Hz, _places(need.columns), _places(need.rows), need.factors
+            need.temperature_C, need.frequency_Hz, places_of(need.columns), places_of(need.rows), need.factors
         )
         return Answer(sweep, values)
 
     def _derivatives(self, need: Need, line: Line) -> _Derivatives:
         if id(need) not in self._known:
             # Two runs at one temperature may need the same.
-            like = next((n for n in self.solved.needs if n is not None and _identical(n, need)), need)
+            like = next((n for n in self.solved.needs if n is not None and n.is_like(need)), need)
             if id(like) not in self._known:
                 data = sensitivity(
                     line,
                     like.frequency_Hz,
-                    forces=_places(like.columns),
-                    sensors=_places(like.rows),
+                    forces=places_of(like.columns),
+                    sensors=places_of(like.rows),
                     temperature_C=like.temperature_C,
                     threads=self.evidence.threads,
                 )
@@ -139,16 +139,4 @@ def _alike(one: Line, other: Line) -> bool:
 def _same_places(one: Need | None, other: Need | None) -> bool:
     if one is None or other is None:
         return one is other
-    return _identical(one, other)
-
-
-def _identical(one: Need, other: Need) -> bool:
-    alike = (one.state, one.rows, one.columns) == (other.state, other.rows, other.columns)
-    return alike and np.array_equal(one.frequency_Hz, other.frequency_Hz)
-
-
-def _places(spots: tuple[tuple[str, float], ...]) -> tuple[Place, ...]:
-    return tuple(Place(body=body, x_m=x, name=f"{body}@{x!r}") for body, x in spots)
-
-
-assert len(COLUMNS) == len(PROPERTIES)
+    return one.is_like(other)

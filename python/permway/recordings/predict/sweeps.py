@@ -46,6 +46,11 @@ class Need:
         """What needs that one sweep serves have in common."""
         return self.temperature_C, self.factors
 
+    def is_like(self, other: Need) -> bool:
+        """Whether another needs the same receptances."""
+        alike = (self.state, self.rows, self.columns) == (other.state, other.rows, other.columns)
+        return alike and np.array_equal(self.frequency_Hz, other.frequency_Hz)
+
 
 @dataclass(frozen=True)
 class Sweep:
@@ -138,7 +143,7 @@ def plan(needs: Iterable[Need]) -> list[Sweep]:
             forces.update(dict.fromkeys(few))
             sensors.update(dict.fromkeys(many))
         frequency = np.unique(np.concatenate([need.frequency_Hz for need in members]))
-        sweeps.append(Sweep(temperature, frequency, _places(forces), _places(sensors), factors))
+        sweeps.append(Sweep(temperature, frequency, places_of(forces), places_of(sensors), factors))
     return sweeps
 
 
@@ -163,5 +168,6 @@ def solve(sweep: Sweep, model: Model, *, threads: int | None = None) -> Answer:
     return Answer(sweep, data["receptance"].values)
 
 
-def _places(spots: Iterable[Spot]) -> tuple[Place, ...]:
+def places_of(spots: Iterable[Spot]) -> tuple[Place, ...]:
+    """Places for the solver, named by what they are."""
     return tuple(Place(body=body, x_m=x, name=f"{body}@{x!r}") for body, x in spots)
