@@ -12,29 +12,13 @@ from typing import Protocol
 
 import numpy as np
 import xarray as xr
-from scipy import sparse
 
 from permway.arrays import Reals
+from permway.diagnosis.smooth import Smooth
 from permway.recordings.campaign_load import Dataset
 
 SURE = 0.25
 """Relative error of a response or a transfer below which it counts by its logarithm."""
-
-
-@dataclass(frozen=True)
-class Smooth:
-    """How smooth errors move the deviations of a block.
-
-    Attributes
-    ----------
-    origins : tuple of str
-        Of every column, as "sensor rail@16" or "irregularity".
-    columns : sparse matrix, shape (rows, coefficients)
-        Deviations per coefficient, each of unit size a smooth error of 1 neper (amplitude) or rad.
-    """
-
-    origins: tuple[str, ...]
-    columns: sparse.csr_array
 
 
 @dataclass(frozen=True)
@@ -73,15 +57,13 @@ class Block(Protocol):
         """Standardised, shape (n,)."""
 
     @property
-    def smooth(self) -> list[Smooth]:
+    def smooth(self) -> Smooth | None:
         """What smooth errors would do."""
 
 
 @dataclass
 class Basis:
     """Cubic splines over the logarithm of frequency: a value at each knot, smooth between (Keys 1981).
-
-    Two knots per octave follow a smooth error that wanders over an octave to one percent of its size.
 
     Parameters
     ----------

@@ -6,10 +6,11 @@ from functools import cached_property
 
 import numpy as np
 import xarray as xr
-from scipy import sparse
 
 from permway.arrays import Complexes, Reals
-from permway.diagnosis.blocks import SURE, Basis, Rows, Smooth
+from permway.diagnosis.blocks import SURE, Basis, Rows
+from permway.diagnosis.smooth import Origin, PairColumns, Smooth
+from permway.diagnosis.wander import Wander
 from permway.recordings.campaign_load import Dataset
 
 FLOOR = 0.003
@@ -35,6 +36,8 @@ class FrfBlock:
         Size of a pair's smooth error, neper and rad.
     reference : Dataset of xarray
         A prediction, which stands for what is there where noise hides it.
+    span : (float, float), optional
+        Hz, over which chains' errors wander, where other records of the same chains reach further.
     """
 
     KNOTS_PER_OCTAVE = 3.0
@@ -46,6 +49,7 @@ class FrfBlock:
         floor: float = FLOOR,
         pair: float = FLOOR,
         reference: xr.Dataset,
+        span: tuple[float, float] | None = None,
     ) -> None:
         self.dataset, self.floor, self.pair, self._reference = dataset, floor, pair, reference
         data = dataset.data
@@ -68,9 +72,10 @@ class FrfBlock:
         # Noise alone looks large, and sure of itself, where it happens to be both.
         seen = np.minimum(size, np.abs(expected))
         self._logarithmic = used & (np.maximum(own * size, self.sigma) < SURE * seen)
+        self._seen: Complexes = self._measured[self._logarithmic]
         # Of what is mostly noise, smooth errors act on what is there.
         self._there: Complexes = np.where(self._logarithmic, self._measured, expected)
-        self._basis = Basis(float(self.frequency[0]), float(self.frequency[-1]))
+        self._span = span or (float(self.frequency[0]), float(self.frequency[-1]))
         fine = Basis(float(self.frequency[0]), float(self.frequency[-1]), self.KNOTS_PER_OCTAVE)
         errors = (self._there * self.weight)[..., None] * fine.values(self.frequency)
         self._directions, singular, _ = np.linalg.svd(errors, full_matrices=False)
@@ -107,6 +112,7 @@ class FrfBlock:
             floor=self.floor if floor is None else floor,
             pair=self.pair if pair is None else pair,
             reference=self._reference if reference is None else reference,
+            span=self._span,
         )
 
     @property
@@ -129,9 +135,11 @@ class FrfBlock:
     def off(self, predicted: xr.Dataset) -> Complexes:
         """Measured less predicted, in the response's unit, as errors that multiply have it."""
         model = predicted["frf"].values
-        with np.errstate(divide="ignore", invalid="ignore"):
-            multiplied = self._measured * np.log(self._measured / model)
-        return np.asarray(np.where(self._logarithmic, multiplied, self._measured - model))
+        found = self._measured - model
+        ratio = self._seen / model[self._logarithmic]
+        # The logarithm by its parts: several times faster than that of complex numbers.
+        found[self._logarithmic] = self._seen * (0.5 * np.log(_square(ratio)) + 1j * np.angle(ratio))
+        return np.asarray(found)
 
     def along(self, predicted: xr.Dataset) -> Complexes:
         """Direction in which a gain moves a deviation; a phase moves it across."""
@@ -156,27 +164,19 @@ class FrfBlock:
         return float(self.pair * np.sqrt(power[variance > 0.0].mean()))
 
     @cached_property
-    def smooth(self) -> list[Smooth]:
+    def smooth(self) -> Smooth:
         """Of each sensor's chain and of the hammer's at each point: log gain and phase."""
-        basis = self._basis.values(self.frequency)
+        wander = Wander(*self._span)
         sensors, points = (self.dataset.data[kind].values.astype(str) for kind in ("sensor", "force"))
-        spread = self._there * self.weight
-        white = np.stack([self.white(spread * column) for column in basis.T], axis=-1)
-        # A smooth gain moves a response along itself, a smooth phase across.
-        gain = np.concatenate([white.real, white.imag]).reshape(-1, basis.shape[1])
-        phase = np.concatenate([-white.imag, white.real]).reshape(-1, basis.shape[1])
         # Measured is what is there times the error: deviations grow by it.
-        values = np.hstack([gain, phase])
-        width, rows = values.shape[1], np.arange(values.shape[0])
-        pair = (rows // self.frequency.size) % (sensors.size * points.size)
-        first = np.stack([pair // points.size, sensors.size + pair % points.size], axis=1) * width
-        where = (first[:, :, None] + np.arange(width)).reshape(-1)
-        whole = sparse.csr_array(
-            (np.hstack([values, values]).reshape(-1), where, np.arange(0, where.size + 1, 2 * width)),
-            shape=(rows.size, width * (sensors.size + points.size)),
-        )
-        origins = [f"sensor {name}" for name in sensors] + [f"force {name}" for name in points]
-        return [Smooth(tuple(np.repeat(origins, width)), whole)]
+        spread = self._there * self.weight
+        gains = np.stack([self.white(spread * v) for v in wander.values(self.frequency).T], axis=-1)
+        names = [*(f"sensor {name}" for name in sensors), *(f"force {name}" for name in points)]
+        return Smooth(tuple(Origin(name, wander, 2) for name in names), PairColumns(gains))
+
+
+def _square(values: Complexes) -> Reals:
+    return np.asarray(values.real**2 + values.imag**2)
 
 
 def _noise_variance(raw: Reals, reach: int = 4) -> Reals:

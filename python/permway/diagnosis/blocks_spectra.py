@@ -10,7 +10,9 @@ import xarray as xr
 from scipy import sparse
 
 from permway.arrays import Complexes, Reals
-from permway.diagnosis.blocks import SURE, Basis, Rows, Smooth
+from permway.diagnosis.blocks import SURE, Rows
+from permway.diagnosis.smooth import Origin, Smooth, SparseColumns
+from permway.diagnosis.wander import Wander
 from permway.recordings.campaign_load import Dataset
 
 LEAST_LINES = 20
@@ -30,20 +32,31 @@ class SpectraBlock:
     dataset : Dataset
     expected : Dataset of xarray
         The prediction by which the tree is chosen and transfers are weighed.
+    noise : ndarray, shape (channels, F)
+        Expected power of each channel's own noise, which its gain does not act on.
     floor : float
         Relative error of transfers that adds to their scatter.
     scatter : sequence of float, optional
         Of each part, by how much its lines scatter more than so many averages of a stationary record would: the
         level of a track changes from place to place.
+    span : (float, float), optional
+        Hz, over which chains' errors wander, where other records of the same channels reach further.
     """
 
     LEAST_COHERENCE = 0.1
     MOST_COHERENCE = 0.98
 
     def __init__(
-        self, dataset: Dataset, expected: xr.Dataset, *, floor: float = 0.01, scatter: Sequence[float] = ()
+        self,
+        dataset: Dataset,
+        expected: xr.Dataset,
+        *,
+        floor: float = 0.01,
+        noise: Reals,
+        scatter: Sequence[float] = (),
+        span: tuple[float, float] | None = None,
     ) -> None:
-        self.dataset, self._expected, self._floor = dataset, expected, floor
+        self.dataset, self._expected, self._floor, self._noise = dataset, expected, floor, noise
         data = dataset.data
         # Neighbouring lines under Hann's window say half the same.
         self._lines = np.arange(0, data.sizes["frequency"], 2)
@@ -88,7 +101,7 @@ class SpectraBlock:
             np.concatenate(frequency),
             np.concatenate(scale),
         )
-        self._basis = Basis(float(self.frequency[0]), float(self.frequency[-1]))
+        self._span = span or (float(self.frequency[0]), float(self.frequency[-1]))
 
     def deviations(self, predicted: xr.Dataset) -> Reals:
         """Part by part, transfers as real then imaginary."""
@@ -112,7 +125,7 @@ class SpectraBlock:
 
     def scattered(self, predicted: xr.Dataset) -> SpectraBlock:
         """The same with the scatter of each part learnt from how its lines differ from their neighbours."""
-        plain = SpectraBlock(self.dataset, self._expected, floor=self._floor)
+        plain = self.expecting(self._expected, self._noise)
         deviations, scatter, start = plain.deviations(predicted), [], 0
         for what, _, _, at, _ in plain._parts:
             size = (2 if what == "transfer" else 1) * at.size
@@ -121,41 +134,53 @@ class SpectraBlock:
             typical = 1.4826 / np.sqrt(2.0) * float(np.median(np.abs(steps))) if size > LEAST_LINES else 1.0
             scatter.append(max(1.0, typical))
             start += size
-        return SpectraBlock(self.dataset, self._expected, floor=self._floor, scatter=scatter)
+        return SpectraBlock(
+            self.dataset, self._expected, noise=self._noise, floor=self._floor, scatter=scatter, span=self._span
+        )
+
+    def expecting(self, expected: xr.Dataset, noise: Reals) -> SpectraBlock:
+        """The same weighed by another prediction, with the scatter of a stationary record."""
+        return SpectraBlock(self.dataset, expected, noise=noise, floor=self._floor, span=self._span)
+
+    def _heard(self, what: str, c: int, o: int, at: np.ndarray) -> Reals:
+        """Share of a power, or of what remains of it, that is no noise of the channel itself."""
+        model = self._expected["csd"].values[:, :, self._lines]
+        whole = model[c, c, at].real if what == "power" else _remainder(model, c, o, at)
+        return np.asarray(np.clip(1.0 - self._noise[c, self._lines][at] / whole, 0.0, 1.0))
 
     @cached_property
-    def smooth(self) -> list[Smooth]:
+    def smooth(self) -> Smooth:
         """Of each channel's chain, log gain and phase, and of the irregularity's level."""
         names = self.dataset.data["channel"].values.astype(str)
         speed = self.dataset.condition.speed_m_per_s
-        found = []
-        for channel, name in enumerate(names):
+        wander = Wander(*self._span)
+        origins, columns = [Origin(f"channel {name}", wander, 2) for name in names], []
+        for channel in range(names.size):
             gains, phases = [], []
             for what, c, o, at, sigma in self._parts:
-                basis = self._basis.values(self.frequency[at]) / sigma[:, None]
+                values = wander.values(self.frequency[at]) / sigma[:, None]
                 sign = float(c == channel) - float(o == channel and what == "transfer")
-                zero = np.zeros_like(basis)
+                zero = np.zeros_like(values)
                 if what == "transfer":
-                    gains.extend([-sign * basis, zero])
-                    phases.extend([zero, -sign * basis])
+                    gains.extend([sign * values, zero])
+                    phases.extend([zero, sign * values])
                 else:
-                    gains.append(-2.0 * float(c == channel) * basis)
+                    gains.append(2.0 * float(c == channel) * self._heard(what, c, o, at)[:, None] * values)
                     phases.append(zero)
-            columns = sparse.csr_array(np.hstack([np.vstack(gains), np.vstack(phases)]))
-            found.append(Smooth((f"channel {name}",) * columns.shape[1], columns))
+            columns.append(sparse.csr_array(np.hstack([np.vstack(gains), np.vstack(phases)])))
         if speed is not None:
-            # The same track under every speed: knots over wavenumber, two per octave.
-            wavenumber = IRREGULARITY_KNOTS
+            # The same track under every speed.
             level = []
             for what, _, _, at, sigma in self._parts:
-                basis = wavenumber.values(self.frequency[at] / speed) / sigma[:, None]
-                level.extend([-basis] if what != "transfer" else [np.zeros_like(basis)] * 2)
-            found.append(Smooth(("irregularity",) * wavenumber.knots.size, sparse.csr_array(np.vstack(level))))
-        return found
+                values = LEVEL.values(self.frequency[at] / speed) / sigma[:, None]
+                level.extend([values] if what != "transfer" else [np.zeros_like(values)] * 2)
+            origins.append(Origin("irregularity", LEVEL, 1, chain=False))
+            columns.append(sparse.csr_array(np.vstack(level)))
+        return Smooth(tuple(origins), SparseColumns(sparse.csr_array(sparse.hstack(columns))))
 
 
-IRREGULARITY_KNOTS = Basis(0.005, 20.0, per_octave=1.0)
-"""Over cycles per metre."""
+LEVEL = Wander(0.005, 20.0, shortest=1.4)
+"""Of the irregularity, over cycles per metre."""
 
 
 def _coherence(csd: Complexes) -> Reals:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 import xarray as xr
 from scipy import sparse
 
 from permway.arrays import Reals
-from permway.diagnosis.blocks import Basis, Rows, Smooth
+from permway.diagnosis.blocks import Rows
+from permway.diagnosis.smooth import Origin, Smooth, SparseColumns
+from permway.diagnosis.wander import Wander
 from permway.recordings.campaign_load import Dataset
 
 SCATTER_DB = {"decay_rate": 1.0, "transmissibility": 0.3, "modulus": 0.5}
@@ -46,17 +50,18 @@ class TableBlock:
         self.rows = Rows(
             text, text, np.full(text.size, ""), np.tile(self.frequency, count), np.full(text.size, scatter)
         )
-        self._basis = Basis(float(self.frequency.min()), float(self.frequency.max()) * 1.0001)
 
     def deviations(self, predicted: xr.Dataset) -> Reals:
         """Logarithms of measured over predicted; of complex values modulus, then phase."""
         ratio = np.log((self.measured / predicted[self.name].values).reshape(-1)) / self.sigma
         return np.concatenate([ratio.real, ratio.imag]) if self.complex else np.asarray(ratio)
 
-    @property
-    def smooth(self) -> list[Smooth]:
+    @cached_property
+    def smooth(self) -> Smooth:
         """Of the rig, or of the method: a smooth error of the logarithm."""
-        basis = self._basis.values(self.frequency) / self.sigma
-        zero = np.zeros_like(basis)
-        columns = np.block([[-basis, zero], [zero, -basis]]) if self.complex else -basis
-        return [Smooth((f"record {self.dataset.record.name}",) * columns.shape[1], sparse.csr_array(columns))]
+        wander = Wander(float(self.frequency.min()), float(self.frequency.max()))
+        values = wander.values(self.frequency) / self.sigma
+        zero = np.zeros_like(values)
+        matrix = np.block([[values, zero], [zero, values]]) if self.complex else values
+        origin = Origin(f"record {self.dataset.record.name}", wander, 2 if self.complex else 1)
+        return Smooth((origin,), SparseColumns(sparse.csr_array(matrix)))

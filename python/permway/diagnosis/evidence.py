@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 import xarray as xr
-from scipy import linalg, sparse
 
 from permway.arrays import Reals
-from permway.diagnosis.blocks import Block, Rows, Smooth
+from permway.diagnosis.blocks import Block, Rows
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
+from permway.diagnosis.wander import FIRST_LENGTH
+from permway.diagnosis.whitener import AllColumns, Whitener
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
@@ -26,9 +26,6 @@ SMALLEST_SMOOTH, LARGEST_SMOOTH = 0.001, 0.2
 
 LARGEST_PAIR = 0.03
 """Of the errors of a pair of sensor and point, 0.26 dB: what is larger is not of where a hammer fell."""
-
-DENSE_ROWS = 16
-"""Rows with entries in the same columns from which their products are taken as those of dense matrices."""
 
 LINES_PER_FREQUENCY = 40.0
 """Lines of a frequency response within its own frequency, at most."""
@@ -86,6 +83,8 @@ class Evidence:
     blocks : tuple of Block
     sizes : mapping of origin to float
         Standard deviation of each origin's smooth errors, neper or rad.
+    length : float
+        Octaves over which the errors of chains correlate.
     threads : int, optional
         Of the solver.
     """
@@ -93,6 +92,7 @@ class Evidence:
     campaign: Campaign
     blocks: tuple[Block, ...]
     sizes: Mapping[str, float]
+    length: float = FIRST_LENGTH
     threads: int | None = None
 
     @property
@@ -138,39 +138,27 @@ class Evidence:
         """Standardised deviations of all rows."""
         return np.concatenate([b.deviations(p) for b, p in zip(self.blocks, predicted, strict=True)])
 
-    @property
-    def smooth(self) -> tuple[sparse.csr_array, list[str]]:
-        """Columns of all smooth errors, and the origin of each: one origin met by two records is one."""
-        parts = [block.smooth for block in self.blocks]
-        origins: list[str] = []
-        first: dict[str, int] = {}
-        for origin in (o for part in parts for smooth in part for o in smooth.origins):
-            first.setdefault(origin, -1)
-        for part in parts:
-            for smooth in part:
-                for origin in dict.fromkeys(smooth.origins):
-                    if first[origin] < 0:
-                        first[origin] = len(origins)
-                        origins.extend([origin] * smooth.origins.count(origin))
-        rows = [
-            _placed(part, first, len(origins), b.rows.channel.size)
-            for part, b in zip(parts, self.blocks, strict=True)
-        ]
-        return sparse.csr_array(sparse.vstack(rows, format="csr")), origins
+    @cached_property
+    def columns(self) -> AllColumns:
+        """What smooth errors of unit size do to the deviations."""
+        return AllColumns.of([block.smooth for block in self.blocks], [b.rows.channel.size for b in self.blocks])
 
     @cached_property
     def whitener(self) -> Whitener:
         """What takes out the smooth errors."""
-        return Whitener.of(*self.smooth, self.sizes)
+        return Whitener.of(self.columns, self.sizes, self.length)
 
     @property
     def log_determinant(self) -> float:
         """Of the covariance by which the blocks' own smooth errors are taken out."""
         return sum(block.log_determinant for block in self.blocks)
 
-    def with_sizes(self, sizes: Mapping[str, float]) -> Evidence:
-        """The same with other sizes of smooth errors."""
-        return replace(self, sizes=dict(sizes))
+    def with_sizes(self, sizes: Mapping[str, float], length: float | None = None) -> Evidence:
+        """The same with other sizes of smooth errors, and another length."""
+        other = replace(self, sizes=dict(sizes), length=self.length if length is None else length)
+        if "columns" in self.__dict__:
+            other.__dict__["columns"] = self.columns
+        return other
 
     def blunted(self, floor: float) -> Evidence:
         """The same with a larger relative error of every frequency response.
@@ -180,15 +168,15 @@ class Evidence:
         blocks = tuple(b.with_floor(floor) if isinstance(b, FrfBlock) else b for b in self.blocks)
         return replace(self, blocks=blocks)
 
-    def reweighed(self, predicted: Sequence[xr.Dataset]) -> Evidence:
+    def reweighed(self, solved: Solved) -> Evidence:
         """The same with spectra weighed by what a fit predicts, and not by what the owner's values do.
 
         And with what it predicts of frequency responses where noise hides them.
         """
         blocks: list[Block] = []
-        for block, prediction in zip(self.blocks, predicted, strict=True):
+        for block, prediction in zip(self.blocks, solved.datasets, strict=True):
             if isinstance(block, SpectraBlock):
-                block = SpectraBlock(block.dataset, prediction)
+                block = block.expecting(prediction, _noise(solved.campaign, block.dataset))
             elif isinstance(block, FrfBlock):
                 block = block.with_reference(prediction)
             blocks.append(block)
@@ -239,25 +227,43 @@ def gather(
     InputError
         From reading, or for a record that cannot be predicted.
     """
-    evidence, origins = _blocked(campaign, campaign.load() if datasets is None else datasets, threads)
-    return evidence.with_sizes({origin: _first_size(campaign, origin) for origin in origins})
+    evidence = _blocked(campaign, campaign.load() if datasets is None else datasets, threads)
+    names = [origin.name for origin in evidence.columns.origins]
+    return evidence.with_sizes({name: _first_size(campaign, name) for name in names})
 
 
 def evidence_of(campaign: Campaign, datasets: Sequence[Dataset], like: Evidence) -> Evidence:
     """Datasets that need not be of the campaign's files, with the sizes of smooth errors that another has."""
-    evidence, origins = _blocked(campaign, datasets, like.threads)
+    evidence = _blocked(campaign, datasets, like.threads)
     usual = float(np.median(list(like.sizes.values()))) if like.sizes else _first_size(campaign, "")
-    return evidence.with_sizes({origin: like.sizes.get(origin, usual) for origin in origins})
+    names = [origin.name for origin in evidence.columns.origins]
+    return evidence.with_sizes({name: like.sizes.get(name, usual) for name in names}, like.length)
 
 
-def _blocked(campaign: Campaign, datasets: Sequence[Dataset], threads: int | None) -> tuple[Evidence, list[str]]:
-    """Evidence whose smooth errors have no sizes yet, and their origins."""
+def _blocked(campaign: Campaign, datasets: Sequence[Dataset], threads: int | None) -> Evidence:
+    """Evidence whose smooth errors have no sizes yet."""
     loaded = [thinned(dataset) for dataset in datasets]
     predicted = predict(campaign, loaded, threads=threads)
-    blocks = tuple(_block(dataset, prediction) for dataset, prediction in zip(loaded, predicted, strict=True))
-    evidence = Evidence(campaign, blocks, {}, threads)
-    _, origins = evidence.smooth
-    return evidence, list(dict.fromkeys(origins))
+    spans = _spans(loaded)
+    blocks = tuple(
+        _block(campaign, dataset, prediction, spans) for dataset, prediction in zip(loaded, predicted, strict=True)
+    )
+    return Evidence(campaign, blocks, {}, threads=threads)
+
+
+def _spans(datasets: Sequence[Dataset]) -> dict[str, tuple[float, float]]:
+    """Lowest and highest frequency of all records of a kind, which share their chains."""
+    spans: dict[str, tuple[float, float]] = {}
+    for dataset in datasets:
+        if "frequency" in dataset.data:
+            frequency, kind = dataset.data["frequency"].values, _kind(dataset)
+            low, high = spans.get(kind, (np.inf, -np.inf))
+            spans[kind] = min(low, float(frequency[0])), max(high, float(frequency[-1]))
+    return spans
+
+
+def _kind(dataset: Dataset) -> str:
+    return "spectra" if dataset.record.statistic in ("csd", "psd") else dataset.record.statistic
 
 
 def thinned(dataset: Dataset) -> Dataset:
@@ -284,94 +290,20 @@ def _first_size(campaign: Campaign, origin: str) -> float:
     return 0.02
 
 
-def _block(dataset: Dataset, predicted: xr.Dataset) -> Block:
+def _noise(campaign: Campaign, dataset: Dataset) -> Reals:
+    """Expected power of the noise of each channel of a run, (channels, F)."""
+    data = dataset.data
+    frequency = np.asarray(data["frequency"].values, dtype=np.float64)
+    return np.stack([campaign.sensor(str(name)).noise(frequency) for name in data["channel"].values])
+
+
+def _block(
+    campaign: Campaign, dataset: Dataset, predicted: xr.Dataset, spans: Mapping[str, tuple[float, float]]
+) -> Block:
     match dataset.record.statistic:
         case "frf":
-            return FrfBlock(dataset, reference=predicted)
+            return FrfBlock(dataset, reference=predicted, span=spans["frf"])
         case "csd" | "psd":
-            return SpectraBlock(dataset, predicted)
+            return SpectraBlock(dataset, predicted, noise=_noise(campaign, dataset), span=spans["spectra"])
         case _:
             return TableBlock(dataset)
-
-
-def _placed(parts: Sequence[Smooth], first: Mapping[str, int], width: int, rows: int) -> sparse.csr_array:
-    """A block's columns where all blocks' columns of the same origin are."""
-    whole = sparse.csr_array((rows, width))
-    for smooth in parts:
-        names = np.array(smooth.origins)
-        place = np.empty(names.size, dtype=np.int64)
-        for origin in dict.fromkeys(smooth.origins):
-            mine = np.flatnonzero(names == origin)
-            place[mine] = first[origin] + np.arange(mine.size)
-        csr = smooth.columns
-        moved = sparse.csr_array((csr.data, place[csr.indices], csr.indptr), shape=(rows, width))
-        whole = moved if whole.nnz == 0 else whole + moved
-    return whole
-
-
-def gram(columns: sparse.csr_array) -> Reals:
-    """`B' B`, where many neighbouring rows have their entries in the same columns, as those of one pair do."""
-    width = np.diff(columns.indptr)
-    inner = np.zeros((columns.shape[1], columns.shape[1]))
-    edges = np.concatenate([[0], np.flatnonzero(np.diff(width)) + 1, [width.size]])
-    rest = np.zeros(width.size, dtype=bool)
-    for start, stop in pairwise(edges):
-        count = int(width[start])
-        if stop - start < DENSE_ROWS or count == 0:
-            rest[start:stop] = count > 0
-            continue
-        inside = slice(columns.indptr[start], columns.indptr[stop])
-        where = columns.indices[inside].reshape(-1, count)
-        values = columns.data[inside].reshape(-1, count)
-        new = np.concatenate([[0], np.flatnonzero((where[1:] != where[:-1]).any(axis=1)) + 1, [where.shape[0]]])
-        lengths = np.diff(new)
-        if lengths.min() < DENSE_ROWS:
-            rest[start:stop] = True
-            continue
-        for length in np.unique(lengths):
-            begin = new[:-1][lengths == length]
-            picked = values[begin[:, None] + np.arange(length)]
-            local = picked.swapaxes(1, 2) @ picked
-            at = where[begin]
-            np.add.at(inner, (at[:, :, None], at[:, None, :]), local)
-    if rest.any():
-        left = sparse.csr_array(columns[np.flatnonzero(rest)])
-        inner += (left.T @ left).toarray()
-    return inner
-
-
-@dataclass(frozen=True)
-class Whitener:
-    """Takes out of deviations what smooth errors of known sizes would explain.
-
-    With columns B of prior variance D the covariance of the deviations is I + B D B'. Its inverse is applied by
-    Woodbury's identity, and quadratic forms come out as those of independent deviations less what is explained.
-    """
-
-    columns: sparse.csr_array
-    scale: Reals
-    factor: np.ndarray
-    origins: tuple[str, ...]
-
-    @staticmethod
-    def of(columns: sparse.csr_array, origins: Sequence[str], sizes: Mapping[str, float]) -> Whitener:
-        """From the columns and the sizes of their origins."""
-        scale = np.array([sizes[origin] for origin in origins])
-        scaled = sparse.csr_array(columns.multiply(scale[None, :]))
-        inner = gram(scaled) + np.eye(scale.size)
-        return Whitener(scaled, scale, linalg.cholesky(inner, lower=True), tuple(origins))
-
-    def reduce(self, values: Reals) -> Reals:
-        """`L^-1 B' v`, of which the squares are what is explained; values (n,) or (n, k)."""
-        return np.asarray(linalg.solve_triangular(self.factor, self.columns.T @ values, lower=True))
-
-    def explained(self, values: Reals) -> tuple[Reals, Reals]:
-        """The coefficients that explain most, in units of their sizes, and their posterior variances."""
-        coefficients = linalg.cho_solve((self.factor, True), self.columns.T @ values)
-        inverse = linalg.cho_solve((self.factor, True), np.eye(self.scale.size))
-        return np.asarray(coefficients), np.asarray(np.diag(inverse))
-
-    @property
-    def log_determinant(self) -> float:
-        """Of I + B D B'."""
-        return float(2.0 * np.log(np.diag(self.factor)).sum())

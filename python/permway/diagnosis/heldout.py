@@ -11,13 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from scipy import linalg, sparse
+from scipy import linalg
 
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
-from permway.diagnosis.evidence import Evidence, Whitener
+from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.whitener import Whitener
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign_groups import held_out
 from permway.recordings.campaign_parts import HeldOut
@@ -129,9 +130,7 @@ class Rest:
 
     def __init__(self, fit: Fit) -> None:
         self.fit = fit
-        columns, origins = fit.evidence.smooth
         self._whole = fit.evidence.whitener
-        self._columns, self._origins = columns, origins
         # Speeds and noise floors of what is left out are as all records have them, before and after.
         known = fit.evidence.campaign.parameters
         self._recording = np.array(
@@ -144,7 +143,8 @@ class Rest:
         )
 
     def _of(self, rows: np.ndarray) -> Whitener:
-        return Whitener.of(sparse.csr_array(self._columns[rows]), self._origins, self.fit.evidence.sizes)
+        evidence = self.fit.evidence
+        return Whitener.of(evidence.columns.masked(rows), evidence.sizes, evidence.length)
 
     def _deviations(self, z: Reals) -> Reals | None:
         values = {f.name: f.value(float(v)) for f, v in zip(self.fit.free, z, strict=True)}
@@ -158,24 +158,24 @@ class Rest:
     def fitted(self, rows: np.ndarray) -> tuple[Reals, Reals]:
         """Values z and all deviations of a fit to some rows."""
         fit, whitener = self.fit, self._of(rows)
-        jacobian = fit.jacobian[rows]
+        jacobian = np.where(rows[:, None], fit.jacobian, 0.0)
         reduced = whitener.reduce(jacobian)
         information = jacobian.T @ jacobian - reduced.T @ reduced
         normal = information / fit.heat + np.eye(fit.z.size)
         known = ~(self._recording & (np.diag(jacobian.T @ jacobian) < OWN * (fit.jacobian**2).sum(axis=0)))
         low, high = np.array([f.limits for f in fit.free]).T
         z, deviations = fit.z, fit.deviations
-        value = _square(whitener, deviations[rows]) / fit.heat + float(z @ z)
+        value = whitener.square(deviations * rows) / fit.heat + float(z @ z)
         for _ in range(STEPS):
-            left = whitener.reduce(deviations[rows])
-            slope = (jacobian.T @ deviations[rows] - reduced.T @ left) / fit.heat + z
+            left = whitener.reduce(deviations * rows)
+            slope = (jacobian.T @ deviations - reduced.T @ left) / fit.heat + z
             shift, moved = np.zeros(z.size), False
             shift[known] = -linalg.solve(normal[np.ix_(known, known)], slope[known], assume_a="pos")
             for share in (1.0, 0.3):
                 tried = np.clip(z + share * shift, low, high)
                 new = self._deviations(tried)
                 if new is not None:
-                    objective = _square(whitener, new[rows]) / fit.heat + float(tried @ tried)
+                    objective = whitener.square(new * rows) / fit.heat + float(tried @ tried)
                     if objective < value:
                         gained, moved = value - objective, True
                         z, deviations, value = tried, new, objective
@@ -193,12 +193,11 @@ class Rest:
         """
         _, deviations = self.fitted(~part)
         rest = self._of(~part)
-        square = _square(self._whole, deviations) - _square(rest, deviations[~part])
+        seen = deviations * ~part
+        square = self._whole.square(deviations) - rest.square(seen)
         volume = self._whole.log_determinant - rest.log_determinant + float(self._volume[part].sum())
         heat = self.fit.heat
-        coefficients, _ = rest.explained(deviations[~part])
-        scale = np.array([self.fit.evidence.sizes[o] for o in self._origins])
-        left = deviations[part] - sparse.csr_array(self._columns[part]) @ (scale * coefficients)
+        left = (deviations - self._whole.smooth(rest.explained(seen), deviations.size))[part]
         size = self.fit.evidence.rows.scale_dB[part]
         sure = size < SURE_DB
         level = (deviations[part] * size)[sure]
@@ -214,12 +213,7 @@ class Rest:
         volume = whitener.log_determinant + float(self._volume[rows].sum())
         heat = self.fit.heat
         spread = float(np.log(heat)) * float(rows.sum())
-        return -0.5 * (_square(whitener, deviations[rows]) / heat + volume + spread)
-
-
-def _square(whitener: Whitener, values: Reals) -> float:
-    reduced = whitener.reduce(values)
-    return float(values @ values - reduced @ reduced)
+        return -0.5 * (whitener.square(deviations * rows) / heat + volume + spread)
 
 
 @dataclass(frozen=True)

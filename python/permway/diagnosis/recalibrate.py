@@ -17,6 +17,7 @@ from permway.diagnosis.evidence import LARGEST_SMOOTH, SMALLEST_SMOOTH, Evidence
 from permway.diagnosis.fit import Build, Fit, Free, free_parameters
 from permway.diagnosis.speeds import begin
 from permway.diagnosis.tangent import Problem
+from permway.diagnosis.wander import LENGTHS
 from permway.errors import InputError
 
 USUAL, SEEN = 0.02, 4.0
@@ -113,7 +114,7 @@ def recalibrate(
             tangent, exact = problem.tangent(state), True
         elif (learn and rounds < MOST_LEARNT) or reweigh:
             if reweigh:
-                problem.evidence, reweigh = problem.evidence.reweighed(state.solved.datasets), False
+                problem.evidence, reweigh = problem.evidence.reweighed(state.solved), False
             if learn:
                 problem.evidence, change = learnt(problem.evidence, state.solved)
                 rounds = rounds + 1 if change >= 0.1 else MOST_LEARNT
@@ -126,7 +127,8 @@ def recalibrate(
         tangent = problem.tangent(state)
     chi2 = tangent.chi2(state)
     heat = max(1.0, chi2 / max(1, state.deviations.size))
-    coefficients, _ = tangent.whitener.explained(state.deviations)
+    whitener = tangent.whitener
+    smooth = whitener.smooth(whitener.explained(state.deviations), state.deviations.size)
     return Fit(
         free=free,
         z=state.z,
@@ -134,7 +136,7 @@ def recalibrate(
         campaign=state.solved.campaign,
         evidence=problem.evidence,
         deviations=state.deviations,
-        clean=state.deviations - tangent.whitener.columns @ coefficients,
+        clean=state.deviations - smooth,
         chi2=chi2,
         prior=float(state.z @ state.z),
         log_determinant=tangent.whitener.log_determinant,
@@ -177,7 +179,9 @@ def _inside(z: Reals, free: tuple[Free, ...]) -> Reals:
 
 
 def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
-    """Learn the sizes of smooth errors about a prediction.
+    """Learn the sizes of smooth errors, and the length of those of chains, about a prediction.
+
+    Sizes by MacKay's fixed point (1992): a coefficient counts by as much as the records tell of it.
 
     Returns
     -------
@@ -185,20 +189,30 @@ def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
         And the largest change of a size's logarithm.
     """
     before = evidence.sizes
-    for _ in range(MAXIMISATIONS):
-        deviations, whitener = evidence.deviations(solved.datasets), evidence.whitener
-        coefficients, variances = whitener.explained(deviations)
-        origins = np.array(whitener.origins)
+    for step in range(MAXIMISATIONS):
+        deviations = evidence.deviations(solved.datasets)
+        if step == 0:
+            evidence = _of_best_length(evidence, deviations)
+        whitener = evidence.whitener
+        coefficients, told = whitener.explained(deviations), 1.0 - whitener.variances()
+        origin_of = whitener.of_origin()
         sizes, change = dict(evidence.sizes), 0.0
-        for origin, old in evidence.sizes.items():
-            mine = origins == origin
+        for index, origin in enumerate(whitener.columns.origins):
+            mine, old = origin_of == index, evidence.sizes[origin.name]
             # As if so many more of the usual size had been seen: what does not fit is not all chain.
-            power = float(np.sum(coefficients[mine] ** 2 + variances[mine])) * old**2
-            new = float(np.sqrt((power + SEEN * USUAL**2) / (mine.sum() + SEEN)))
-            highest = 1.5 if origin == "irregularity" else LARGEST_SMOOTH
-            sizes[origin] = float(np.clip(new, SMALLEST_SMOOTH, highest))
-            change = max(change, abs(np.log(sizes[origin] / old)))
+            power = float(np.sum(coefficients[mine] ** 2)) * old**2
+            new = float(np.sqrt((power + SEEN * USUAL**2) / (told[mine].sum() + SEEN)))
+            highest = 1.5 if origin.name == "irregularity" else LARGEST_SMOOTH
+            sizes[origin.name] = float(np.clip(new, SMALLEST_SMOOTH, highest))
+            change = max(change, abs(np.log(sizes[origin.name] / old)))
         evidence = evidence.with_sizes(sizes).learnt_scatter(solved.datasets)
         if change < 0.1:
             break
     return evidence, max((abs(np.log(evidence.sizes[o] / size)) for o, size in before.items()), default=0.0)
+
+
+def _of_best_length(evidence: Evidence, deviations: Reals) -> Evidence:
+    """Of the present length and its neighbours, the one under which the deviations are likeliest."""
+    at = int(np.argmin(np.abs(np.log(np.array(LENGTHS) / evidence.length))))
+    tried = [evidence.with_sizes(evidence.sizes, length) for length in LENGTHS[max(0, at - 1) : at + 2]]
+    return min(tried, key=lambda e: e.whitener.square(deviations) + e.whitener.log_determinant)

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from permway.arrays import Reals
-from permway.diagnosis.evidence import Evidence, Solved, Whitener
+from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.nearby import Nearby
+from permway.diagnosis.whitener import Whitener
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
 
@@ -41,8 +42,7 @@ class Tangent:
 
     def chi2(self, state: State) -> float:
         """Quadratic form of the deviations, smooth errors integrated out, and the blocks' log determinant."""
-        reduced = self.whitener.reduce(state.deviations)
-        return float(state.deviations @ state.deviations - reduced @ reduced) + self.blocks
+        return self.whitener.square(state.deviations) + self.blocks
 
     def heated(self, state: State, heat: float) -> float:
         """Minus twice the log posterior, the records counting so much less."""
@@ -77,6 +77,15 @@ class Problem:
         predicted = self.evidence.predicted(self._campaign(z), near)
         return self.evidence.deviations(predicted.datasets), predicted
 
+    def _near(self, predicted: Solved, state: State) -> Reals:
+        """Deviations, those of datasets that are the state's own taken from it."""
+        found, start = [], 0
+        for block, new, old in zip(self.evidence.blocks, predicted.datasets, state.solved.datasets, strict=True):
+            rows = slice(start, start + block.rows.channel.size)
+            found.append(state.deviations[rows] if new is old else block.deviations(new))
+            start = rows.stop
+        return np.concatenate(found)
+
     def _campaign(self, z: Reals) -> Campaign:
         return self.build({f.name: f.value(float(v)) for f, v in zip(self.free, z, strict=True)})
 
@@ -106,5 +115,5 @@ class Problem:
             moved[index] += step
             campaign = self._campaign(moved)
             predicted = nearby.predicted(campaign) or self.evidence.predicted(campaign, state.solved)
-            columns.append((self.evidence.deviations(predicted.datasets) - state.deviations) / step)
+            columns.append((self._near(predicted, state) - state.deviations) / step)
         return np.column_stack(columns) if columns else np.zeros((state.deviations.size, 0))

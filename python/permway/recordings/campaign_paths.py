@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -147,7 +148,12 @@ def _child(record: object, step: str | int, before: Steps) -> object:
 
 
 def _field(record: BaseModel, step: str | int) -> str | None:
-    for name, field in type(record).model_fields.items():
+    return _field_of(type(record), step)
+
+
+@cache
+def _field_of(kind: type[BaseModel], step: str | int) -> str | None:
+    for name, field in kind.model_fields.items():
         if step in (field.alias, name):
             return name
     return None

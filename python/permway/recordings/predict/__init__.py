@@ -142,7 +142,7 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
         case "frf":
             frequency = _frequency(data)
             read = hammer.read(campaign, _names(data, "sensor"), _names(data, "force"), frequency)
-            return _like(data, "frf", np.moveaxis(values * read, 0, -1))
+            return _like(data, "frf", np.ascontiguousarray(np.moveaxis(values * read, 0, -1)))
         case "csd" | "psd":
             sensors = [campaign.sensor(name) for name in _names(data, "channel")]
             matrix = run.expected_csd(
@@ -156,9 +156,8 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
                 segment_s=record.segment_s,
                 interpolated=record.interpolated_Hz is not None,
             )
-            both = _like(data, "csd", np.moveaxis(matrix, 0, -1))
-            both["psd"] = data["psd"].copy(data=np.einsum("fcc->cf", matrix).real)
-            return both
+            power = np.einsum("fcc->cf", matrix).real
+            return data[["csd", "psd"]].copy(data={"csd": np.moveaxis(matrix, 0, -1), "psd": power})
         case "transmissibility":
             moved = shaker.transmissibility(campaign.model, need.temperature_C, need.frequency_Hz, values)
             chains = [campaign.sensor(name).chain.transfer(need.frequency_Hz) for name in _names(data, "channel")]
@@ -168,16 +167,15 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
 
 
 def _like(data: xr.Dataset, name: str, values: np.ndarray) -> xr.Dataset:
-    predicted = data[name].copy(data=values)
-    return predicted.to_dataset(name=name)
+    return data[[name]].copy(data={name: values})
 
 
 def _names(data: xr.Dataset, dimension: str) -> list[str]:
-    return [str(name) for name in data[dimension].values]
+    return [str(name) for name in data.variables[dimension].values]
 
 
 def _frequency(data: xr.Dataset) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    return np.asarray(data["frequency"].values, dtype=np.float64)
+    return np.asarray(data.variables["frequency"].values, dtype=np.float64)
 
 
 def _check_directions(campaign: Campaign, record: str, names: list[str]) -> None:

@@ -90,10 +90,17 @@ def amplitudes(
         Of the sensors' degrees: see :func:`influence`. It holds no lag, so it may be interpolated over frequency.
     """
     wheels = wheels_of(model, condition)
-    lag = (wheels[0] - wheels) / speed_of(condition)
-    late = np.exp((-2j * np.pi * frequency_Hz)[:, None] * lag)
-    moved = (per_profile @ late[:, :, None])[:, :, 0]
+    late = _late(frequency_Hz.tobytes(), ((wheels[0] - wheels) / speed_of(condition)).tobytes())
+    moved = np.einsum("fsw,fw->fs", per_profile, late)
     return np.asarray(moved * _there(sensors, frequency_Hz))
+
+
+@lru_cache(maxsize=8)
+def _late(lines: bytes, lag: bytes) -> Complexes:
+    """Phase by which what meets the leading wheel is late at each wheel, shape (F, wheels)."""
+    found = np.asarray(np.exp((-2j * np.pi * np.frombuffer(lines))[:, None] * np.frombuffer(lag)))
+    found.flags.writeable = False
+    return found
 
 
 def expected_csd(
@@ -191,4 +198,9 @@ def _chains(sensors: Sequence[Sensor], frequency_Hz: Reals) -> Complexes:
 
 
 def _there(sensors: Sequence[Sensor], frequency_Hz: Reals) -> Complexes:
-    return np.stack([sensor.there(frequency_Hz) for sensor in sensors], axis=-1)
+    each = {key: sensor.there(frequency_Hz) for key, sensor in ((_reads(s), s) for s in sensors)}
+    return np.stack([each[_reads(sensor)] for sensor in sensors], axis=-1)
+
+
+def _reads(sensor: Sensor) -> tuple[str, str]:
+    return sensor.quantity, sensor.direction

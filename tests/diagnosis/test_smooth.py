@@ -1,0 +1,145 @@
+"""Smooth errors: the functions that span them, the columns of blocks, and taking them out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from permway.diagnosis.evidence import gather
+from permway.diagnosis.recalibrate import learnt
+from permway.diagnosis.smooth import Origin, PairColumns, Smooth, SparseColumns
+from permway.diagnosis.wander import LENGTHS, SHORTEST, Wander
+from permway.diagnosis.whitener import AllColumns, Whitener
+from scipy import sparse
+from simulated import simulate
+
+Reals = np.ndarray
+
+
+def correlation(x: Reals, length: float) -> Reals:
+    return np.exp(-0.5 * ((x[:, None] - x[None, :]) / length) ** 2)
+
+
+@pytest.mark.parametrize("length", [one for one in LENGTHS if one >= SHORTEST])
+def test_a_wander_has_the_correlation_that_it_says(length: float) -> None:
+    """The covariance of the functions' sum is squared-exponential, but for a rough percent."""
+    frequency = np.geomspace(2.0, 400.0, 90)
+    wander = Wander(2.0, 400.0)
+    moved = wander.values(frequency) @ wander.root(length)
+    x = np.log2(frequency)
+    expected = correlation(x, length)
+    if length != SHORTEST:
+        expected = 0.99 * expected + 0.01 * correlation(x, SHORTEST)
+    np.testing.assert_allclose(moved @ moved.T, expected, atol=1e-3)
+
+
+def test_what_wanders_over_an_octave_is_held_to_a_thousandth() -> None:
+    frequency = np.geomspace(2.0, 400.0, 400)
+    covariance = correlation(np.log2(frequency), 1.0) + 1e-10 * np.eye(frequency.size)
+    errors = np.linalg.cholesky(covariance) @ np.random.default_rng(4).standard_normal((frequency.size, 40))
+    values = Wander(2.0, 400.0).values(frequency)
+    left = errors - values @ np.linalg.lstsq(values, errors, rcond=None)[0]
+    assert left.std() < 1e-3
+
+
+def pair_columns(random: np.random.Generator, sensors: int, points: int, lines: int, count: int) -> PairColumns:
+    both = random.standard_normal((2, sensors, points, lines, count))
+    return PairColumns(both[0] + 1j * both[1])
+
+
+def dense(columns: PairColumns) -> Reals:
+    """Column by column, from what gains and phases are."""
+    sensors, points, lines, count = columns.gains.shape
+    found = []
+    for owner in range(sensors + points):
+        for factor in (1.0, 1j):
+            for k in range(count):
+                whole = np.zeros((sensors, points, lines), dtype=np.complex128)
+                mine = (owner, slice(None)) if owner < sensors else (slice(None), owner - sensors)
+                whole[mine] = factor * columns.gains[(*mine, slice(None), k)]
+                found.append(np.concatenate([whole.real.reshape(-1), whole.imag.reshape(-1)]))
+    return np.stack(found, axis=1)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 3), st.integers(1, 4), st.integers(1, 5), st.integers(1, 3))
+def test_columns_of_pairs_are_those_of_a_dense_matrix(
+    seed: int, sensors: int, points: int, lines: int, count: int
+) -> None:
+    random = np.random.default_rng(seed)
+    columns = pair_columns(random, sensors, points, lines, count)
+    matrix = dense(columns)
+    values, coefficients = random.standard_normal((matrix.shape[0], 3)), random.standard_normal(matrix.shape[1])
+    np.testing.assert_allclose(columns.pull(values), matrix.T @ values, atol=1e-10)
+    np.testing.assert_allclose(columns.pull(values[:, 0]), matrix.T @ values[:, 0], atol=1e-10)
+    np.testing.assert_allclose(columns.push(coefficients), matrix @ coefficients, atol=1e-10)
+    np.testing.assert_allclose(columns.gram(), matrix.T @ matrix, atol=1e-9)
+    rows = np.tile(random.random(matrix.shape[0] // 2) < 0.5, 2)
+    np.testing.assert_allclose(columns.masked(rows).gram(), matrix[rows].T @ matrix[rows], atol=1e-9)
+
+
+def test_a_whitener_is_the_inverse_of_the_covariance() -> None:
+    """Two blocks that share an origin, against the dense covariance."""
+    random = np.random.default_rng(3)
+    wander = Wander(1.0, 8.0)
+    one = pair_columns(random, 2, 1, 4, wander.count)
+    names = [Origin(name, wander, 2) for name in ("sensor a", "sensor b", "force c")]
+    other = SparseColumns(sparse.csr_array(random.standard_normal((5, 2 * wander.count))))
+    rows = [2 * 2 * 4, 5]
+    columns = AllColumns.of([Smooth(tuple(names), one), Smooth((names[1],), other)], rows)
+    sizes = {"sensor a": 0.3, "sensor b": 0.1, "force c": 0.7}
+    whitener = Whitener.of(columns, sizes, 2.0)
+    matrix = np.zeros((sum(rows), columns.gram.shape[0]))
+    matrix[: rows[0]] = dense(one)
+    matrix[rows[0] :, 2 * wander.count : 4 * wander.count] = other.matrix.toarray()
+    covariance = np.eye(sum(rows))
+    for index, origin in enumerate(names):
+        root = np.kron(np.eye(2), sizes[origin.name] * wander.root(2.0))
+        mine = matrix[:, index * origin.count : (index + 1) * origin.count] @ root
+        covariance += mine @ mine.T
+    values = random.standard_normal(sum(rows))
+    assert whitener.square(values) == pytest.approx(values @ np.linalg.solve(covariance, values), rel=1e-9)
+    assert whitener.log_determinant == pytest.approx(np.linalg.slogdet(covariance)[1], rel=1e-9)
+    # What is explained, taken out, leaves the noise's share: V^-1 times the values.
+    left = values - whitener.smooth(whitener.explained(values), values.size)
+    np.testing.assert_allclose(left, np.linalg.solve(covariance, values), atol=1e-9)
+    inverse = np.linalg.inv(
+        np.eye(whitener.factor.shape[0]) + whitener.pull(np.eye(sum(rows))) @ _roots(whitener, matrix)
+    )
+    np.testing.assert_allclose(whitener.variances(), np.diag(inverse), atol=1e-9)
+
+
+def _roots(whitener: Whitener, matrix: Reals) -> Reals:
+    """B R, from R' B' on the unit vectors."""
+    return whitener.pull(np.eye(matrix.shape[0])).T
+
+
+def test_size_and_length_of_smooth_errors_are_learnt(tmp_path: Path) -> None:
+    """Errors put on what a model predicts of the sensors come back with their size, and with their length."""
+    campaign = simulate(tmp_path / "c", 1).campaign
+    plain = gather(campaign, threads=1)
+    solved = plain.predicted(campaign)
+    random = np.random.default_rng(11)
+    moved = []
+    for dataset, predicted in zip(plain.datasets, solved.datasets, strict=True):
+        if dataset.record.statistic != "frf":
+            continue
+        frequency, frf = dataset.data["frequency"].values, predicted["frf"].values.copy()
+        root = np.linalg.cholesky(correlation(np.log2(frequency), 2.0) + 1e-8 * np.eye(frequency.size))
+        for row in range(frf.shape[0]):
+            errors = 0.1 * root @ random.standard_normal((frequency.size, 2))
+            frf[row] *= np.exp(errors[:, 0] + 1j * errors[:, 1])
+        moved.append(replace(dataset, data=dataset.data.assign(frf=(dataset.data["frf"].dims, frf))))
+    found = gather(campaign, moved, threads=1)
+    solved = found.predicted(campaign)
+    for _ in range(4):
+        found, _ = learnt(found, solved)
+    sensors = [size for name, size in found.sizes.items() if name.startswith("sensor")]
+    forces = [size for name, size in found.sizes.items() if name.startswith("force")]
+    assert np.sqrt(np.mean(np.square(sensors))) == pytest.approx(0.1, rel=0.4)
+    assert max(forces) < 0.03
+    assert found.length in (1.4, 2.0, 2.8)
