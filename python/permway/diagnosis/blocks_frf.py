@@ -30,7 +30,7 @@ class FrfBlock:
     Parameters
     ----------
     dataset : Dataset
-    floor : float
+    floor : float or ndarray, shape (sensors, points, 1)
         Relative error that adds to the noise of each line.
     pair : float
         Size of a pair's smooth error, neper and rad.
@@ -46,7 +46,7 @@ class FrfBlock:
         self,
         dataset: Dataset,
         *,
-        floor: float = FLOOR,
+        floor: float | Reals = FLOOR,
         pair: float = FLOOR,
         reference: xr.Dataset,
         span: tuple[float, float] | None = None,
@@ -71,7 +71,7 @@ class FrfBlock:
         expected = np.where(used, reference["frf"].values, 0.0)
         # Noise alone looks large, and sure of itself, where it happens to be both.
         seen = np.minimum(size, np.abs(expected))
-        self._logarithmic = used & (np.maximum(own * size, self.sigma) < SURE * seen)
+        self._logarithmic = used & (np.maximum(own * size, np.sqrt(noise)) < SURE * seen)
         self._seen: Complexes = self._measured[self._logarithmic]
         # Of what is mostly noise, smooth errors act on what is there.
         self._there: Complexes = np.where(self._logarithmic, self._measured, expected)
@@ -96,16 +96,23 @@ class FrfBlock:
         """The same with another size of the pairs' errors."""
         return self._other(pair=pair)
 
-    def with_floor(self, floor: float) -> FrfBlock:
-        """The same with another relative error."""
+    def with_floor(self, floor: float | Reals) -> FrfBlock:
+        """The same with another relative error, of all lines or pair by pair."""
         return self._other(floor=floor)
+
+    def error(self, predicted: xr.Dataset) -> Reals:
+        """Root mean square of the logarithm of measured over predicted by pair, shape (sensors, points, 1)."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            relative = np.abs(self.off(predicted) / self._measured) ** 2
+        total = np.where(self._logarithmic, relative, 0.0).sum(axis=-1, keepdims=True)
+        return np.asarray(np.sqrt(total / np.maximum(self._logarithmic.sum(axis=-1, keepdims=True), 1)))
 
     def with_reference(self, reference: xr.Dataset) -> FrfBlock:
         """The same with another prediction where noise hides what is there."""
         return self._other(reference=reference)
 
     def _other(
-        self, *, floor: float | None = None, pair: float | None = None, reference: xr.Dataset | None = None
+        self, *, floor: float | Reals | None = None, pair: float | None = None, reference: xr.Dataset | None = None
     ) -> FrfBlock:
         return FrfBlock(
             self.dataset,

@@ -125,7 +125,7 @@ class Ring:
         least : float
             Promised gain below which the step is not taken, and the promise is what it is said to gain.
         """
-        best: tuple[float, float, Reals, Reals, Reals] | None = None
+        best: tuple[tuple[float, float], float, Reals, Reals, Reals] | None = None
         low, high = np.array([f.limits for f in hypothesis.free]).T
         for start in hypothesis.starts:
             z = np.clip(np.array(start, dtype=np.float64), low, high)
@@ -134,12 +134,15 @@ class Ring:
                 continue
             curvature, slope = self._projected((deviations - self.fit.deviations)[:, None], self.fit.deviations)
             promise = max(-float(slope[0]), 0.0) ** 2 / max(float(curvature[0, 0]), 1e-12)
-            if best is None or promise > best[0]:
-                objective, move = self._objective(deviations)
-                best = promise, objective + float(z @ z), z, deviations, move
+            objective, move = self._objective(deviations)
+            objective += float(z @ z)
+            # What a start gains as it is counts before what it promises.
+            rank = max(self.start - objective, 0.0), promise
+            if best is None or rank > best[0]:
+                best = rank, objective, z, deviations, move
         if best is None:
             return Quick(hypothesis, np.zeros(len(hypothesis.free)), self.fit.z, -np.inf)
-        promise, objective, z, deviations, move = best
+        (_, promise), objective, z, deviations, move = best
         direction = (deviations - self.fit.deviations).astype(np.float32)
         found = Quick(hypothesis, z, self.fit.z + move, self.start - objective, None, direction, z)
         if promise < least:

@@ -118,6 +118,16 @@ def _bases(evidence: Evidence, clock: _Clock) -> tuple[Fit, Fit]:
     searched = recalibrate(
         sharp.blunted(BLUNT), start=rough.z, learn=False, reweigh=False, progress=lambda _: clock.tick()
     )
+    if searched.heat > NEARLY:
+        # Some pairs are missed by more than all are blunted by: they are blunted by as much, and lead no longer.
+        about = searched.evidence.predicted(searched.campaign)
+        searched = recalibrate(
+            sharp.blunted(BLUNT, about),
+            start=searched.z,
+            learn=False,
+            reweigh=False,
+            progress=lambda _: clock.tick(),
+        )
     other = recalibrate(sharp, start=searched.z, reweigh=False, progress=lambda _: clock.tick())
     return min((base, other), key=lambda fit: fit.objective), searched
 

@@ -160,13 +160,24 @@ class Evidence:
             other.__dict__["columns"] = self.columns
         return other
 
-    def blunted(self, floor: float) -> Evidence:
+    def blunted(self, floor: float, about: Solved | None = None) -> Evidence:
         """The same with a larger relative error of every frequency response.
 
         What one place does to a few pairs then bends a base less that all other pairs hold.
+
+        Parameters
+        ----------
+        floor : float
+        about : Solved, optional
+            Pairs that this prediction misses by more count with an error of as much.
         """
-        blocks = tuple(b.with_floor(floor) if isinstance(b, FrfBlock) else b for b in self.blocks)
-        return replace(self, blocks=blocks)
+        blocks: list[Block] = []
+        for index, block in enumerate(self.blocks):
+            if isinstance(block, FrfBlock):
+                missed = floor if about is None else np.maximum(floor, block.error(about.datasets[index]))
+                block = block.with_floor(missed)
+            blocks.append(block)
+        return replace(self, blocks=tuple(blocks))
 
     def reweighed(self, solved: Solved) -> Evidence:
         """The same with spectra weighed by what a fit predicts, and not by what the owner's values do.

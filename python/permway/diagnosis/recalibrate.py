@@ -2,7 +2,7 @@
 
 Gauss-Newton with Levenberg's damping on the standardised deviations of all records together, each parameter in
 standard deviations of its owner's prior, smooth errors integrated out. The sizes of the smooth errors are learnt
-on the way (expectation maximisation; Dempster, Laird and Rubin 1977).
+on the way (MacKay's fixed point, 1992), and so is the length over which those of chains correlate.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ UNFIT, COARSE = 1.5, 1e-3
 FORETOLD = 0.95
 """Ratio of a step's gain to what the slopes foretold, or the other way round, from which they serve once more."""
 
-MOST_LEARNT, MAXIMISATIONS = 2, 5
-"""Times that the sizes of smooth errors are learnt, and steps of expectation maximisation each time."""
+MOST_LEARNT, LEARNING_STEPS = 2, 5
+"""Times that the sizes of smooth errors are learnt, and steps each time."""
 
 Progress = Callable[[str], object]
 
@@ -189,7 +189,7 @@ def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
         And the largest change of a size's logarithm.
     """
     before = evidence.sizes
-    for step in range(MAXIMISATIONS):
+    for step in range(LEARNING_STEPS):
         deviations = evidence.deviations(solved.datasets)
         if step == 0:
             evidence = _of_best_length(evidence, deviations)

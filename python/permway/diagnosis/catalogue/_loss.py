@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import ndtri
 
 from permway.diagnosis.catalogue._glance import Glance
 from permway.diagnosis.catalogue._interval import spacing_of, stations_of, weakened
@@ -19,14 +20,14 @@ LONGEST = 12.0
 LOOKED = 7
 """Joints that a stretch is made of in the first look, at most."""
 
-LEFT = 0.05
-"""Of the stiffness, in the first look."""
+LEFT = (0.05, 0.001)
+"""Of the stiffness, in the first look: a twentieth of a stiff bed still carries."""
 
 TELLING = 0.4
 """Share of the most telling spot's surplus that a joint of the law must have for a first look."""
 
-FITS = 2.0
-"""Mean square of deviations below which a base nearly fits: a loss is then small, and gradients lead to it."""
+SURPLUS = 300.0
+"""Of the law's most telling spot, below which a loss is small, and gradients lead to it."""
 
 
 def local_loss(
@@ -50,7 +51,7 @@ def local_loss(
         if all(abs(centre - other) >= 4.0 * step for other in taken):
             taken.append(centre)
     telling = bool(told) and told[0].surplus > TELLING * situation.found[0].surplus
-    glance = Glance(situation.fit) if situation.fit.heat > FITS and telling else None
+    glance = Glance(situation.fit) if telling and told[0].surplus > SURPLUS else None
     for centre in taken[:most]:
         found = None if glance is None else _looked(situation, glance, law, centre)
         yield _hypothesis(law, step, centre, found, entry, family)
@@ -59,7 +60,7 @@ def local_loss(
 
 
 def _hypothesis(
-    law: str, step: float, centre: float, found: tuple[float, float] | None, entry: str, family: str
+    law: str, step: float, centre: float, found: tuple[float, float, float] | None, entry: str, family: str
 ) -> Hypothesis:
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         return weakened(campaign, law, values["centre_m"], values["length_m"], values["factor"])
@@ -75,8 +76,9 @@ def _hypothesis(
     else:
         # The first look has told the joints; what remains open is how far the stretch reaches between two.
         middle, length, sigma = 0.5 * (found[0] + found[1]), found[1] - found[0], 0.75 * step
-        # As looked at, and with the outer joints changed by half.
-        starts = ((0.0, 0.0, -1.6), (0.0, 0.0, -0.8), (0.0, 1.33, -1.6), (0.0, -1.33, -1.6))
+        # As looked at, with more left, and with the outer joints changed by half.
+        left = float(ndtri(found[2]))
+        starts = ((0.0, 0.0, left), (0.0, 0.0, 0.5 * left), (0.0, 1.33, left), (0.0, -1.33, left))
     free = (
         linear_free("centre_m", "m", middle, sigma, middle - 6.0 * step, middle + 6.0 * step),
         _length(length, sigma, step),
@@ -101,16 +103,36 @@ def _length(length: float, sigma: float, step: float) -> Free:
     return replace(made, limits=(min(made.limits[0], 0.0), max(made.limits[1], 0.0)))
 
 
-def _looked(situation: Situation, glance: Glance, law: str, centre: float) -> tuple[float, float] | None:
-    """First and last joint of the stretch about a place whose loss explains most; none if no loss explains."""
+def _looked(situation: Situation, glance: Glance, law: str, centre: float) -> tuple[float, float, float] | None:
+    """First and last joint of the stretch whose loss explains most, and what is left; none if no loss explains.
+
+    All short stretches about the place, and from the best one on by a joint more or less at either end.
+    """
     campaign = situation.campaign
     x = stations_of(campaign.model.line, law)
+    known: dict[tuple[int, int, float], float] = {}
+
+    def objective(first: int, last: int, left: float) -> float:
+        key = first, last, left
+        if key not in known:
+            low, high = float(x[first]), float(x[last])
+            changed = weakened(campaign, law, 0.5 * (low + high), high - low, left)
+            known[key] = glance.objective(changed)
+        return known[key]
+
     near = int(np.argmin(np.abs(x - centre)))
-    best, chosen = glance.objective(campaign), None
     for first in range(max(0, near - LOOKED + 2), min(x.size, near + 2)):
         for last in range(max(first, near - 1), min(x.size, first + LOOKED)):
-            low, high = float(x[first]), float(x[last])
-            value = glance.objective(weakened(campaign, law, 0.5 * (low + high), high - low, LEFT))
-            if value < best:
-                best, chosen = value, (low, high)
-    return chosen
+            for left in LEFT:
+                objective(first, last, left)
+    best = min(known, key=lambda key: known[key])
+    while True:
+        first, last, left = best
+        for start, stop in ((first - 1, last), (first + 1, last), (first, last - 1), (first, last + 1)):
+            if 0 <= start <= stop < x.size:
+                objective(start, stop, left)
+        if min(known.values()) >= known[best]:
+            break
+        best = min(known, key=lambda key: known[key])
+    first, last, left = best
+    return (float(x[first]), float(x[last]), left) if known[best] < glance.objective(campaign) else None
