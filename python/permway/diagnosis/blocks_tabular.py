@@ -27,12 +27,16 @@ class TableBlock:
         Of "decay", "transmissibility" or "material".
     scatter_dB : float, optional
         By default :data:`SCATTER_DB`.
+    span : (float, float), optional
+        Hz, over which errors wander, where other records reach further.
     """
 
     log_determinant = 0.0
 
-    def __init__(self, dataset: Dataset, *, scatter_dB: float | None = None) -> None:
-        self.dataset = dataset
+    def __init__(
+        self, dataset: Dataset, *, scatter_dB: float | None = None, span: tuple[float, float] | None = None
+    ) -> None:
+        self.dataset, self._span = dataset, span
         data = dataset.data
         self.name = next(name for name in SCATTER_DB if name in data)
         self.measured = data[self.name].values
@@ -58,10 +62,16 @@ class TableBlock:
 
     @cached_property
     def smooth(self) -> Smooth:
-        """Of the rig, or of the method: a smooth error of the logarithm."""
-        wander = Wander(float(self.frequency.min()), float(self.frequency.max()))
+        """Of the rig, or of the method: a smooth error of the logarithm.
+
+        What a model misses of the decay along one section, it misses at every visit.
+        """
+        wander = Wander(*(self._span or (float(self.frequency.min()), float(self.frequency.max()))))
         values = wander.values(self.frequency) / self.sigma
         zero = np.zeros_like(values)
         matrix = np.block([[values, zero], [zero, values]]) if self.complex else values
         origin = Origin(f"record {self.dataset.record.name}", wander, 2 if self.complex else 1)
-        return Smooth((origin,), SparseColumns(sparse.csr_array(matrix)))
+        if self.name != "decay_rate":
+            return Smooth((origin,), SparseColumns(sparse.csr_array(matrix)))
+        section = Origin("decay of the section", wander, 1)
+        return Smooth((origin, section), SparseColumns(sparse.csr_array(np.hstack([matrix, matrix]))))

@@ -285,7 +285,7 @@ def _smooth(evidence: Evidence) -> xr.Dataset:
     """Sizes of the smooth errors that were allowed, dB of the level they act on."""
     decay = {f"record {d.record.name}" for d in evidence.datasets if VARIABLE[d.record.statistic] in POWERS}
     sizes = {
-        origin: size * (POWER_DB if origin == "irregularity" or origin in decay else NEPER_DB)
+        origin: size * (POWER_DB if origin.startswith(("irregularity", "decay")) or origin in decay else NEPER_DB)
         for origin, size in evidence.sizes.items()
     }
     for block in evidence.blocks:

@@ -266,10 +266,11 @@ def _spans(datasets: Sequence[Dataset]) -> dict[str, tuple[float, float]]:
     """Lowest and highest frequency of all records of a kind, which share their chains."""
     spans: dict[str, tuple[float, float]] = {}
     for dataset in datasets:
-        if "frequency" in dataset.data:
-            frequency, kind = dataset.data["frequency"].values, _kind(dataset)
+        name = next((n for n in ("frequency", "band") if n in dataset.data.dims), None)
+        if name is not None and dataset.data[name].size:
+            frequency, kind = np.asarray(dataset.data[name].values, dtype=np.float64), _kind(dataset)
             low, high = spans.get(kind, (np.inf, -np.inf))
-            spans[kind] = min(low, float(frequency[0])), max(high, float(frequency[-1]))
+            spans[kind] = min(low, float(frequency.min())), max(high, float(frequency.max()))
     return spans
 
 
@@ -317,4 +318,4 @@ def _block(
         case "csd" | "psd":
             return SpectraBlock(dataset, predicted, noise=_noise(campaign, dataset), span=spans["spectra"])
         case _:
-            return TableBlock(dataset)
+            return TableBlock(dataset, span=spans.get(_kind(dataset)))

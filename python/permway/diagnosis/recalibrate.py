@@ -23,6 +23,9 @@ from permway.errors import InputError
 USUAL, SEEN = 0.02, 4.0
 """Size of smooth errors that is expected beforehand, neper or rad, and how many coefficients it counts for."""
 
+LARGEST = {"irregularity": 1.5, "decay": 0.5}
+"""Of origins by their first word, nepers of a power, where it is not that of a chain."""
+
 UNFIT, COARSE = 1.5, 1e-3
 """Mean square of the deviations from which a model does not fit, and share of them that a step must then gain."""
 
@@ -202,7 +205,7 @@ def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
             # As if so many more of the usual size had been seen: what does not fit is not all chain.
             power = float(np.sum(coefficients[mine] ** 2)) * old**2
             new = float(np.sqrt((power + SEEN * USUAL**2) / (told[mine].sum() + SEEN)))
-            highest = 1.5 if origin.name == "irregularity" else LARGEST_SMOOTH
+            highest = LARGEST.get(origin.name.split()[0], LARGEST_SMOOTH)
             sizes[origin.name] = float(np.clip(new, SMALLEST_SMOOTH, highest))
             change = max(change, abs(np.log(sizes[origin.name] / old)))
         evidence = evidence.with_sizes(sizes).learnt_scatter(solved.datasets)

@@ -36,7 +36,7 @@ def sentence(verdict: Verdict) -> str:
             parts = ["Nothing is missing beyond what the stated tolerances allow", _seen(verdict)]
         case "insufficient":
             suspect = f"the suspicion is {_named(verdict.effects[0])}" if verdict.effects else ""
-            words = "These records cannot say whether anything is missing"
+            words = "Nothing that was tried explains enough of these records to be called missing"
             parts = [words, suspect, _seen(verdict), _advice(verdict)]
         case "named":
             parts = [_named(verdict.effects[0]), _more(verdict), _better(verdict)]

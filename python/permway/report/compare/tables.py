@@ -109,6 +109,7 @@ def smooth_rows(comparison: Comparison) -> list[dict[str, Any]]:
         "irregularity": "the irregularity's level",
         "pairs": "each pair of sensor and point",
         "record": "records as a whole",
+        "decay": "decay rates of the section at every visit",
     }
     rows = []
     for kind, members in kinds.items():
@@ -121,7 +122,9 @@ def smooth_rows(comparison: Comparison) -> list[dict[str, Any]]:
                 "median": f"{np.median(values):.2f}",
                 "largest": f"{largest:.2f}",
                 "name": name.removeprefix("of "),
-                "degrees": "" if kind in ("irregularity", "record") else f"{np.degrees(largest / NEPER_DB):.1f}°",
+                "degrees": ""
+                if kind in ("irregularity", "record", "decay")
+                else f"{np.degrees(largest / NEPER_DB):.1f}°",
                 "all": [(n, f"{v:.3f}") for n, v in members],
             }
         )
