@@ -26,7 +26,7 @@ LEFT = (0.05, 0.001)
 TELLING = 0.4
 """Share of the most telling spot's surplus that a joint of the law must have for a first look."""
 
-SURPLUS = 300.0
+SURPLUS = 50.0
 """Of the law's most telling spot, below which a loss is small, and gradients lead to it."""
 
 
