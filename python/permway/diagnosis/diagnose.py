@@ -42,6 +42,9 @@ NEARLY = 1.3
 BLUNT = 0.2
 """Relative error of frequency responses with which the search then begins."""
 
+FEW = 0.4
+"""Share of pairs that may be missed by far if the others are to hold the base without them."""
+
 
 def diagnose(
     campaign: Campaign, *, seed: int = 0, threads: int | None = None, progress: Progress | None = None
@@ -118,9 +121,9 @@ def _bases(evidence: Evidence, clock: _Clock) -> tuple[Fit, Fit]:
     searched = recalibrate(
         sharp.blunted(BLUNT), start=rough.z, learn=False, reweigh=False, progress=lambda _: clock.tick()
     )
-    if searched.heat > NEARLY:
-        # Some pairs are missed by more than all are blunted by: they are blunted by as much, and lead no longer.
-        about = searched.evidence.predicted(searched.campaign)
+    about = searched.evidence.predicted(searched.campaign)
+    if searched.heat > NEARLY and sharp.missed(2.0 * BLUNT, about) < FEW:
+        # A few pairs are missed by more than all are blunted by: they are blunted by as much, and lead no longer.
         searched = recalibrate(
             sharp.blunted(BLUNT, about),
             start=searched.z,

@@ -179,6 +179,15 @@ class Evidence:
             blocks.append(block)
         return replace(self, blocks=tuple(blocks))
 
+    def missed(self, error: float, about: Solved) -> float:
+        """Share of the pairs of frequency responses that a prediction misses by more, neper; 0 without any."""
+        each = [
+            block.error(about.datasets[index]).reshape(-1)
+            for index, block in enumerate(self.blocks)
+            if isinstance(block, FrfBlock)
+        ]
+        return float(np.mean(np.concatenate(each) > error)) if each else 0.0
+
     def reweighed(self, solved: Solved) -> Evidence:
         """The same with spectra weighed by what a fit predicts, and not by what the owner's values do.
 
