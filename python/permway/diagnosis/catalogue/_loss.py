@@ -92,7 +92,7 @@ def _hypothesis(
         amend=amend,
         locate=locate,
         starts=starts,
-        law=lambda v: f"{v['factor']:.2f} of the stiffness is left",
+        law=lambda v: f"{v['factor']:.2g} of the stiffness is left",
         size="factor",
         none=1.0,
     )
