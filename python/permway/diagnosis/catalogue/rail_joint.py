@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from permway.diagnosis.catalogue._excite import stays
 from permway.diagnosis.catalogue._lines import FACTOR, coordinate, repeats
 from permway.diagnosis.catalogue._runs import combs, excesses
+from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, log_free
 
 ID = "rail_joint"
@@ -16,7 +18,7 @@ DOMAIN: Domain = "irregularity"
 FAMILY = "tied to speed over length"
 SUMMARY = "Lines a n^-p in the profile at all multiples n of V / L, L the length of a rail."
 PARAMETERS = {
-    "length_m": "m, 5 to 120: L",
+    "length_m": "m, 5 to 120, and no longer than a run resolves: L",
     "amplitude_m": "m, 1e-8 to 1e-2: a, of the first line",
     "decay": "1, 0 to 2: p; 0 for short dips, 2 for a kink",
 }
@@ -34,21 +36,42 @@ USUAL_M = (10.0, 12.0, 12.5, 15.0, 18.0, 20.0, 24.0, 25.0, 30.0, 36.0, 50.0, 60.
 """Usual lengths of rails, slabs and panels: tried also where no comb stands out in power."""
 
 
+RESOLVED = 3.0
+"""Lines of an estimate between two of a comb, at least: closer, a comb is a level and no more."""
+
+SHORTEST_M = 5.0
+
+
+def _longest(situation: Situation) -> float:
+    """Of which the fastest and finest run resolves the comb, m."""
+    datasets = [d for d in situation.fit.evidence.datasets if d.record.statistic in ("csd", "psd")]
+    reach = [(d.condition.speed_m_per_s or 0.0) * d.record.segment_s for d in datasets]
+    return max(reach, default=0.0) / RESOLVED
+
+
+def _length(longest: float) -> Free:
+    made = log_free("length_m", "m", CENTRE_M, LENGTH_FACTOR, lowest=1.0)
+    return replace(made, limits=(made.limits[0], coordinate(longest, CENTRE_M, LENGTH_FACTOR)))
+
+
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """From the lengths whose combs stand out most, and from usual ones."""
     runs = excesses(situation)
     if not runs:
         return
-    every = (1.0 / np.geomspace(5.0, 120.0, 1600)).tolist()
+    longest = _longest(situation)
+    if longest <= SHORTEST_M:
+        return
+    every = (1.0 / np.geomspace(SHORTEST_M, min(longest, 120.0), 1600)).tolist()
     found = combs(runs, every, harmonics=None, decay=0.7, most=4)
-    for length in USUAL_M:
+    for length in [usual for usual in USUAL_M if usual <= longest]:
         found += combs(runs, [1.0 / length], harmonics=None, decay=0.7, most=1)
     yield Hypothesis(
         entry=ID,
         domain=DOMAIN,
         family=FAMILY,
         free=(
-            log_free("length_m", "m", CENTRE_M, LENGTH_FACTOR, lowest=1.0),
+            _length(longest),
             log_free("amplitude_m", "m", AMPLITUDE_M, FACTOR),
             between_free("decay", "1", 0.0, 2.0),
         ),
