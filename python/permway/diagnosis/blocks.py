@@ -57,7 +57,7 @@ class Block(Protocol):
         """Standardised, shape (n,)."""
 
     @property
-    def smooth(self) -> Smooth | None:
+    def smooth(self) -> Smooth:
         """What smooth errors would do."""
 
 

@@ -143,9 +143,11 @@ class FrfBlock:
         """Measured less predicted, in the response's unit, as errors that multiply have it."""
         model = predicted["frf"].values
         found = self._measured - model
-        ratio = self._seen / model[self._logarithmic]
-        # The logarithm by its parts: several times faster than that of complex numbers.
-        found[self._logarithmic] = self._seen * (0.5 * np.log(_square(ratio)) + 1j * np.angle(ratio))
+        # A model that predicts nothing there has no logarithm: what is not finite is refused where it is used.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = self._seen / model[self._logarithmic]
+            # The logarithm by its parts: several times faster than that of complex numbers.
+            found[self._logarithmic] = self._seen * (0.5 * np.log(_square(ratio)) + 1j * np.angle(ratio))
         return np.asarray(found)
 
     def along(self, predicted: xr.Dataset) -> Complexes:

@@ -1,4 +1,4 @@
-"""What smooth errors do to deviations: the columns of a block, as many sparse products as it takes to use them."""
+"""What smooth errors do to deviations: the columns of a block, kept as they are cheapest to multiply by."""
 
 from __future__ import annotations
 

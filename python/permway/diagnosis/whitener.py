@@ -29,22 +29,20 @@ class AllColumns:
     gram: Reals
 
     @staticmethod
-    def of(blocks: Sequence[Smooth | None], sizes: Sequence[int]) -> AllColumns:
+    def of(blocks: Sequence[Smooth], sizes: Sequence[int]) -> AllColumns:
         """From what the blocks say, and how many rows they have."""
         first: dict[str, int] = {}
         origins: list[Origin] = []
         count = 0
-        for origin in (o for smooth in blocks if smooth is not None for o in smooth.origins):
+        for origin in (o for smooth in blocks for o in smooth.origins):
             if origin.name not in first:
                 first[origin.name] = count
                 origins.append(origin)
                 count += origin.count
         parts, start = [], 0
         for smooth, rows in zip(blocks, sizes, strict=True):
-            if smooth is not None:
-                at = [first[o.name] + np.arange(o.count) for o in smooth.origins]
-                place = np.concatenate(at) if at else np.zeros(0, dtype=np.int64)
-                parts.append((slice(start, start + rows), place, smooth.columns))
+            place = np.concatenate([first[o.name] + np.arange(o.count) for o in smooth.origins])
+            parts.append((slice(start, start + rows), place, smooth.columns))
             start += rows
         return AllColumns(tuple(origins), tuple(parts), _gram(parts, count))
 
