@@ -14,18 +14,15 @@ DOCS = Path(__file__).parent
 
 BARS = {
     "null": {"called": "at most 2.5 %"},
-    "single": {
-        "found": "98 / 90 / 60 %",
-        "placed": "95 / 85 / 60 %",
-        "family": "90 / 75 / 45 %",
-        "in_class": "95 %",
-    },
+    "single, easy": {"found": "98 %", "placed": "95 %", "family": "90 %", "in_class": "95 %"},
+    "single, medium": {"found": "90 %", "placed": "85 %", "family": "75 %", "in_class": "95 %"},
+    "single, hard": {"found": "60 %", "placed": "60 %", "family": "45 %", "in_class": "95 %"},
     "twin": {"in_class": "95 %", "false_name": "at most 5 %"},
     "multiple": {"found": "90 % (the strongest)"},
     "outside": {"placed": "80 %", "false_name": "at most 10 %"},
     "nonlinear": {"called": "90 %"},
 }
-"""By tier and figure; of one effect for easy, medium and hard cases."""
+"""By tier, or tier and how hard it is, and figure."""
 
 FIGURES = {
     "called": "something is called missing or at fault",
@@ -64,18 +61,38 @@ def _suite(name: str, scores: dict[str, Any]) -> list[str]:
     if note:
         lines += [note, ""]
     lines += ["```sh", *scores.get("commands", []), "```", ""]
+    lines += [
+        "Hard is a deviance of 15 to 50 against the best recalibrated base, medium one to 200, easy what is above;"
+    ]
+    lines += ["what is below is too small, and the right answer is that the records do not tell.", ""]
     lines += ["| tier | cases | figure | bar | result |", "|---|---:|---|---|---|"]
     for row in scores["tiers"]:
         for key, text in FIGURES.items():
             if key in row:
-                bar = BARS.get(row["tier"], {}).get(key, "")
-                lines.append(f"| {row['tier']} | {row['cases']} | {text} | {bar} | {row[key]} |")
+                group = row["group"]
+                bar = BARS.get(group, BARS.get(row["tier"], {})).get(key, "")
+                lines.append(f"| {group} | {row['cases']} | {text} | {bar} | {row[key]} |")
         if "seconds" in row:
-            lines.append(f"| {row['tier']} | {row['cases']} | median time, s | 300 | {row['seconds']} |")
-    lines += ["", "| case | concealed | status | said |", "|---|---|---|---|"]
+            lines.append(f"| {row['group']} | {row['cases']} | median time, s | 300 | {row['seconds']} |")
+    lines += ["", "| case | concealed | deviance | status | said | |", "|---|---|---:|---|---|---|"]
     for case in scores["cases"]:
-        lines.append(f"| {case['case']} | {case['truth']} | {case['status']} | {case['said']} |")
+        weight = "" if case["deviance"] is None else f"{case['deviance']:.0f}"
+        cells = (case["case"], case["truth"], weight, case["status"], case["said"], _missed(case))
+        lines.append(f"| {' | '.join(cells)} |")
     return [*lines, ""]
+
+
+def _missed(case: dict[str, Any]) -> str:
+    """What a case has wrong."""
+    wrong = [
+        text
+        for key, text in (("found", "not found"), ("placed", "place"), ("family", "name"), ("in_class", "class"))
+        if case[key] is False
+    ]
+    wrong += [text for key, text in (("false_name", "false name"), ("harmed", "harm")) if case[key]]
+    if case["found"] is None and case["said"]:
+        wrong = ["false alarm"]
+    return ", ".join(["not found"] if "not found" in wrong else wrong)
 
 
 def main() -> None:

@@ -56,6 +56,25 @@ def challenge_run(
     say(dict(result), as_json)
 
 
+@challenges.command("weigh", epilog=examples("permway challenge weigh cases --workers 2"))
+def challenge_weigh(
+    folder: Folder,
+    workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
+    as_json: Json = False,
+) -> None:
+    """Say how hard each campaign is: the deviance that no recalibration takes away.
+
+    Against a twin with the same parameters, noise and errors, and nothing concealed. Easy above 200, medium above
+    50, hard above 15; below, the right answer is that the records do not tell.
+    """
+    from permway.challenge.weigh import weigh
+    from permway.diagnosis.deviance import of_folders
+
+    with progress_bar("weighing", as_json) as progress:
+        found = weigh(folder, of_folders, workers=workers, progress=progress)
+    say({"deviance": found} if as_json else {k: round(v, 1) for k, v in found.items()}, as_json)
+
+
 @challenges.command("score", epilog=examples("permway challenge score cases --json"))
 def challenge_score(folder: Folder, as_json: Json = False) -> None:
     """Hold the verdicts against the truths."""
@@ -64,7 +83,20 @@ def challenge_score(folder: Folder, as_json: Json = False) -> None:
 
     scored = score(folder, {name: entry.FAMILY for name, entry in entries().items()})
     cases = [
-        {"case": s.name, "status": s.status, "truth": ", ".join(s.truth), "said": ", ".join(s.said)}
+        {
+            "case": s.name,
+            "status": s.status,
+            "truth": ", ".join(s.truth),
+            "said": ", ".join(s.said),
+            "deviance": s.deviance,
+            "found": s.found,
+            "placed": s.placed,
+            "family": s.family,
+            "in_class": s.in_class,
+            "false_name": s.false_name,
+            "harmed": s.harmed,
+            "seconds": s.seconds,
+        }
         for s in scored
     ]
     say({"tiers": summary(scored), "cases": cases}, as_json)

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.stats import beta
 
+from permway.challenge.weigh import weights
 from permway.errors import InputError
 
 FOUND = ("named", "ambiguous", "described", "located", "measurement")
 """Statuses that call something missing or at fault."""
+
+DIFFICULTY = {"easy": 200.0, "medium": 50.0, "hard": 15.0, "too small": -np.inf}
+"""Least deviance against the best recalibrated base; too small is what the records do not tell."""
 
 NEAR_M = 1.5
 """How far from a true place an interval may end and still be there."""
@@ -38,6 +42,8 @@ class Scored:
     harmed : bool
         Whether the amended model predicts what was held out worse.
     seconds : float
+    deviance : float or None
+        Against the best recalibrated base, if it was weighed.
     """
 
     name: str
@@ -53,6 +59,14 @@ class Scored:
     covered: tuple[bool, ...]
     harmed: bool
     seconds: float
+    deviance: float | None = None
+
+    @property
+    def group(self) -> str:
+        """Tier, and how hard it is if it was weighed."""
+        if self.deviance is None:
+            return self.tier
+        return f"{self.tier}, {next(name for name, least in DIFFICULTY.items() if self.deviance >= least)}"
 
 
 def score(folder: Path, families: Mapping[str, str]) -> list[Scored]:
@@ -70,15 +84,15 @@ def score(folder: Path, families: Mapping[str, str]) -> list[Scored]:
     InputError
         If there is no verdict.
     """
-    found = []
+    found, weighed = [], weights(folder)
     for path in sorted((Path(folder) / "truth").glob("*.json")):
         verdict = Path(folder) / "verdicts" / path.stem / "verdict.json"
         if verdict.is_file():
             seconds = verdict.with_name("seconds.json")
             took = sum(json.loads(seconds.read_text()).values()) if seconds.is_file() else float("nan")
-            found.append(
-                _scored(path.stem, json.loads(path.read_text()), json.loads(verdict.read_text()), families, took)
-            )
+            true, said = json.loads(path.read_text()), json.loads(verdict.read_text())
+            scored = _scored(path.stem, true, said, families, took)
+            found.append(replace(scored, deviance=weighed.get(path.stem)))
     if not found:
         raise InputError("holds no verdict", where=str(folder), remedy="permway challenge run")
     return found
@@ -162,12 +176,13 @@ def interval(hits: int, of: int, width: float = 0.9) -> tuple[float, float]:
 
 
 def summary(scored: Iterable[Scored]) -> list[dict[str, Any]]:
-    """A row for each tier: shares with their 90 % intervals."""
+    """A row for each tier, of which the weighed ones by how hard they are: shares with their 90 % intervals."""
     rows = []
-    all_cases = list(scored)
-    for tier in dict.fromkeys(s.tier for s in all_cases):
-        mine = [s for s in all_cases if s.tier == tier]
-        row: dict[str, Any] = {"tier": tier, "cases": len(mine)}
+    order = {name: index for index, name in enumerate(DIFFICULTY)}
+    all_cases = sorted(scored, key=lambda s: (s.tier, order.get(s.group.split(", ")[-1], -1)))
+    for group in dict.fromkeys(s.group for s in all_cases):
+        mine = [s for s in all_cases if s.group == group]
+        row: dict[str, Any] = {"tier": mine[0].tier, "group": group, "cases": len(mine)}
         alarms = [s.status in FOUND for s in mine]
         row["called"] = _share(alarms)
         for key in ("found", "placed", "family", "in_class"):

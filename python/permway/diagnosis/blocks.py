@@ -56,6 +56,9 @@ class Block(Protocol):
     def deviations(self, predicted: xr.Dataset) -> Reals:
         """Standardised, shape (n,)."""
 
+    def of(self, dataset: Dataset) -> Block:
+        """Another record of the same channels and lines, with the same errors."""
+
     @property
     def smooth(self) -> Smooth:
         """What smooth errors would do."""

@@ -111,6 +111,10 @@ class FrfBlock:
         """The same with another prediction where noise hides what is there."""
         return self._other(reference=reference)
 
+    def of(self, dataset: Dataset) -> FrfBlock:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        return FrfBlock(dataset, floor=self.floor, pair=self.pair, reference=self._reference, span=self._span)
+
     def _other(
         self, *, floor: float | Reals | None = None, pair: float | None = None, reference: xr.Dataset | None = None
     ) -> FrfBlock:

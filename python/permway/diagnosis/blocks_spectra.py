@@ -57,6 +57,7 @@ class SpectraBlock:
         span: tuple[float, float] | None = None,
     ) -> None:
         self.dataset, self._expected, self._floor, self._noise = dataset, expected, floor, noise
+        self._scatter = tuple(scatter)
         data = dataset.data
         # Neighbouring lines under Hann's window say half the same.
         self._lines = np.arange(0, data.sizes["frequency"], 2)
@@ -141,6 +142,12 @@ class SpectraBlock:
     def expecting(self, expected: xr.Dataset, noise: Reals) -> SpectraBlock:
         """The same weighed by another prediction, with the scatter of a stationary record."""
         return SpectraBlock(self.dataset, expected, noise=noise, floor=self._floor, span=self._span)
+
+    def of(self, dataset: Dataset) -> SpectraBlock:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        return SpectraBlock(
+            dataset, self._expected, noise=self._noise, floor=self._floor, scatter=self._scatter, span=self._span
+        )
 
     def _heard(self, what: str, c: int, o: int, at: np.ndarray) -> Reals:
         """Share of a power, or of what remains of it, that is no noise of the channel itself."""

@@ -36,7 +36,7 @@ class TableBlock:
     def __init__(
         self, dataset: Dataset, *, scatter_dB: float | None = None, span: tuple[float, float] | None = None
     ) -> None:
-        self.dataset, self._span = dataset, span
+        self.dataset, self._scatter, self._span = dataset, scatter_dB, span
         data = dataset.data
         self.name = next(name for name in SCATTER_DB if name in data)
         self.measured = data[self.name].values
@@ -59,6 +59,10 @@ class TableBlock:
         """Logarithms of measured over predicted; of complex values modulus, then phase."""
         ratio = np.log((self.measured / predicted[self.name].values).reshape(-1)) / self.sigma
         return np.concatenate([ratio.real, ratio.imag]) if self.complex else np.asarray(ratio)
+
+    def of(self, dataset: Dataset) -> TableBlock:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        return TableBlock(dataset, scatter_dB=self._scatter, span=self._span)
 
     @cached_property
     def smooth(self) -> Smooth:

@@ -101,7 +101,7 @@ class Ring:
         reduced = self.whitener.reduce(deviations)
         square = float(deviations @ deviations - reduced @ reduced) / self.fit.heat
         slope = (self.fit.jacobian.T @ deviations - self.reduced.T @ reduced) / self.fit.heat + self.fit.z
-        move = -linalg.cho_solve(self.factor, slope)
+        move = -linalg.cho_solve(self.factor, slope, check_finite=False)
         return square + float(self.fit.z @ self.fit.z) + float(slope @ move), move
 
     def _deviations(self, hypothesis: Hypothesis, z: Reals) -> Reals | None:

@@ -8,6 +8,7 @@ from time import perf_counter
 
 import numpy as np
 
+from permway.arrays import Complexes
 from permway.diagnosis import decide, grammar
 from permway.diagnosis.advise import advise
 from permway.diagnosis.blocks_frf import FrfBlock
@@ -24,6 +25,7 @@ from permway.diagnosis.labels import mislabelled
 from permway.diagnosis.locate import Found, scan
 from permway.diagnosis.nulls import threshold
 from permway.diagnosis.recalibrate import UNFIT, recalibrate
+from permway.diagnosis.recovered import law_stiffness
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.search import Finalist, Progress, Round, candidates, lines, penalty, search
 from permway.diagnosis.speak import Proof, mixed_up, verdict_of
@@ -101,7 +103,7 @@ def diagnose(
         candidates=tuple(candidates(rounds[0])) if rounds else (),
         comparison=assemble(base.evidence, base, left_out=left_out),
         after=None if amended is None else assemble(amended.evidence, amended, left_out=left_out),
-        law_dZ={},
+        law_dZ=_law(base, accepted, found),
         seconds=clock.seconds(),
         inconstant=inconstant,
     )
@@ -177,6 +179,15 @@ def _advice(rounds: Sequence[Round], clock: _Clock) -> tuple[NextMeasurement, ..
             if rival.fit.objective - best.fit.objective < CLASS_DEVIANCE * best.fit.heat:
                 return advise(best.fit, rival.fit, (best.hypothesis.entry, rival.hypothesis.entry), progress=clock)
     return ()
+
+
+def _law(base: Fit, accepted: Sequence[Finalist], found: Sequence[Found]) -> dict[str, Complexes]:
+    """What the effects of the line add where the scan found most, by their names."""
+    path = [one.hypothesis.entry for one in accepted if one.hypothesis.domain == "path"]
+    if not path or not found:
+        return {}
+    added = law_stiffness(base, accepted[-1].fit, found[0])
+    return {} if added is None else {" + ".join(path): added}
 
 
 def _scanned(fit: Fit) -> tuple[Found, ...]:

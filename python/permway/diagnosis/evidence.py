@@ -214,6 +214,18 @@ class Evidence:
             blocks.append(block)
         return replace(self, blocks=tuple(blocks))
 
+    def of(self, campaign: Campaign, datasets: Sequence[Dataset]) -> Evidence:
+        """Other records of the same channels and lines, with the same errors.
+
+        Parameters
+        ----------
+        campaign : Campaign
+        datasets : sequence of Dataset
+            One for each block, in their order.
+        """
+        blocks = tuple(b.of(thinned(dataset)) for b, dataset in zip(self.blocks, datasets, strict=True))
+        return replace(self, campaign=campaign, blocks=blocks)
+
     def selected(self, keep: Sequence[int]) -> Evidence:
         """Of some blocks only."""
         return replace(self, blocks=tuple(self.blocks[i] for i in keep))

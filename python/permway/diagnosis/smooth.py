@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -119,9 +120,13 @@ class PairColumns:
         sensors, points, lines, _ = self.gains.shape
         return np.asarray((values[:half] + 1j * values[half:]).reshape(sensors, points, lines, -1))
 
+    @cached_property
+    def _adjoint(self) -> Complexes:
+        return np.ascontiguousarray(self.gains.conj().swapaxes(-1, -2))
+
     def pull(self, values: Reals) -> Reals:
         """See :class:`Columns`."""
-        found = self.gains.conj().swapaxes(-1, -2) @ self._complex(values.reshape(values.shape[0], -1))
+        found = self._adjoint @ self._complex(values.reshape(values.shape[0], -1))
         whole = np.concatenate([found.sum(axis=1), found.sum(axis=0)])
         both = np.stack([whole.real, whole.imag], axis=1)
         return np.asarray(both.reshape(-1, *values.shape[1:]))
@@ -137,7 +142,7 @@ class PairColumns:
     def gram(self) -> Reals:
         """See :class:`Columns`."""
         sensors, points, _, count = self.gains.shape
-        pairs = self.gains.conj().swapaxes(-1, -2) @ self.gains
+        pairs = self._adjoint @ self.gains
         whole = np.zeros((sensors + points, count, sensors + points, count), dtype=np.complex128)
         s, p = np.arange(sensors), sensors + np.arange(points)
         whole[s, :, s, :] = pairs.sum(axis=1)

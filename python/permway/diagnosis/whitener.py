@@ -113,7 +113,7 @@ class Whitener:
 
     def reduce(self, values: Reals) -> Reals:
         """`L^-1 R' B' v`, of which the squares are what is explained; values (n,) or (n, k)."""
-        return np.asarray(linalg.solve_triangular(self.factor, self.pull(values), lower=True))
+        return np.asarray(linalg.solve_triangular(self.factor, self.pull(values), lower=True, check_finite=False))
 
     def square(self, values: Reals) -> float:
         """Quadratic form of the deviations, smooth errors integrated out."""
@@ -122,7 +122,7 @@ class Whitener:
 
     def explained(self, values: Reals) -> Reals:
         """The coefficients that explain most, independent and of unit variance beforehand."""
-        return np.asarray(linalg.cho_solve((self.factor, True), self.pull(values)))
+        return np.asarray(linalg.cho_solve((self.factor, True), self.pull(values), check_finite=False))
 
     def variances(self) -> Reals:
         """Of the coefficients afterwards."""

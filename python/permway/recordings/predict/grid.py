@@ -71,9 +71,8 @@ class Grid:
         ndarray of complex128, shape (F, C (C + 1) / 2)
             The upper triangle, row by row.
         """
-        rows, columns = np.triu_indices(fine.shape[1])
         scaled = fine * np.sqrt(density)[:, None]
-        return _apply(self.smear, scaled[:, rows] * scaled.conj()[:, columns])
+        return _apply(self.smear, _pairs(scaled, scaled))
 
     def expected_between(self, sources: Sequence[Complexes], density: Reals) -> Complexes:
         """The same of independent sources of one density, given at the solved lines and linear between them.
@@ -86,16 +85,29 @@ class Grid:
         sources : sequence of ndarray of complex128, shape (L, C)
         density : ndarray, shape (N,)
         """
-        rows, columns = np.triu_indices(sources[0].shape[1])
-        parabolas = np.zeros((3 * (sources[0].shape[0] - 1), rows.size), dtype=np.complex128)
+        intervals, channels = sources[0].shape[0] - 1, sources[0].shape[1]
+        parabolas = np.zeros((3, intervals, channels * (channels + 1) // 2), dtype=np.complex128)
         for values in sources:
             start, step = values[:-1], np.diff(values, axis=0)
-            left, right = (start[:, rows], step[:, rows]), (start.conj()[:, columns], step.conj()[:, columns])
-            parts = [left[0] * right[0], left[0] * right[1] + left[1] * right[0], left[1] * right[1]]
-            parabolas += np.concatenate(parts)
+            parabolas[0] += _pairs(start, start)
+            parabolas[1] += _pairs(start, step) + _pairs(step, start)
+            parabolas[2] += _pairs(step, step)
+        parabolas = parabolas.reshape(3 * intervals, -1)
         shape = (self.pointers.size - 1, len(parabolas))
         weights = sparse.csr_array((self.moments @ density, self.columns, self.pointers), shape=shape)
         return _apply(weights, parabolas)
+
+
+def _pairs(one: Complexes, other: Complexes) -> Complexes:
+    """Products of one with the other's conjugate, (n, C) each: upper triangle, row by row, (n, C (C + 1) / 2)."""
+    left, right = np.ascontiguousarray(one.T), np.ascontiguousarray(other.conj().T)
+    channels = len(left)
+    found = np.empty((channels * (channels + 1) // 2, one.shape[0]), dtype=np.complex128)
+    stop = 0
+    for channel in range(channels):
+        start, stop = stop, stop + channels - channel
+        np.multiply(left[channel], right[channel:], out=found[start:stop])
+    return np.ascontiguousarray(found.T)
 
 
 def _apply(weights: sparse.csr_array, values: Complexes) -> Complexes:

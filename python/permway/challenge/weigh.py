@@ -1,0 +1,89 @@
+"""How hard each campaign of a challenge is: weighed against its twin, in which nothing is concealed."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from dataclasses import replace
+from multiprocessing import get_context
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from permway.challenge.case import Case, draw, write
+from permway.errors import InputError
+
+Progress = Callable[[int, int], object]
+Deviance = Callable[[Path, Path], float]
+"""From the folders of a campaign and of its twin, both as `write` writes them."""
+
+WEIGHTS = "weights"
+
+
+def twin_of(case: Case) -> Case:
+    """The same line, train, noise and errors, and nothing concealed."""
+    return replace(case, effects=())
+
+
+def weigh(
+    folder: Path, deviance: Deviance, *, workers: int = 1, progress: Progress | None = None
+) -> dict[str, float]:
+    """Weigh every campaign with a concealed effect that has not been weighed yet.
+
+    Parameters
+    ----------
+    folder : Path
+        As :func:`permway.challenge.make.make` made it; gets `weights/<case>.json`.
+    deviance : callable
+        What the effect does to the records and no recalibration takes away.
+    workers : int
+        Processes.
+    progress : callable, optional
+        Called with campaigns done and how many there are.
+
+    Returns
+    -------
+    dict of str to float
+        Deviance by campaign, of all that are weighed.
+
+    Raises
+    ------
+    InputError
+        If the folder holds no truth.
+    """
+    folder = Path(folder)
+    truths = sorted((folder / "truth").glob("*.json"))
+    if not truths:
+        raise InputError("holds no truth", where=str(folder), remedy="permway challenge make")
+    known = weights(folder)
+    concealed = {path.stem: json.loads(path.read_text()) for path in truths}
+    todo = {name: truth for name, truth in concealed.items() if truth["effects"] and name not in known}
+    (folder / WEIGHTS).mkdir(exist_ok=True)
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        jobs: dict[Future[float], str] = {
+            pool.submit(_weighed, folder / name, truth["seed"], truth["tier"], deviance): name
+            for name, truth in todo.items()
+        }
+        for done, job in enumerate(as_completed(jobs), start=1):
+            name = jobs[job]
+            known[name] = job.result()
+            (folder / WEIGHTS / f"{name}.json").write_text(json.dumps({"deviance": known[name]}) + "\n")
+            if progress is not None:
+                progress(done, len(todo))
+    return known
+
+
+def weights(folder: Path) -> dict[str, float]:
+    """What is weighed of a challenge, by campaign."""
+    return {
+        path.stem: float(json.loads(path.read_text())["deviance"])
+        for path in sorted((Path(folder) / WEIGHTS).glob("*.json"))
+    }
+
+
+def _weighed(folder: Path, seed: int, tier: str, deviance: Deviance) -> float:
+    case = draw(seed, tier)  # type: ignore[arg-type]  # draw refuses what is no tier
+    with TemporaryDirectory() as place:
+        twin = Path(place) / "twin"
+        write(twin_of(case), twin)
+        return deviance(folder, twin)
