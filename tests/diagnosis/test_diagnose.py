@@ -50,6 +50,19 @@ def test_lost_fasteners_are_named_and_proved(hung_loose: Diagnosis) -> None:
     assert max(g.gain_nats for g in verdict.placebo.values()) < 0.5 * best
 
 
+def test_the_stiffness_that_stays_free_at_the_place_agrees_with_the_law(hung_loose: Diagnosis) -> None:
+    """About the amended model the records ask for the law's own stiffness, within what they tell of it."""
+    (name,), remaining = hung_loose.law_dZ, hung_loose.remaining
+    assert name == "fastener_loss"
+    assert remaining is not None
+    spot = hung_loose.found[0].spot
+    assert (remaining.spot.kind, remaining.spot.x_m) == (spot.kind, spot.x_m)
+    off = np.abs(remaining.stiffness_N_per_m) / (np.sqrt(2.0) * remaining.sigma_N_per_m)
+    assert np.mean(off < 2.0) > 0.8
+    # And of the law they tell something: it is no band that holds everything.
+    assert np.abs(hung_loose.law_dZ[name]).max() > 5.0 * remaining.sigma_N_per_m.min()
+
+
 def test_the_folder_holds_verdict_and_a_model_that_loads(hung_loose: Diagnosis, tmp_path: Path) -> None:
     said = write_diagnosis(hung_loose, tmp_path / "d", page=False)
     assert said["status"] == "named"

@@ -8,6 +8,7 @@ import json
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -94,6 +95,59 @@ def test_its_page_fits_and_asks_for_nothing(shown: Shown, size: tuple[int, int])
         assert overflow(page) == 0
         for link in page.locator("nav a").all():
             assert page.locator(link.get_attribute("href")).count() == 1
+
+
+def test_its_pictures_say_what_lies_under_the_pointer_and_grow_when_clicked(shown: Shown) -> None:
+    with opened(shown.report, (1280, 3000)) as (page, complaints):
+        shots = page.locator("figure.shot")
+        telling = 0
+        for index in range(shots.count()):
+            shot = shots.nth(index)
+            panels = json.loads(shot.locator("script").text_content())
+            shot.scroll_into_view_if_needed()
+            area = shot.locator("img").bounding_box()
+            for panel in panels:
+                # A point of the first line, or the middle of the first map's first row.
+                x, y = _point(panel)
+                left, top, right, bottom = panel["box"]
+                across = left + (right - left) * _share(panel["x"], x)
+                down = bottom - (bottom - top) * _share(panel["y"], y)
+                page.mouse.move(area["x"] + across * area["width"], area["y"] + down * area["height"])
+                said = shot.locator("output.readout").inner_text()
+                label = panel["lines"][0]["label"] if panel["lines"] else panel["x"]["label"]
+                assert label in said
+                telling += 1
+        assert telling >= 5
+        image = shots.first.locator("img")
+        before = image.bounding_box()["width"]
+        image.click()
+        assert image.bounding_box()["width"] > 1.3 * before
+        assert overflow(page) == 0
+        image.click()
+        assert image.bounding_box()["width"] == pytest.approx(before)
+        assert complaints == []
+
+
+def _point(panel: dict[str, Any]) -> tuple[float, float]:
+    if panel["lines"]:
+        line = panel["lines"][0]
+        inside = [
+            (x, y)
+            for x, y in zip(line["x"], line["y"], strict=True)
+            if 0.0 <= _share(panel["x"], x) <= 1.0 and 0.0 <= _share(panel["y"], y) <= 1.0
+        ]
+        return inside[len(inside) // 2]
+    edges = panel["maps"][0]
+    middle = len(edges["x"]) // 2
+    return 0.5 * (edges["x"][middle] + edges["x"][middle + 1]), 0.5 * (edges["y"][0] + edges["y"][1])
+
+
+def _share(scale: dict[str, Any], value: float) -> float:
+    """How far along an axis a value stands."""
+    low, high = scale["limits"]
+    if scale["log"]:
+        return float(np.log(value / low) / np.log(high / low))
+    return float((value - low) / (high - low))
 
 
 def test_its_page_prints(shown: Shown) -> None:

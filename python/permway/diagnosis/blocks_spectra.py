@@ -15,6 +15,9 @@ from permway.diagnosis.smooth import Origin, Smooth, SparseColumns
 from permway.diagnosis.wander import Wander
 from permway.recordings.campaign_load import Dataset
 
+SMALL = 1e-4
+"""Neper, of the gains by which answers to gains are found."""
+
 LEAST_LINES = 20
 """Of a part, from which its scatter is learnt."""
 
@@ -149,11 +152,34 @@ class SpectraBlock:
             dataset, self._expected, noise=self._noise, floor=self._floor, scatter=self._scatter, span=self._span
         )
 
-    def _heard(self, what: str, c: int, o: int, at: np.ndarray) -> Reals:
-        """Share of a power, or of what remains of it, that is no noise of the channel itself."""
+    def _answers(self, gains: Reals) -> list[Reals]:
+        """Growth of each part's logarithm with that of a gain on what channels hear, and not on their noise.
+
+        Parameters
+        ----------
+        gains : ndarray, shape (channels,)
+            How much of it each channel has.
+        """
         model = self._expected["csd"].values[:, :, self._lines]
-        whole = model[c, c, at].real if what == "power" else _remainder(model, c, o, at)
-        return np.asarray(np.clip(1.0 - self._noise[c, self._lines][at] / whole, 0.0, 1.0))
+        own = np.arange(gains.size)
+        noise = np.zeros_like(model)
+        noise[own, own] = np.minimum(self._noise[:, self._lines], model[own, own].real)
+        each = np.exp(SMALL * gains)
+        moved = (model - noise) * each[:, None, None] * each[:, None] + noise
+        before, after = (self._logarithms(csd) for csd in (model, moved))
+        return [(new - old) / SMALL for new, old in zip(after, before, strict=True)]
+
+    def _logarithms(self, csd: Complexes) -> list[Reals]:
+        """Of each part's modulus."""
+        found = []
+        for what, c, o, at, _ in self._parts:
+            if what == "power":
+                found.append(np.log(csd[c, c, at].real))
+            elif what == "transfer":
+                found.append(np.log(np.abs(csd[c, o, at]) / csd[o, o, at].real))
+            else:
+                found.append(np.log(_remainder(csd, c, o, at)))
+        return found
 
     @cached_property
     def smooth(self) -> Smooth:
@@ -164,23 +190,24 @@ class SpectraBlock:
         origins, columns = [Origin(f"channel {name}", wander, 2) for name in names], []
         for channel in range(names.size):
             gains, phases = [], []
-            for what, c, o, at, sigma in self._parts:
+            answers = self._answers(np.eye(names.size)[channel])
+            for (what, c, o, at, sigma), answer in zip(self._parts, answers, strict=True):
                 values = wander.values(self.frequency[at]) / sigma[:, None]
-                sign = float(c == channel) - float(o == channel and what == "transfer")
                 zero = np.zeros_like(values)
                 if what == "transfer":
-                    gains.extend([sign * values, zero])
-                    phases.extend([zero, sign * values])
+                    gains.extend([answer[:, None] * values, zero])
+                    phases.extend([zero, (float(c == channel) - float(o == channel)) * values])
                 else:
-                    gains.append(2.0 * float(c == channel) * self._heard(what, c, o, at)[:, None] * values)
+                    gains.append(answer[:, None] * values)
                     phases.append(zero)
             columns.append(sparse.csr_array(np.hstack([np.vstack(gains), np.vstack(phases)])))
         if speed is not None:
-            # The same track under every speed.
+            # The same track under every speed: of a power, as half as much in every channel.
             level = []
-            for what, _, _, at, sigma in self._parts:
-                values = LEVEL.values(self.frequency[at] / speed) / sigma[:, None]
-                level.extend([values] if what != "transfer" else [np.zeros_like(values)] * 2)
+            answers = self._answers(np.full(names.size, 0.5))
+            for (what, _, _, at, sigma), answer in zip(self._parts, answers, strict=True):
+                values = answer[:, None] * LEVEL.values(self.frequency[at] / speed) / sigma[:, None]
+                level.extend([values, np.zeros_like(values)] if what == "transfer" else [values])
             origins.append(Origin("irregularity", LEVEL, 1, chain=False))
             columns.append(sparse.csr_array(np.vstack(level)))
         return Smooth(tuple(origins), SparseColumns(sparse.csr_array(sparse.hstack(columns))))

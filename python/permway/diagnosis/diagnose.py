@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 
@@ -22,10 +22,10 @@ from permway.diagnosis.fit import Fit
 from permway.diagnosis.heldout import Rest, gains, log_e_value, parts
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.labels import mislabelled
-from permway.diagnosis.locate import Found, scan
+from permway.diagnosis.locate import Found, Spot, scan
 from permway.diagnosis.nulls import threshold
 from permway.diagnosis.recalibrate import UNFIT, recalibrate
-from permway.diagnosis.recovered import law_stiffness
+from permway.diagnosis.recovered import law_stiffness, same_place
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.search import Finalist, Progress, Round, candidates, lines, penalty, search
 from permway.diagnosis.speak import Proof, mixed_up, verdict_of
@@ -78,11 +78,11 @@ def diagnose(
     found = _scanned(searched)
     mixed = mislabelled(base)
     rounds, accepted = ([], []) if mixed is not None else _rounds(searched, base, found, seed, clock)
-    left = _left(accepted, clock)
+    left = _left(base, found, accepted, clock)
     described = None if mixed is not None else _described(searched, base, found, rounds, accepted, left, clock)
     if described is not None:
         rounds, accepted = [described], [described.finalists[0]]
-        left = _left(accepted, clock)
+        left = _left(base, found, accepted, clock)
     amended = accepted[-1].fit if accepted else None
     proof: Proof | None = None
     advice: tuple[NextMeasurement, ...] = ()
@@ -91,6 +91,7 @@ def diagnose(
         proof = _proof(base, amended, rounds, accepted, clock)
         advice = _advice(rounds, clock)
     clock("compare")
+    law, remaining = _law(base, accepted, found, left)
     inconstant = tuple(constancy(Ring(base))[:SHOWN_INCONSTANT])
     return Diagnosis(
         verdict=verdict_of(base, rounds, accepted, found, left, proof, advice)
@@ -103,7 +104,8 @@ def diagnose(
         candidates=tuple(candidates(rounds[0])) if rounds else (),
         comparison=assemble(base.evidence, base, left_out=left_out),
         after=None if amended is None else assemble(amended.evidence, amended, left_out=left_out),
-        law_dZ=_law(base, accepted, found),
+        law_dZ=law,
+        remaining=remaining,
         seconds=clock.seconds(),
         inconstant=inconstant,
     )
@@ -137,9 +139,14 @@ def _bases(evidence: Evidence, clock: _Clock) -> tuple[Fit, Fit]:
     return min((base, other), key=lambda fit: fit.objective), searched
 
 
-def _left(accepted: Sequence[Finalist], clock: _Clock) -> tuple[Found, ...]:
+def _left(base: Fit, found: Sequence[Found], accepted: Sequence[Finalist], clock: _Clock) -> tuple[Found, ...]:
+    """Scan of the amended model, the place among it that told most of the base."""
     clock("scan what is left")
-    return _scanned(accepted[-1].fit) if accepted else ()
+    if not accepted:
+        return ()
+    fit = accepted[-1].fit
+    before, after = base.campaign.model.line, fit.campaign.model.line
+    return _scanned(fit, lambda spot: bool(found) and same_place(before, found[0].spot, after, spot))
 
 
 def _described(
@@ -181,17 +188,24 @@ def _advice(rounds: Sequence[Round], clock: _Clock) -> tuple[NextMeasurement, ..
     return ()
 
 
-def _law(base: Fit, accepted: Sequence[Finalist], found: Sequence[Found]) -> dict[str, Complexes]:
-    """What the effects of the line add where the scan found most, by their names."""
+def _law(
+    base: Fit, accepted: Sequence[Finalist], found: Sequence[Found], left: Sequence[Found]
+) -> tuple[dict[str, Complexes], Found | None]:
+    """What the effects of the line add where the scan found most, by their names, and what stays free there."""
     path = [one.hypothesis.entry for one in accepted if one.hypothesis.domain == "path"]
     if not path or not found:
-        return {}
-    added = law_stiffness(base, accepted[-1].fit, found[0])
-    return {} if added is None else {" + ".join(path): added}
+        return {}, None
+    fit = accepted[-1].fit
+    added = law_stiffness(base, fit, found[0])
+    if added is None:
+        return {}, None
+    before, after = base.campaign.model.line, fit.campaign.model.line
+    free = next((f for f in left if same_place(before, found[0].spot, after, f.spot)), None)
+    return {" + ".join(path): added}, free
 
 
-def _scanned(fit: Fit) -> tuple[Found, ...]:
-    return tuple(scan(fit)) if any(isinstance(b, FrfBlock) for b in fit.evidence.blocks) else ()
+def _scanned(fit: Fit, also: Callable[[Spot], bool] = lambda _: False) -> tuple[Found, ...]:
+    return tuple(scan(fit, also)) if any(isinstance(b, FrfBlock) for b in fit.evidence.blocks) else ()
 
 
 def _rounds(

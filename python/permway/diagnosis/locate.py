@@ -7,7 +7,7 @@ recalibration left is found in one linear step, with all that recalibration coul
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import reduce
 
@@ -237,8 +237,14 @@ class Scan:
         return Found(spot, gain, int(kept.sum()), self.frequency, -stiffness, sigma, by_band, self._total)
 
 
-def scan(fit: Fit) -> list[Found]:
+def scan(fit: Fit, also: Callable[[Spot], bool] = lambda _: False) -> list[Found]:
     """Single joints and places of bodies, the most telling first: every third, and all beside the best.
+
+    Parameters
+    ----------
+    fit : Fit
+    also : callable
+        Whether a spot is looked at in any case.
 
     Raises
     ------
@@ -259,8 +265,9 @@ def scan(fit: Fit) -> list[Found]:
     for key, row in rows[0].items():
         known = {i: found(key, i) for i in range(0, len(row), COARSE)}
         best = sorted(known, key=lambda i: -known[i].surplus)[:BESIDE]
-        beside = {i + d for i in best for d in range(1 - COARSE, COARSE)} - known.keys()
-        known |= {i: found(key, i) for i in sorted(beside) if 0 <= i < len(row)}
+        asked = {i for i, (spot, _) in enumerate(row) if also(spot)}
+        beside = {i + d for i in best for d in range(1 - COARSE, COARSE)} | asked
+        known |= {i: found(key, i) for i in sorted(beside - known.keys()) if 0 <= i < len(row)}
         total.extend(known.values())
     return sorted(total, key=lambda f: -f.surplus)
 

@@ -7,7 +7,7 @@ import numpy as np
 from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.fit import Fit
-from permway.diagnosis.locate import Found
+from permway.diagnosis.locate import Found, Spot
 from permway.model.line import Line
 from permway.recordings.campaign_factors import campaign_under
 from permway.recordings.predict.hammer import temperature
@@ -50,6 +50,15 @@ def law_stiffness(base: Fit, amended: Fit, found: Found) -> Complexes | None:
     between = _between(before, index)
     sides = [_joints(line, between, x, frequency, degrees) for line in (before, after)]
     return np.asarray(sides[1] - sides[0])
+
+
+def same_place(before: Line, one: Spot, after: Line, other: Spot) -> bool:
+    """Whether two spots are one place of two lines, whatever the laws there are called."""
+    if one.kind != other.kind or not np.allclose(one.x_m, other.x_m, rtol=0.0, atol=1e-6):
+        return False
+    if one.kind == "body":
+        return one.name == other.name
+    return _between(before, one.joints[0]) == _between(after, other.joints[0])
 
 
 def _point(line: Line, body: str, x: float, frequency: Reals, temperature_C: float | None) -> Complexes:

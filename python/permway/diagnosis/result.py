@@ -74,6 +74,8 @@ class Diagnosis:
         Stiffness that named laws add, N/m, over the frequencies of the best found spot; may be empty.
     seconds : mapping of stage to float
         Time taken.
+    remaining : Found, optional
+        What a free stiffness at that spot would add to the amended model: with the law, what the records ask for.
     inconstant : tuple of Inconstant
         Parameters of the base that would be others over part of the records, the least constant first.
     """
@@ -89,3 +91,4 @@ class Diagnosis:
     law_dZ: Mapping[str, Complexes]
     seconds: Mapping[str, float]
     inconstant: tuple[Inconstant, ...] = ()
+    remaining: Found | None = None

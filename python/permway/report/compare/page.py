@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Mapping
 from typing import Any
 
@@ -24,18 +23,19 @@ from permway.report.compare.tables import (
     smooth_rows,
 )
 from permway.report.compare.writing import NUMBERS, PICTURES, file_name
+from permway.report.readout import Drawn
 
 FEW = 30
 """Channels of a record up to which its table shows all."""
 
 
-def render(comparison: Comparison, drawn: Mapping[str, bytes]) -> str:
+def render(comparison: Comparison, drawn: Mapping[str, Drawn]) -> str:
     """Render the page.
 
     Parameters
     ----------
     comparison : Comparison
-    drawn : mapping of name to PNG
+    drawn : mapping of name to Drawn
         From :func:`permway.report.compare.pictures.pictures`.
 
     Returns
@@ -51,7 +51,6 @@ def render(comparison: Comparison, drawn: Mapping[str, bytes]) -> str:
         lstrip_blocks=True,
     )
     environment.filters.update(decibels=decibels, share=share)
-    images = {name: base64.b64encode(content).decode("ascii") for name, content in drawn.items()}
     summary = comparison.summary()
     return environment.get_template("compare.html.j2").render(
         version=_core.__version__,
@@ -59,8 +58,8 @@ def render(comparison: Comparison, drawn: Mapping[str, bytes]) -> str:
         recalibrated=comparison.fit is not None,
         sentence=_sentence(comparison),
         fits=summary["fits"],
-        images=images,
-        groups=[_group(comparison, name, members, images) for name, members in groups(comparison)],
+        images=drawn,
+        groups=[_group(comparison, name, members, drawn) for name, members in groups(comparison)],
         parameters=parameter_rows(comparison),
         left=summary.get("left_tolerance", []),
         silent=summary.get("not_informed", []),
@@ -112,7 +111,7 @@ def _reasons(comparison: Comparison) -> dict[str, list[str]]:
     return found
 
 
-def _group(comparison: Comparison, name: str, members: list[int], images: Mapping[str, str]) -> dict[str, Any]:
+def _group(comparison: Comparison, name: str, members: list[int], images: Mapping[str, Drawn]) -> dict[str, Any]:
     stem = file_name(name)
     tables, hidden = [], []
     channels = 0

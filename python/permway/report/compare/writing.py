@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import re
 from pathlib import Path
@@ -41,21 +40,18 @@ def write_comparison(comparison: Comparison, output: Path, *, dpi: int = 140) ->
     # Drawing is slow to import.
     from permway.report.compare.page import render
     from permway.report.compare.pictures import pictures
+    from permway.report.readout import drawn
 
     output = Path(output)
     prepare_folder(output, (PAGE, NUMBERS))
     folder = prepare_folder(output / PICTURES)
-    drawn: dict[str, bytes] = {}
-    for name, figure in pictures(comparison):
-        buffer = io.BytesIO()
-        # No date and no version inside: the same data give the same file.
-        figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
-        drawn[name] = buffer.getvalue()
-        write_bytes(folder / f"{name}.png", drawn[name])
+    images = drawn(pictures(comparison), dpi)
+    for name, picture in images.items():
+        write_bytes(folder / f"{name}.png", picture.png)
     return {
-        "report": str(write_text(output / PAGE, render(comparison, drawn))),
+        "report": str(write_text(output / PAGE, render(comparison, images))),
         "numbers": str(write_bytes(output / NUMBERS, netcdf(comparison))),
-        "pictures": len(drawn),
+        "pictures": len(images),
         **comparison.summary(),
     }
 

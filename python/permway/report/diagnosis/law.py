@@ -17,12 +17,17 @@ REACH = 1.645
 def law_picture(diagnosis: Diagnosis) -> Figure:
     """Real and imaginary part of dZ with its 90 % band, and of the laws that were named."""
     best = diagnosis.found[0]
-    frequency, sigma = best.frequency_Hz, REACH * best.sigma_N_per_m
+    frequency, stiffness, sigma = best.frequency_Hz, best.stiffness_N_per_m, REACH * best.sigma_N_per_m
+    remaining = diagnosis.remaining
+    if remaining is not None and remaining.frequency_Hz.size == frequency.size:
+        # About the amended model a linear step is no guess.
+        stiffness = remaining.stiffness_N_per_m + sum(diagnosis.law_dZ.values())
+        sigma = REACH * remaining.sigma_N_per_m
     figure = Figure(figsize=(6.8, 4.3), layout="constrained")
     panels = figure.subplots(2, 1, sharex=True)
     laws = {name: values for name, values in diagnosis.law_dZ.items() if values.size == frequency.size}
     for axes, part, words in zip(panels, (np.real, np.imag), ("stiffness", "loss"), strict=True):
-        free = part(best.stiffness_N_per_m)
+        free = part(stiffness)
         axes.fill_between(
             frequency, free - sigma, free + sigma, color="0.82", linewidth=0, label="recovered, 90 %"
         )

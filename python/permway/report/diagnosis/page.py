@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Mapping
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
@@ -27,18 +26,19 @@ from permway.report.diagnosis.tables import (
     parameter_rows,
     weight_rows,
 )
+from permway.report.readout import Drawn
 
 FEW_CANDIDATES = 12
 """Candidates that the page shows openly."""
 
 
-def render(diagnosis: Diagnosis, drawn: Mapping[str, bytes]) -> str:
+def render(diagnosis: Diagnosis, drawn: Mapping[str, Drawn]) -> str:
     """Render the page.
 
     Parameters
     ----------
     diagnosis : Diagnosis
-    drawn : mapping of name to PNG
+    drawn : mapping of name to Drawn
         From :func:`permway.report.diagnosis.pictures.pictures`.
 
     Returns
@@ -59,11 +59,12 @@ def render(diagnosis: Diagnosis, drawn: Mapping[str, bytes]) -> str:
         sentence=verdict.sentence,
         missing=verdict.status not in UNPROVED,
         headline=headline(verdict),
-        images={name: base64.b64encode(content).decode("ascii") for name, content in drawn.items()},
+        images=drawn,
         scanned=len(diagnosis.found),
         best=diagnosis.found[0].spot.label if diagnosis.found else "",
         after_scan=bool(diagnosis.left),
         laws=list(diagnosis.law_dZ),
+        remaining=diagnosis.remaining is not None,
         effects=effect_blocks(verdict),
         looked_for=looked_for(diagnosis),
         weights=weight_rows(verdict),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 
 from permway.diagnosis.result import Diagnosis
@@ -35,12 +34,7 @@ def write_report(diagnosis: Diagnosis, folder: Path, *, dpi: int = 140) -> Path:
     # Drawing is slow to import.
     from permway.report.diagnosis.page import render
     from permway.report.diagnosis.pictures import pictures
+    from permway.report.readout import drawn
 
     folder = prepare_folder(Path(folder), (PAGE,))
-    drawn = {}
-    for name, figure in pictures(diagnosis):
-        buffer = io.BytesIO()
-        # No date and no version inside: the same data give the same file.
-        figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
-        drawn[name] = buffer.getvalue()
-    return write_text(folder / PAGE, render(diagnosis, drawn))
+    return write_text(folder / PAGE, render(diagnosis, drawn(pictures(diagnosis), dpi)))
