@@ -56,6 +56,32 @@ def challenge_run(
     say(dict(result), as_json)
 
 
+@challenges.command("rivals", epilog=examples("permway challenge rivals cases --workers 2"))
+def challenge_rivals(
+    folder: Folder,
+    workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
+    as_json: Json = False,
+) -> None:
+    """Say what simpler methods make of the campaigns that were run, and score them.
+
+    Recalibration alone, the smallest residual, BIC with independent errors, random answers.
+    """
+    from permway.challenge.rivals import answered
+    from permway.challenge.score import score, summary
+    from permway.diagnosis.catalogue import entries
+    from permway.diagnosis.rivals import RIVALS, of_file
+
+    with progress_bar("rivals", as_json) as progress:
+        answered(folder, of_file, workers=workers, progress=progress)
+    families = {name: entry.FAMILY for name, entry in entries().items()}
+    rows = [
+        {"rival": name, **row}
+        for name in RIVALS
+        for row in summary(score(folder, families, folder / "rivals" / name))
+    ]
+    say({"rivals": rows}, as_json)
+
+
 @challenges.command("weigh", epilog=examples("permway challenge weigh cases --workers 2"))
 def challenge_weigh(
     folder: Folder,

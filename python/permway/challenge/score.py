@@ -69,7 +69,7 @@ class Scored:
         return f"{self.tier}, {next(name for name, least in DIFFICULTY.items() if self.deviance >= least)}"
 
 
-def score(folder: Path, families: Mapping[str, str]) -> list[Scored]:
+def score(folder: Path, families: Mapping[str, str], verdicts: Path | None = None) -> list[Scored]:
     """Score all verdicts of a challenge.
 
     Parameters
@@ -78,6 +78,8 @@ def score(folder: Path, families: Mapping[str, str]) -> list[Scored]:
         As `run` left it.
     families : mapping of effect to family
         Effects of one family are near twins.
+    verdicts : Path, optional
+        Where `CASE/verdict.json` lie; by default in the folder's `verdicts`.
 
     Raises
     ------
@@ -86,7 +88,7 @@ def score(folder: Path, families: Mapping[str, str]) -> list[Scored]:
     """
     found, weighed = [], weights(folder)
     for path in sorted((Path(folder) / "truth").glob("*.json")):
-        verdict = Path(folder) / "verdicts" / path.stem / "verdict.json"
+        verdict = (verdicts or Path(folder) / "verdicts") / path.stem / "verdict.json"
         if verdict.is_file():
             seconds = verdict.with_name("seconds.json")
             took = sum(json.loads(seconds.read_text()).values()) if seconds.is_file() else float("nan")

@@ -1,0 +1,121 @@
+"""What simpler methods would say of a campaign: rivals that a challenge holds the diagnosis against.
+
+They have the same model, the same parameters to recalibrate and the same catalogue. What they lack is a guard:
+errors that are smooth in frequency, a gain that must hold on records not fitted, a threshold from nulls.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from permway.diagnosis.blocks import Block
+from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.catalogue import hypotheses
+from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.evidence import Evidence, gather, predictable
+from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.locate import scan
+from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.search import lines
+from permway.recordings.campaign import Campaign, read_campaign
+
+NONE = 1e-6
+"""Size of smooth errors of a method that knows of none, neper."""
+
+CALLED = 0.5
+"""How often a random answer calls something missing."""
+
+RIVALS = ("recalibration only", "smallest residual", "BIC, independent errors", "random answers")
+
+Progress = Callable[[str, int, int], object]
+Answer = dict[str, Any]
+"""The keys of a verdict that a score reads."""
+
+
+def rivals(
+    campaign: Campaign, *, seed: int = 0, threads: int | None = None, progress: Progress | None = None
+) -> dict[str, Answer]:
+    """What each rival says of a campaign.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    seed : int
+        Of random answers, together with the campaign's title.
+    threads : int, optional
+        Of the solver.
+    progress : callable, optional
+
+    Returns
+    -------
+    dict of rival to dict
+        `status`, `effects` and `held_out` as a verdict has them; nothing is held out.
+
+    Raises
+    ------
+    InputError
+        If no record can be predicted.
+    """
+    evidence = independent(gather(campaign, predictable(campaign)[0], threads=threads))
+    fit = replace(recalibrate(evidence, learn=False, reweigh=True), heat=1.0)
+    ring = Ring(fit)
+    has_hammer = any(isinstance(block, FrfBlock) for block in evidence.blocks)
+    offered = list(hypotheses(Situation(fit, tuple(scan(fit)) if has_hammer else ())))
+    screened: list[Quick] = []
+    for index, hypothesis in enumerate(offered):
+        if progress is not None:
+            progress("rivals", index, len(offered))
+        found = ring.screen(hypothesis)
+        if np.isfinite(found.gain):
+            screened.append(found)
+    count = float(np.log(lines(fit)))
+    best = max(screened, key=lambda q: q.gain)
+    by_bic = max(screened, key=lambda q: q.gain - count * len(q.hypothesis.free))
+    missing = by_bic.gain > count * len(by_bic.hypothesis.free)
+    text = f"{seed} {campaign.said.title}".encode()
+    random = np.random.default_rng(int.from_bytes(hashlib.sha256(text).digest()[:8], "big"))
+    drawn = screened[int(random.integers(len(screened)))]
+    answers = (None, best, by_bic if missing else None, drawn if random.random() < CALLED else None)
+    return {name: _answer(quick) for name, quick in zip(RIVALS, answers, strict=True)}
+
+
+def of_file(campaign: Path) -> dict[str, Answer]:
+    """The same of a campaign file, on one thread."""
+    return rivals(read_campaign(campaign), threads=1)
+
+
+def independent(evidence: Evidence) -> Evidence:
+    """The same records with errors that know nothing of their neighbours in frequency."""
+    blocks: list[Block] = [b.with_pair(NONE) if isinstance(b, FrfBlock) else b for b in evidence.blocks]
+    return replace(evidence, blocks=tuple(blocks)).with_sizes(dict.fromkeys(evidence.sizes, NONE))
+
+
+def _answer(quick: Quick | None) -> Answer:
+    if quick is None:
+        return {"status": "recalibrated", "effects": [], "held_out": {}}
+    hypothesis, values = quick.hypothesis, quick.values
+    where = hypothesis.locate(values)
+    return {
+        "status": "measurement" if hypothesis.domain == "measurement" else "named",
+        "effects": [
+            {
+                "domain": hypothesis.domain,
+                "name": hypothesis.entry,
+                "class": [{"name": hypothesis.entry, "probability": 1.0}],
+                "place": {"x": where.x_m, "channels": list(where.channels)},
+                "parameters": _parameters(values),
+            }
+        ],
+        "held_out": {},
+    }
+
+
+def _parameters(values: Mapping[str, float]) -> dict[str, Any]:
+    """Without intervals, which these methods have none of."""
+    return {name: {"value": value, "low": None, "high": None} for name, value in values.items()}

@@ -1,0 +1,56 @@
+"""What simpler methods say, and how their answers are kept and scored."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from permway.challenge.rivals import answered
+from permway.challenge.score import score
+from permway.diagnosis.evidence import gather
+from permway.diagnosis.rivals import NONE, RIVALS, independent, rivals
+from permway.errors import InputError
+from simulated import simulate
+
+
+def same(_: Path) -> dict[str, Any]:
+    return {"always": {"status": "named", "effects": [], "held_out": {}}}
+
+
+def test_without_guards_smooth_errors_are_called_an_effect(tmp_path: Path) -> None:
+    campaign = simulate(tmp_path / "c", 3, smooth=0.08).campaign
+    said = rivals(campaign, threads=1)
+    assert set(said) == set(RIVALS)
+    assert said["recalibration only"]["effects"] == []
+    # Nothing is missing: both take the smooth errors of chains for something.
+    for name in ("smallest residual", "BIC, independent errors"):
+        assert said[name]["effects"]
+    assert rivals(campaign, threads=1) == said
+
+
+def test_independent_errors_explain_nothing_smooth(tmp_path: Path) -> None:
+    evidence = independent(gather(simulate(tmp_path / "c", 3).campaign, threads=1))
+    deviations = evidence.deviations(evidence.predicted(evidence.campaign).datasets)
+    square = evidence.whitener.square(deviations)
+    assert square == pytest.approx(float(deviations @ deviations), rel=1e-3)
+    assert set(evidence.sizes.values()) == {NONE}
+
+
+def test_answers_are_kept_once_and_scored(tmp_path: Path) -> None:
+    campaign = tmp_path / "verdicts" / "null-1" / "campaign"
+    campaign.mkdir(parents=True)
+    (campaign / "campaign.toml").write_text("")
+    (tmp_path / "truth").mkdir()
+    (tmp_path / "truth" / "null-1.json").write_text('{"effects": []}')
+    assert answered(tmp_path, same) == 1
+    kept = tmp_path / "rivals" / "always" / "null-1" / "verdict.json"
+    before = kept.stat().st_mtime_ns
+    assert answered(tmp_path, same) == 1
+    assert kept.stat().st_mtime_ns == before
+    assert json.loads(kept.read_text())["status"] == "named"
+    (scored,) = score(tmp_path, {}, tmp_path / "rivals" / "always")
+    assert scored.status == "named"
+    with pytest.raises(InputError, match="no campaign that was run"):
+        answered(tmp_path / "truth", same)
