@@ -16,6 +16,9 @@ from permway.recordings.campaign_load import Dataset
 FLOOR = 0.003
 """Relative error that no record is free of: rounding, discretisation, the last decimals (0.026 dB)."""
 
+MOST_PAIR_STEPS, PAIR_CLOSE = 50, 1e-3
+"""Of the fixed point for the size of pairs' errors, and the change of its logarithm that is none."""
+
 
 class FrfBlock:
     """Frequency responses: complex deviations by the noise of each line, from coherence, and a floor.
@@ -165,16 +168,30 @@ class FrfBlock:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(np.where(self._logarithmic, self._measured / predicted["frf"].values, 1.0))
 
-    def learnt_pair(self, predicted: xr.Dataset) -> float:
-        """The size of the pairs' errors after one step of expectation maximisation."""
-        d = self.off(predicted) * self.weight
-        within = (self._across @ d[..., None])[..., 0]
-        variance = (self.pair * self._singular) ** 2
-        share = variance / (1.0 + variance)
-        # Coefficients along the directions, in units of their size: posterior mean and variance.
-        mean = share * within / np.maximum(self.pair * self._singular, 1e-300)
-        power = 0.5 * np.abs(mean) ** 2 + 1.0 / (1.0 + variance)
-        return float(self.pair * np.sqrt(power[variance > 0.0].mean()))
+    def learnt_pair(self, clean: Reals, low: float, high: float) -> float:
+        """The size of the pairs' errors, by MacKay's fixed point (1992): each counts by as much as is told of it.
+
+        Parameters
+        ----------
+        clean : ndarray, shape (n,)
+            Deviations without what errors of chains explain, which all pairs of a sensor or of a point share.
+        low, high : float
+            Between which it lies.
+        """
+        half = clean.size // 2
+        white = (clean[:half] + 1j * clean[half:]).reshape(self.measured.shape)
+        # Along its directions each pair's error was shrunk: taken back, it is of its own size again.
+        within = (self._across @ white[..., None])[..., 0] / (1.0 - self._shrink)
+        pair = self.pair
+        for _ in range(MOST_PAIR_STEPS):
+            variance = (pair * self._singular) ** 2
+            told = variance / (1.0 + variance)
+            power = 0.5 * float((np.abs(told * within / self._singular) ** 2).sum())
+            new = float(np.clip(np.sqrt(power / max(float(told.sum()), 1e-300)), low, high))
+            close, pair = abs(np.log(new / pair)) < PAIR_CLOSE, new
+            if close:
+                break
+        return pair
 
     @cached_property
     def smooth(self) -> Smooth:

@@ -18,7 +18,7 @@ from permway.diagnosis.compete import Quick, Ring, stacked
 from permway.diagnosis.constancy import constancy
 from permway.diagnosis.decide import CLASS_DEVIANCE
 from permway.diagnosis.evidence import Evidence, gather, predictable
-from permway.diagnosis.fit import Fit
+from permway.diagnosis.fit import Fit, gained
 from permway.diagnosis.heldout import Rest, gains, log_e_value, parts
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.labels import mislabelled
@@ -118,10 +118,13 @@ def _bases(evidence: Evidence, clock: _Clock) -> tuple[Fit, Fit]:
     seriously, so that what is missing in one place bends the base less.
     """
     rough = recalibrate(evidence, learn=False, reweigh=True, progress=lambda _: clock.tick())
-    base = recalibrate(rough.evidence, start=rough.z, reweigh=False, progress=lambda _: clock.tick())
+    # What hides in noise, and what spectra weigh, is told by a prediction: by a better one each time.
+    sharp = rough.evidence.reweighed(rough.evidence.predicted(rough.campaign))
+    base = recalibrate(sharp, start=rough.z, reweigh=False, progress=lambda _: clock.tick())
     if base.heat < NEARLY:
+        again = base.evidence.reweighed(base.evidence.predicted(base.campaign))
+        base = recalibrate(again, start=base.z, reweigh=False, progress=lambda _: clock.tick())
         return base, base
-    sharp = rough.evidence
     searched = recalibrate(
         sharp.blunted(BLUNT), start=rough.z, learn=False, reweigh=False, progress=lambda _: clock.tick()
     )
@@ -317,10 +320,10 @@ def _proof(base: Fit, amended: Fit, rounds: list[Round], accepted: list[Finalist
         fit = recalibrate(
             base.evidence, build=found.build, free=found.free, start=found.z, learn=False, most_steps=6
         )
-        placebo_gain = base.objective - fit.objective
+        placebo_gain = gained(base, fit)
         placebo_held_out = gains(before, Rest(fit), chosen)
-    gained = base.objective - amended.objective
-    bic = gained - sum(len(f.hypothesis.free) for f in accepted) * float(np.log(lines(base)))
+    gain = gained(base, amended)
+    bic = gain - sum(len(f.hypothesis.free) for f in accepted) * float(np.log(lines(base)))
     return Proof(
         held_out=held_out,
         log_e=log_e,
@@ -331,7 +334,7 @@ def _proof(base: Fit, amended: Fit, rounds: list[Round], accepted: list[Finalist
             threshold=rounds[0].threshold,
             log_e=log_e,
             held_out=held_out,
-            gain=gained,
+            gain=gain,
             placebo=placebo_gain,
         ),
     )

@@ -202,12 +202,20 @@ class Evidence:
             blocks.append(block)
         return replace(self, blocks=tuple(blocks))
 
-    def learnt_scatter(self, predicted: Sequence[xr.Dataset]) -> Evidence:
-        """The same with the size of the errors of pairs, and the scatter of spectra, learnt."""
+    def learnt_scatter(self, predicted: Sequence[xr.Dataset], clean: Reals) -> Evidence:
+        """The same with the size of the errors of pairs, and the scatter of spectra, learnt.
+
+        Parameters
+        ----------
+        predicted : sequence of Dataset
+        clean : ndarray, shape (n,)
+            Deviations without what smooth errors explain.
+        """
         blocks: list[Block] = []
-        for block, prediction in zip(self.blocks, predicted, strict=True):
+        block_of = self.block_of
+        for index, (block, prediction) in enumerate(zip(self.blocks, predicted, strict=True)):
             if isinstance(block, FrfBlock):
-                size = float(np.clip(block.learnt_pair(prediction), SMALLEST_SMOOTH, LARGEST_PAIR))
+                size = block.learnt_pair(clean[block_of == index], SMALLEST_SMOOTH, LARGEST_PAIR)
                 block = block.with_pair(size) if abs(np.log(size / block.pair)) > 0.02 else block
             elif isinstance(block, SpectraBlock):
                 block = block.scattered(prediction)

@@ -208,7 +208,8 @@ def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
             highest = LARGEST.get(origin.name.split()[0], LARGEST_SMOOTH)
             sizes[origin.name] = float(np.clip(new, SMALLEST_SMOOTH, highest))
             change = max(change, abs(np.log(sizes[origin.name] / old)))
-        evidence = evidence.with_sizes(sizes).learnt_scatter(solved.datasets)
+        clean = deviations - whitener.smooth(coefficients, deviations.size)
+        evidence = evidence.with_sizes(sizes).learnt_scatter(solved.datasets, clean)
         if change < 0.1:
             break
     return evidence, max((abs(np.log(evidence.sizes[o] / size)) for o, size in before.items()), default=0.0)

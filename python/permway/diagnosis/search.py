@@ -9,7 +9,7 @@ import numpy as np
 
 from permway.diagnosis.compete import Quick, Ring
 from permway.diagnosis.evidence import Evidence
-from permway.diagnosis.fit import Fit
+from permway.diagnosis.fit import Fit, gained
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.recalibrate import learnt, recalibrate
 from permway.diagnosis.result import Candidate
@@ -183,9 +183,10 @@ def search(
             continue
         progress("learn", index, len(fitted))
         amended = _learnt(rough, learnt_base.evidence)
-        gain = learnt_base.objective - amended.objective
+        gain = gained(learnt_base, amended)
         if gain - penalty(one, ring) > least:
             more = amended.log_evidence - learnt_base.log_evidence
+            more -= 0.5 * (learnt_base.objective - amended.objective - gain)
             finalists.append(Finalist(one, rough, amended, prefix, gain, more))
     finalists.sort(key=lambda f: -f.fit.log_evidence)
     return Round(ring, tuple(screened), tuple(followed), tuple(finalists), least)
