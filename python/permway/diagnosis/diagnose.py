@@ -19,7 +19,7 @@ from permway.diagnosis.constancy import constancy
 from permway.diagnosis.decide import CLASS_DEVIANCE
 from permway.diagnosis.evidence import Evidence, gather, predictable
 from permway.diagnosis.fit import Fit, gained
-from permway.diagnosis.heldout import Rest, gains, log_e_value, parts
+from permway.diagnosis.heldout import Rest, gains, log_e_value, parts, upper_half
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.labels import mislabelled
 from permway.diagnosis.locate import Found, Spot, scan
@@ -309,6 +309,10 @@ def _with_fit(finalist: Finalist, fit: Fit) -> Finalist:
 def _proof(base: Fit, amended: Fit, rounds: list[Round], accepted: list[Finalist], clock: _Clock) -> Proof:
     """Records left out, e-value and placebo."""
     chosen = list(parts(base.evidence))
+    for one in accepted:
+        channels = one.hypothesis.locate(one.values).channels
+        if one.hypothesis.domain == "measurement" and channels:
+            chosen += upper_half(base.evidence, channels)
     before, after = Rest(base), Rest(amended)
     held_out = gains(before, after, chosen)
     log_e = log_e_value(before, after)

@@ -44,11 +44,14 @@ class Part:
         What they differ in from the rest: "speed", "temperature", "place", "channel", "band".
     name : str
     rows : ndarray of bool, shape (n,)
+    shared : bool
+        Whether one error moves all of them.
     """
 
     axis: str
     name: str
     rows: np.ndarray
+    shared: bool = False
 
 
 @dataclass(frozen=True)
@@ -58,9 +61,10 @@ class Scored:
     Attributes
     ----------
     log_density : float
-        Of the part given the rest, nats.
+        Of the part given the rest, parameters and smooth errors integrated out, nats.
     by_line : ndarray
-        Half the square of each of the part's deviations, smooth errors as the rest has them.
+        Half the square of each of the part's deviations, smooth errors as the rest has them, so that their
+        sum is that of the density.
     error_dB : float
         Root mean square of levels, smooth errors not taken out, where the record knows them to 1 dB.
     """
@@ -74,6 +78,20 @@ def parts(evidence: Evidence) -> Iterator[Part]:
     """What may be left out: the campaign's own groups, or else speeds, temperatures, blows, sensors and a band."""
     own = [Part(g.axis, g.name, _of_group(evidence, g)) for g in evidence.campaign.said.held_out]
     yield from (p for p in (own or list(_usual(evidence))) if p.rows.any() and not p.rows.all())
+
+
+def upper_half(evidence: Evidence, channels: Sequence[str]) -> Iterator[Part]:
+    """The upper half of the band of channels that are said to be at fault.
+
+    There a fault goes on as below, and errors of a chain wander as they like; all else is known from the others.
+    """
+    rows = evidence.rows
+    mine = np.isin(rows.sensor, channels)
+    if mine.any():
+        middle = np.sqrt(rows.frequency_Hz[mine].min() * rows.frequency_Hz[mine].max())
+        yield Part(
+            "band", f"upper half of {' and '.join(channels)}", mine & (rows.frequency_Hz > middle), shared=True
+        )
 
 
 def _usual(evidence: Evidence) -> Iterator[Part]:
@@ -191,21 +209,31 @@ class Rest:
         ----------
         part : ndarray of bool, shape (n,)
         """
-        _, deviations = self.fitted(~part)
-        rest = self._of(~part)
-        seen = deviations * ~part
-        square = self._whole.square(deviations) - rest.square(seen)
+        z, deviations = self.fitted(~part)
+        rest, fit = self._of(~part), self.fit
+        seen = fit.deviations * ~part
+        square = self._evidence(self._whole, fit.deviations, fit.z)
+        square -= self._evidence(rest, deviations * ~part, z, ~part)
         volume = self._whole.log_determinant - rest.log_determinant + float(self._volume[part].sum())
-        heat = self.fit.heat
-        left = (deviations - self._whole.smooth(rest.explained(seen), deviations.size))[part]
-        size = self.fit.evidence.rows.scale_dB[part]
+        left = (fit.deviations - self._whole.smooth(rest.explained(seen), part.size))[part]
+        size = fit.evidence.rows.scale_dB[part]
         sure = size < SURE_DB
         level = (deviations[part] * size)[sure]
         error = float(np.sqrt(np.mean(level**2))) if sure.any() else float("nan")
         # A model that does not fit knows so: its deviations are as much larger on what it has not seen.
-        spread = float(np.log(heat))
-        log_density = -0.5 * (square / heat + volume + spread * float(part.sum()))
-        return Scored(log_density, 0.5 * (left**2 / heat + spread + self._volume[part]), error)
+        spread = float(np.log(fit.heat))
+        log_density = -0.5 * (square + volume + spread * float(part.sum()))
+        # Shared out by what is left of each line with the parameters known.
+        shared = left**2 * (square / max(float(left @ left), 1e-300))
+        return Scored(log_density, 0.5 * (shared + spread + self._volume[part]), error)
+
+    def _evidence(self, whitener: Whitener, deviations: Reals, z: Reals, rows: np.ndarray | None = None) -> float:
+        """Quadratic form of some rows and the prior, and what integrating over the parameters adds (Laplace)."""
+        jacobian = self.fit.jacobian if rows is None else np.where(rows[:, None], self.fit.jacobian, 0.0)
+        reduced = whitener.reduce(jacobian)
+        normal = (jacobian.T @ jacobian - reduced.T @ reduced) / self.fit.heat + np.eye(z.size)
+        square = whitener.square(deviations) / self.fit.heat + float(z @ z)
+        return square + float(np.linalg.slogdet(normal)[1])
 
     def log_density(self, rows: np.ndarray, deviations: Reals) -> float:
         """Of some rows by themselves, smooth errors integrated out, nats."""
@@ -224,7 +252,8 @@ class Gain:
     ----------
     part : Part
     nats, standard_error : float
-        Gain of log predictive density; its error from how it differs from third to third of an octave.
+        Gain of log predictive density; its error from how it differs from third to third of an octave, or, where
+        one error moves all lines, that of one normal variable's density: the root of twice the gain.
     before_dB, after_dB : float
     """
 
@@ -247,6 +276,8 @@ def gains(base: Rest, amended: Rest, chosen: Sequence[Part]) -> list[Gain]:
         by_cell = np.bincount(index, weights=before.by_line - after.by_line)
         error = float(np.sqrt(by_cell.size) * by_cell.std()) if by_cell.size > 1 else float("inf")
         nats = after.log_density - before.log_density
+        if part.shared:
+            error = float(np.sqrt(2.0 * abs(nats)))
         found.append(Gain(part, nats, error, before.error_dB, after.error_dB))
     return found
 
