@@ -74,12 +74,26 @@ def _suite(name: str, scores: dict[str, Any]) -> list[str]:
                 lines.append(f"| {group} | {row['cases']} | {text} | {bar} | {row[key]} |")
         if "seconds" in row:
             lines.append(f"| {row['group']} | {row['cases']} | median time, s | 300 | {row['seconds']} |")
+    lines += _rivals(scores.get("rivals", []))
     lines += ["", "| case | concealed | deviance | status | said | |", "|---|---|---:|---|---|---|"]
     for case in scores["cases"]:
         weight = "" if case["deviance"] is None else f"{case['deviance']:.0f}"
         cells = (case["case"], case["truth"], weight, case["status"], case["said"], _missed(case))
         lines.append(f"| {' | '.join(cells)} |")
     return [*lines, ""]
+
+
+def _rivals(rows: list[dict[str, Any]]) -> list[str]:
+    """What simpler methods make of the same cases."""
+    if not rows:
+        return []
+    keys = [key for key in ("called", "found", "placed", "family", "false_name") if any(key in row for row in rows)]
+    lines = ["", "Rivals on the same cases (`permway challenge rivals`):", ""]
+    lines += [f"| rival | cases | {' | '.join(FIGURES[key] for key in keys)} |", f"|---|---|{'---|' * len(keys)}"]
+    for row in rows:
+        cells = [str(row.get(key, "")) for key in keys]
+        lines.append(f"| {row['rival']} | {row['group']}, {row['cases']} | {' | '.join(cells)} |")
+    return lines
 
 
 def _missed(case: dict[str, Any]) -> str:
