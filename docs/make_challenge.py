@@ -87,7 +87,9 @@ def _rivals(rows: list[dict[str, Any]]) -> list[str]:
     """What simpler methods make of the same cases."""
     if not rows:
         return []
-    keys = [key for key in ("called", "found", "placed", "family", "false_name") if any(key in row for row in rows)]
+    keys = [
+        key for key in ("called", "found", "placed", "family", "false_name") if any(key in row for row in rows)
+    ]
     lines = ["", "Rivals on the same cases (`permway challenge rivals`):", ""]
     lines += [f"| rival | cases | {' | '.join(FIGURES[key] for key in keys)} |", f"|---|---|{'---|' * len(keys)}"]
     for row in rows:
