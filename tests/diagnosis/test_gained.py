@@ -68,7 +68,7 @@ def test_the_upper_half_of_a_channel_is_of_that_channel(base: Fit) -> None:
 
 
 def test_one_shared_error_is_no_many_witnesses(base: Fit) -> None:
-    """The same lines, said to share one error or not: the gain is one, its standard error is that of one variable."""
+    """The same lines, said to share one error or not: one gain, and the standard error of one variable."""
     (part,) = upper_half(base.evidence, ("deck@3",))
     quiet = {
         name: (0.25 * size if name == "sensor deck@3" else size) for name, size in base.evidence.sizes.items()
