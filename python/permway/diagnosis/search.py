@@ -182,7 +182,7 @@ def search(
         if fit.objective - rough.objective < close * (fit.objective - fitted[0][1].objective):
             continue
         progress("learn", index, len(fitted))
-        amended = _learnt(rough, learnt_base.evidence)
+        amended = relearnt(rough, learnt_base.evidence)
         gain = gained(learnt_base, amended)
         if gain - penalty(one, ring) > least:
             more = amended.log_evidence - learnt_base.log_evidence
@@ -198,7 +198,7 @@ def _key(hypothesis: Hypothesis) -> tuple[str, str]:
     return hypothesis.entry, hypothesis.locate(values).label
 
 
-def _learnt(fit: Fit, sharp: Evidence) -> Fit:
+def relearnt(fit: Fit, sharp: Evidence) -> Fit:
     """On the records as they are, the sizes of smooth errors learnt anew, now that less is left to explain."""
     evidence, _ = learnt(sharp, sharp.predicted(fit.campaign))
     return recalibrate(evidence, build=fit.build, free=fit.free, start=fit.z, learn=False)
