@@ -272,6 +272,11 @@ def scan(fit: Fit, also: Callable[[Spot], bool] = lambda _: False) -> list[Found
     return sorted(total, key=lambda f: -f.surplus)
 
 
+def scanned(fit: Fit, also: Callable[[Spot], bool] = lambda _: False) -> tuple[Found, ...]:
+    """The same; nothing where there is no hammer test."""
+    return tuple(scan(fit, also)) if any(isinstance(b, FrfBlock) for b in fit.evidence.blocks) else ()
+
+
 def unseen(fit: Fit) -> list[Found]:
     """A quarter, the middle and three quarters of each layer and body, as places of which nothing is known yet."""
     scans = _scans(fit)

@@ -20,7 +20,7 @@ from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.compete import Quick, Ring
 from permway.diagnosis.evidence import Evidence, gather, predictable
 from permway.diagnosis.hypothesis import Situation
-from permway.diagnosis.locate import scan
+from permway.diagnosis.locate import scanned
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.search import lines
 from permway.recordings.campaign import Campaign, read_campaign
@@ -65,8 +65,7 @@ def rivals(
     evidence = independent(gather(campaign, predictable(campaign)[0], threads=threads))
     fit = replace(recalibrate(evidence, learn=False, reweigh=True), heat=1.0)
     ring = Ring(fit)
-    has_hammer = any(isinstance(block, FrfBlock) for block in evidence.blocks)
-    offered = list(hypotheses(Situation(fit, tuple(scan(fit)) if has_hammer else ())))
+    offered = list(hypotheses(Situation(fit, scanned(fit))))
     screened: list[Quick] = []
     for index, hypothesis in enumerate(offered):
         if progress is not None:

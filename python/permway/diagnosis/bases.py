@@ -1,0 +1,48 @@
+"""The recalibrated base, and the one that a search begins from."""
+
+from __future__ import annotations
+
+from permway.diagnosis.clock import Clock
+from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.fit import Fit
+from permway.diagnosis.recalibrate import recalibrate
+
+NEARLY = 1.3
+"""Mean square of the deviations below which the recalibrated base is searched itself."""
+
+BLUNT = 0.2
+"""Relative error of frequency responses with which the search then begins."""
+
+FEW = 0.4
+"""Share of pairs that may be missed by far if the others are to hold the base without them."""
+
+
+def bases(evidence: Evidence, clock: Clock) -> tuple[Fit, Fit]:
+    """The recalibrated base, and the one that the search begins from.
+
+    Where learnt smooth errors do not explain what is left, responses are taken less
+    seriously, so that what is missing in one place bends the base less.
+    """
+    rough = recalibrate(evidence, learn=False, reweigh=True, progress=lambda _: clock.tick())
+    # What hides in noise, and what spectra weigh, is told by a prediction: by a better one each time.
+    sharp = rough.evidence.reweighed(rough.evidence.predicted(rough.campaign))
+    base = recalibrate(sharp, start=rough.z, reweigh=False, progress=lambda _: clock.tick())
+    if base.heat < NEARLY:
+        again = base.evidence.reweighed(base.evidence.predicted(base.campaign))
+        base = recalibrate(again, start=base.z, reweigh=False, progress=lambda _: clock.tick())
+        return base, base
+    searched = recalibrate(
+        sharp.blunted(BLUNT), start=rough.z, learn=False, reweigh=False, progress=lambda _: clock.tick()
+    )
+    about = searched.evidence.predicted(searched.campaign)
+    if searched.heat > NEARLY and sharp.missed(2.0 * BLUNT, about) < FEW:
+        # A few pairs are missed by more than all are blunted by: they are blunted by as much, and lead no longer.
+        searched = recalibrate(
+            sharp.blunted(BLUNT, about),
+            start=searched.z,
+            learn=False,
+            reweigh=False,
+            progress=lambda _: clock.tick(),
+        )
+    other = recalibrate(sharp, start=searched.z, reweigh=False, progress=lambda _: clock.tick())
+    return min((base, other), key=lambda fit: fit.objective), searched

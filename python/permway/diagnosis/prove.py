@@ -1,0 +1,63 @@
+"""What an amendment is held against: records left out, an e-value, a placebo."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from permway.diagnosis import decide
+from permway.diagnosis.clock import Clock
+from permway.diagnosis.compete import Quick
+from permway.diagnosis.fit import Fit, gained
+from permway.diagnosis.heldout import Rest, gains, log_e_value, parts, upper_half
+from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.search import Finalist, Round, lines
+from permway.diagnosis.speak import Proof
+
+
+def prove(base: Fit, amended: Fit, rounds: list[Round], accepted: list[Finalist], clock: Clock) -> Proof:
+    """Records left out, e-value and placebo."""
+    chosen = list(parts(base.evidence))
+    for one in accepted:
+        channels = one.hypothesis.locate(one.values).channels
+        if one.hypothesis.domain == "measurement" and channels:
+            chosen += upper_half(base.evidence, channels)
+    before, after = Rest(base), Rest(amended)
+    held_out = gains(before, after, chosen)
+    log_e = log_e_value(before, after)
+    clock("placebo")
+    sham = _placebo(rounds[0], accepted[0])
+    placebo_gain, placebo_held_out = 0.0, []
+    if sham is not None:
+        found = rounds[0].ring.full(sham, prefix="placebo.", most_steps=6)
+        fit = recalibrate(
+            base.evidence, build=found.build, free=found.free, start=found.z, learn=False, most_steps=6
+        )
+        placebo_gain = gained(base, fit)
+        placebo_held_out = gains(before, Rest(fit), chosen)
+    gain = gained(base, amended)
+    bic = gain - sum(len(f.hypothesis.free) for f in accepted) * float(np.log(lines(base)))
+    return Proof(
+        held_out=held_out,
+        log_e=log_e,
+        placebo=placebo_held_out,
+        bic_gain=bic,
+        conditions=decide.conditions(
+            bic_gain=bic,
+            threshold=rounds[0].threshold,
+            log_e=log_e,
+            held_out=held_out,
+            gain=gain,
+            placebo=placebo_gain,
+        ),
+    )
+
+
+def _placebo(found: Round, best: Finalist) -> Quick | None:
+    """As many parameters, nearly, of another family; of those the one of middling gain."""
+    count = len(best.hypothesis.free)
+    others = [q for q in found.screened if q.hypothesis.family != best.hypothesis.family]
+    if not others:
+        return None
+    near = min(abs(len(q.hypothesis.free) - count) for q in others)
+    alike = sorted((q for q in others if abs(len(q.hypothesis.free) - count) == near), key=lambda q: q.gain)
+    return alike[len(alike) // 2]
