@@ -33,6 +33,13 @@ SHOWN_INCONSTANT = 8
 """Parameters that would not stay constant, at most."""
 
 
+RESONATOR = ("mass_kg", "frequency_Hz", "loss_factor")
+"""What a mass on a spring is known by."""
+
+ONE_PLACE_M = 0.5
+"""Between two effects that are at one place."""
+
+
 def diagnose(
     campaign: Campaign, *, seed: int = 0, threads: int | None = None, progress: Progress | None = None
 ) -> Diagnosis:
@@ -115,24 +122,51 @@ def _described(
     left: Sequence[Found],
     clock: Clock,
 ) -> Round | None:
-    """Small elements, where no named effect explains what a free stiffness does; None unless they do it better."""
-    least = rounds[0].threshold
+    """Small elements, where no named effect explains what a free stiffness does; None unless they do it better.
+
+    Or where one effect was found twice at one place: that is one thing that the catalogue has no name for.
+    """
+    least, twice = rounds[0].threshold, _twice(accepted)
     if accepted:
         best = accepted[-1].fit
-        if accepted[0].hypothesis.domain != "path" or decide.explained(base, best, left) >= decide.EXPLAINED:
+        open_ = decide.explained(base, best, left) < decide.EXPLAINED
+        if accepted[0].hypothesis.domain != "path" or not (open_ or twice is not None):
             return None
     else:
         best = base
         if not found or found[0].gain - found[0].degrees * np.log(lines(base)) <= least:
             return None
-    offered = grammar.hypotheses(Situation(searched, found))
+    like = None
+    if twice is not None:
+        at, like = twice.hypothesis.locate(twice.values), twice.values
+        there = (at.x_m or (0.0,))[0]
+        found = tuple(sorted(found, key=lambda f: (f.spot.name != at.what, abs(f.spot.x_m[0] - there))))
+    offered = grammar.hypotheses(Situation(searched, found), like)
     result = search(
         searched, offered, learnt_base=base, prefix="1.", threshold=lambda _ring, _screened: least, progress=clock
     )
     if not result.finalists:
         return None
     one = result.finalists[0]
-    return result if best.objective - one.fit.objective > penalty(one.quick, result.ring) else None
+    better = best.objective - one.fit.objective - penalty(one.quick, result.ring)
+    if twice is not None:
+        # What stands for two effects has to do no better than both, with fewer constants.
+        better += sum(penalty(two.quick, result.ring) for two in accepted)
+    return result if better > 0.0 else None
+
+
+def _twice(accepted: Sequence[Finalist]) -> Finalist | None:
+    """The stronger of two masses on springs that hang at one place."""
+    for index, one in enumerate(accepted):
+        for other in accepted[:index]:
+            places = [f.hypothesis.locate(f.values) for f in (other, one)]
+            first, second = (place.x_m for place in places)
+            alike = other.hypothesis.entry == one.hypothesis.entry and places[0].what == places[1].what
+            if not alike or first is None or second is None or not {*RESONATOR} <= other.values.keys():
+                continue
+            if abs(first[0] - second[0]) < ONE_PLACE_M:
+                return max(other, one, key=lambda f: f.values["mass_kg"])
+    return None
 
 
 def _advice(rounds: Sequence[Round], clock: Clock) -> tuple[NextMeasurement, ...]:
