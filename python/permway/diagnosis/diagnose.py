@@ -72,6 +72,7 @@ def diagnose(
     rounds, accepted = ([], []) if mixed is not None else effects(searched, base, found, seed, clock)
     left = _left(base, found, accepted, clock)
     described = None if mixed is not None else _described(searched, base, found, rounds, accepted, left, clock)
+    catalogued = rounds
     if described is not None:
         rounds, accepted = [described], [described.finalists[0]]
         left = _left(base, found, accepted, clock)
@@ -80,7 +81,7 @@ def diagnose(
     advice: tuple[NextMeasurement, ...] = ()
     if amended is not None:
         clock("hold out")
-        proof = prove(base, amended, rounds, accepted, clock)
+        proof = prove(base, amended, rounds, accepted, clock, others=catalogued[0])
         advice = _advice(rounds, clock)
     clock("compare")
     law, remaining = _law(base, accepted, found, left)

@@ -14,8 +14,10 @@ from permway.diagnosis.search import Finalist, Round, lines
 from permway.diagnosis.speak import Proof
 
 
-def prove(base: Fit, amended: Fit, rounds: list[Round], accepted: list[Finalist], clock: Clock) -> Proof:
-    """Records left out, e-value and placebo."""
+def prove(
+    base: Fit, amended: Fit, rounds: list[Round], accepted: list[Finalist], clock: Clock, *, others: Round
+) -> Proof:
+    """Records left out, e-value, and a placebo of what was screened in another round, or in the same."""
     chosen = list(parts(base.evidence))
     for one in accepted:
         channels = one.hypothesis.locate(one.values).channels
@@ -25,10 +27,10 @@ def prove(base: Fit, amended: Fit, rounds: list[Round], accepted: list[Finalist]
     held_out = gains(before, after, chosen)
     log_e = log_e_value(before, after)
     clock("placebo")
-    sham = _placebo(rounds[0], accepted[0])
+    sham = _placebo(others, accepted[0])
     placebo_gain, placebo_held_out = 0.0, []
     if sham is not None:
-        found = rounds[0].ring.full(sham, prefix="placebo.", most_steps=6)
+        found = others.ring.full(sham, prefix="placebo.", most_steps=6)
         fit = recalibrate(
             base.evidence, build=found.build, free=found.free, start=found.z, learn=False, most_steps=6
         )
