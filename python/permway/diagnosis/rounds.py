@@ -23,6 +23,9 @@ MOST_EFFECTS = 3
 SECOND = 0.03
 """Share of the first effect's gain from which a further one counts as an effect."""
 
+MOST_OF_IT = 0.5
+"""Share of what earlier effects leave that may be left by a smaller one."""
+
 
 def effects(
     rough: Fit, base: Fit, found: tuple[Found, ...], seed: int, clock: Clock
@@ -62,8 +65,7 @@ def effects(
         rounds.append(result)
         if not result.finalists:
             break
-        if accepted and result.finalists[0].gain < SECOND * accepted[0].gain:
-            # So little beside the first is as likely to mend how the first was idealised.
+        if accepted and _mends(accepted, result.finalists[0]):
             break
         accepted.append(result.finalists[0])
         if len(accepted) > 1:
@@ -75,6 +77,15 @@ def effects(
             clock("locate")
             found = scanned(rough)
     return rounds, accepted
+
+
+def _mends(accepted: Sequence[Finalist], last: Finalist) -> bool:
+    """Whether a further effect is so small that it is as likely to mend how the first was idealised.
+
+    Beside a large first effect that leaves a misfit, one that explains most of that is no such thing.
+    """
+    before, after = accepted[-1].fit.heat - 1.0, last.fit.heat - 1.0
+    return last.gain < SECOND * accepted[0].gain and not (before > UNFIT - 1.0 and after < MOST_OF_IT * before)
 
 
 def _of_the_owners(base: Fit, offered: Iterable[Hypothesis], fit: Fit) -> list[Hypothesis]:
