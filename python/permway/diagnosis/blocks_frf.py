@@ -186,7 +186,9 @@ class FrfBlock:
         for _ in range(MOST_PAIR_STEPS):
             variance = (pair * self._singular) ** 2
             told = variance / (1.0 + variance)
-            power = 0.5 * float((np.abs(told * within / self._singular) ** 2).sum())
+            # What a direction tells of its coefficient, in which nothing may be told at all.
+            coefficients = pair**2 * self._singular / (1.0 + variance) * within
+            power = 0.5 * float((np.abs(coefficients) ** 2).sum())
             new = float(np.clip(np.sqrt(power / max(float(told.sum()), 1e-300)), low, high))
             close, pair = abs(np.log(new / pair)) < PAIR_CLOSE, new
             if close:
