@@ -62,9 +62,10 @@ def challenge_rivals(
     workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
     as_json: Json = False,
 ) -> None:
-    """Say what simpler methods make of the campaigns that were run, and score them.
+    """What simpler methods say, scored on the same campaigns.
 
-    Recalibration alone, the smallest residual, BIC with independent errors, random answers.
+    Of campaigns that were run: recalibration alone, the smallest residual, BIC with independent errors, random
+    answers.
     """
     from permway.challenge.rivals import answered
     from permway.challenge.score import score, summary
@@ -88,9 +89,9 @@ def challenge_weigh(
     workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
     as_json: Json = False,
 ) -> None:
-    """Say how hard each campaign is: the deviance that no recalibration takes away.
+    """How hard each campaign is, by its deviance.
 
-    Against a twin with the same parameters, noise and errors, and nothing concealed. Easy above 200, medium above
+    By the deviance that no recalibration takes away, against a twin with the same parameters, noise and errors, and nothing concealed. Easy above 200, medium above
     50, hard above 15; below, the right answer is that the records do not tell.
     """
     from permway.challenge.weigh import weigh
