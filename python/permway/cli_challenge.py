@@ -91,8 +91,9 @@ def challenge_weigh(
 ) -> None:
     """How hard each campaign is, by its deviance.
 
-    By the deviance that no recalibration takes away, against a twin with the same parameters, noise and errors, and nothing concealed. Easy above 200, medium above
-    50, hard above 15; below, the right answer is that the records do not tell.
+    The deviance that no recalibration takes away, against a twin with the same parameters, noise and errors, and
+    nothing concealed. Easy above 200, medium above 50, hard above 15; below, the right answer is that the records
+    do not tell.
     """
     from permway.challenge.weigh import weigh
     from permway.diagnosis.deviance import of_folders
