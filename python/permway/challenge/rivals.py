@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from permway.errors import InputError
+from permway.files import write_text
 
 ANSWERS = "rivals"
 
@@ -53,7 +54,7 @@ def answered(folder: Path, ask: Ask, *, workers: int = 1, progress: Progress | N
             for rival, answer in job.result().items():
                 target = folder / ANSWERS / rival / jobs[job]
                 target.mkdir(parents=True, exist_ok=True)
-                (target / "verdict.json").write_text(json.dumps(answer, indent=1) + "\n", encoding="utf-8")
+                write_text(target / "verdict.json", json.dumps(answer, indent=1) + "\n")
             if progress is not None:
                 progress(done, len(todo))
     return len(campaigns)

@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 
 from permway.challenge.case import Case, draw, write
 from permway.errors import InputError
+from permway.files import write_text
 
 Progress = Callable[[int, int], object]
 Deviance = Callable[[Path, Path], float]
@@ -67,7 +68,7 @@ def weigh(
         for done, job in enumerate(as_completed(jobs), start=1):
             name = jobs[job]
             known[name] = job.result()
-            (folder / WEIGHTS / f"{name}.json").write_text(json.dumps({"deviance": known[name]}) + "\n")
+            write_text(folder / WEIGHTS / f"{name}.json", json.dumps({"deviance": known[name]}) + "\n")
             if progress is not None:
                 progress(done, len(todo))
     return known
