@@ -9,8 +9,8 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from permway.challenge.weigh import whole
 from permway.errors import InputError
-from permway.files import write_text
 
 ANSWERS = "rivals"
 
@@ -54,7 +54,7 @@ def answered(folder: Path, ask: Ask, *, workers: int = 1, progress: Progress | N
             for rival, answer in job.result().items():
                 target = folder / ANSWERS / rival / jobs[job]
                 target.mkdir(parents=True, exist_ok=True)
-                write_text(target / "verdict.json", json.dumps(answer, indent=1) + "\n")
+                whole(target / "verdict.json", json.dumps(answer, indent=1) + "\n")
             if progress is not None:
                 progress(done, len(todo))
     return len(campaigns)

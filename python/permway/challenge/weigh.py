@@ -12,7 +12,6 @@ from tempfile import TemporaryDirectory
 
 from permway.challenge.case import Case, draw, write
 from permway.errors import InputError
-from permway.files import write_text
 
 Progress = Callable[[int, int], object]
 Deviance = Callable[[Path, Path], float]
@@ -68,10 +67,17 @@ def weigh(
         for done, job in enumerate(as_completed(jobs), start=1):
             name = jobs[job]
             known[name] = job.result()
-            write_text(folder / WEIGHTS / f"{name}.json", json.dumps({"deviance": known[name]}) + "\n")
+            whole(folder / WEIGHTS / f"{name}.json", json.dumps({"deviance": known[name]}) + "\n")
             if progress is not None:
                 progress(done, len(todo))
     return known
+
+
+def whole(path: Path, text: str) -> None:
+    """Write a file whole or not at all."""
+    beside = path.with_name(path.name + ".part")
+    beside.write_text(text, encoding="utf-8")
+    beside.replace(path)
 
 
 def weights(folder: Path) -> dict[str, float]:
