@@ -6,7 +6,11 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from permway.challenge.effects import Site
+from permway.challenge.effects.bridge import DeckAttachment
+from permway.challenge.layout import draw_layout, draw_tests
 from permway.challenge.score import interval, score, summary
 from permway.errors import InputError
 
@@ -39,7 +43,7 @@ LOST = {
     "id": "fastener_loss",
     "family": "local loss",
     "domain": "path",
-    "place": {"x": [10.5, 11.5]},
+    "place": {"joint": "pad", "x_m": [10.5, 11.5]},
     "parameters": {"factor": 0.15},
 }
 
@@ -80,6 +84,20 @@ def test_what_is_right_wrong_and_kept_back(tmp_path: Path) -> None:
     assert rows["null"]["called"].startswith("1/2")
     assert rows["single"]["found"].startswith("3/4")
     assert rows["single"]["false_name"].startswith("1/4")
+
+
+def test_places_are_read_as_the_generator_writes_them(tmp_path: Path) -> None:
+    """An attachment of the generator, said to be where it is, and ten metres off."""
+    random = np.random.default_rng(5)
+    layout = draw_layout(random)
+    hung = DeckAttachment.draw(random, "strong", Site(layout, draw_tests(random, layout, temperatures=1)))
+    true = json.loads(json.dumps({"effects": [hung.truth()]}))
+    near, far = ((hung.x_m + d - 0.2, hung.x_m + d + 0.2) for d in (0.0, 10.0))
+    cases = {
+        f"single-{i}": (true, verdict("named", effect("deck_attachment", "deck_attachment", x=x)))
+        for i, x in enumerate((near, far))
+    }
+    assert [s.placed for s in score(folder(tmp_path, cases), FAMILIES)] == [True, False]
 
 
 def test_intervals_of_shares() -> None:

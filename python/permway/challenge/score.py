@@ -147,14 +147,14 @@ def _there(true: Mapping[str, Any], said: Mapping[str, Any], domain: str | None,
     """Whether the verdict's place is the concealed one: the same domain, and the same stretch or channels."""
     if domain is not None and domain != said_domain:
         return False
-    x = true.get("x")
+    x = true.get("x_m")
     if x:
-        low, high = (x[0], x[-1]) if isinstance(x, list) else (x, x)
         stretch = said.get("within") or said.get("x")
-        return stretch is not None and stretch[0] - NEAR_M <= high and low <= stretch[1] + NEAR_M
-    channels = true.get("channels") or ([true["sensor"]] if true.get("sensor") else [])
-    if channels and said.get("channels"):
+        return stretch is not None and stretch[0] - NEAR_M <= x[-1] and x[0] <= stretch[1] + NEAR_M
+    channels = true.get("channels")
+    if isinstance(channels, list) and said.get("channels"):
         return bool(set(channels) & set(said["channels"]))
+    # "on board", or all of a kind.
     return True
 
 

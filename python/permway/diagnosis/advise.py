@@ -35,7 +35,8 @@ def advise(
     """
     before = abs(other.objective - right.objective)
     found: list[tuple[float, NextMeasurement]] = []
-    items = list(menu(right.evidence.campaign, right.evidence.datasets))
+    measured = right.evidence.selected(right.evidence.records).datasets
+    items = list(menu(right.evidence.campaign, measured))
     for index, item in enumerate(items):
         if progress is not None:
             progress("advise", index, len(items))

@@ -5,10 +5,13 @@ from __future__ import annotations
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
-from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.recalibrate import recalibrate, relearnt
 
 NEARLY = 1.3
 """Mean square of the deviations below which the recalibrated base is searched itself."""
+
+BENT = 2.0
+"""Mean square of the parameters, in standard deviations of their priors, from which a base that fits is bent."""
 
 BLUNT = 0.2
 """Relative error of frequency responses with which the search then begins."""
@@ -20,16 +23,18 @@ FEW = 0.4
 def bases(evidence: Evidence, clock: Clock) -> tuple[Fit, Fit]:
     """The recalibrated base, and the one that the search begins from.
 
-    Where learnt smooth errors do not explain what is left, responses are taken less
-    seriously, so that what is missing in one place bends the base less.
+    Where learnt smooth errors do not explain what is left, or do so only with parameters far from what their
+    owner said, responses are taken less seriously, so that what is missing in one place bends the base less.
     """
     rough = recalibrate(evidence, learn=False, reweigh=True, progress=lambda _: clock.tick())
     # What hides in noise, and what spectra weigh, is told by a prediction: by a better one each time.
     sharp = rough.evidence.reweighed(rough.evidence.predicted(rough.campaign))
     base = recalibrate(sharp, start=rough.z, reweigh=False, progress=lambda _: clock.tick())
-    if base.heat < NEARLY:
+    if base.heat < NEARLY and base.prior < BENT * len(base.free):
         again = base.evidence.reweighed(base.evidence.predicted(base.campaign))
         base = recalibrate(again, start=base.z, reweigh=False, progress=lambda _: clock.tick())
+        # What an amended model gains by being learnt to its end is no gain.
+        base = relearnt(base, base.evidence)
         return base, base
     searched = recalibrate(
         sharp.blunted(BLUNT), start=rough.z, learn=False, reweigh=False, progress=lambda _: clock.tick()

@@ -165,7 +165,9 @@ def assemble(
     Deviations are counted in the noise and the smooth errors of pairs of the fit, for both models.
     """
     campaign = evidence.campaign
-    measure = evidence if fit is None else fit.evidence
+    whole = evidence if fit is None else fit.evidence
+    measure = whole.selected(whole.records)
+    mine = np.isin(whole.block_of, whole.records)
     free = free_parameters(campaign)
     solved = {RAW: measure.predicted(campaign)}
     spreads: dict[str, list[Reals] | None] = {
@@ -175,11 +177,11 @@ def assemble(
     if fit is not None:
         solved[RECALIBRATED] = measure.predicted(fit.campaign)
         # An amendment may have brought parameters of its own, which a campaign's values do not hold.
-        own = fit.free == free or [f.name for f in fit.free] == [f.name for f in free]
+        alike = fit.free == free or [f.name for f in fit.free] == [f.name for f in free]
         spreads[RECALIBRATED] = (
-            _spread(measure, free, fit.z, fit.covariance, solved[RECALIBRATED]) if own else None
+            _spread(measure, free, fit.z, fit.covariance, solved[RECALIBRATED]) if alike else None
         )
-        rows |= {RECALIBRATED: fit.deviations, CLEAN: fit.clean}
+        rows |= {RECALIBRATED: fit.deviations[mine], CLEAN: fit.clean[mine]}
     block_of = measure.block_of
     records, bands, deviations = [], [], []
     for index, block in enumerate(measure.blocks):
@@ -191,10 +193,10 @@ def assemble(
         record["predicted_dB"] = (("model", "channel", "frequency"), spread, attrs)
         records.append(record)
         bands.append(third_octaves(record))
-        mine = {name: values[block_of == index] for name, values in rows.items()}
+        own = {name: values[block_of == index] for name, values in rows.items()}
         if fit is not None:
             predictions[CLEAN] = predictions[RECALIBRATED]
-        deviations.append(standardised(block, mine, predictions))
+        deviations.append(standardised(block, own, predictions))
     found = Comparison(
         campaign=campaign,
         fit=fit,
@@ -287,6 +289,7 @@ def _smooth(evidence: Evidence) -> xr.Dataset:
     sizes = {
         origin: size * (POWER_DB if origin.startswith(("irregularity", "decay")) or origin in decay else NEPER_DB)
         for origin, size in evidence.sizes.items()
+        if origin in {o.name for o in evidence.columns.origins}
     }
     for block in evidence.blocks:
         if isinstance(block, FrfBlock):

@@ -17,6 +17,9 @@ from permway.diagnosis.tangent import STEP
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
 
+STEPS_BACK = 4
+"""Further steps of a hypothesis that promises much and whose start is worse than nothing."""
+
 Progress = Callable[[str], object]
 
 
@@ -147,7 +150,9 @@ class Ring:
         found = Quick(hypothesis, z, self.fit.z + move, self.start - objective, None, direction, z)
         if promise < least:
             return replace(found, gain=promise)
-        return self._descend(found, deviations, 1)
+        found = self._descend(found, deviations, 1)
+        # A start that is too strong takes some steps back before it gains.
+        return found if found.gain > 0.0 else self.quick(hypothesis, after=found, steps=STEPS_BACK)
 
     def promise(self, old: Quick) -> float:
         """Linear gain of a hypothesis by what it did to the deviations about an earlier base."""

@@ -82,9 +82,9 @@ def groups(ring: Ring) -> Iterator[tuple[str, str, np.ndarray]]:
         yield "kind", "hammer", hammer
     middle = np.sqrt(rows.frequency_Hz.min() * rows.frequency_Hz.max())
     yield "band", f"above {middle:.3g} Hz", rows.frequency_Hz > middle
-    names = [block.dataset.record.name for block in evidence.blocks]
+    names = {index: evidence.blocks[index].dataset.record.name for index in evidence.records}
     if len(names) > 2:
-        for index, name in enumerate(names):
+        for index, name in names.items():
             yield "record", name, block_of == index
     temperatures = {b.dataset.condition.temperature_C for b in evidence.blocks}
     if len(temperatures) > 1:

@@ -45,7 +45,8 @@ def deviance(
     """
     plain = recalibrate(gather(twin, predictable(twin)[0], threads=threads), progress=progress)
     datasets = predictable(campaign)[0]
-    mine, others = ([d.record.name for d in sets] for sets in (datasets, plain.evidence.datasets))
+    there = plain.evidence.selected(plain.evidence.records).datasets
+    mine, others = ([d.record.name for d in sets] for sets in (datasets, there))
     if mine != others:
         raise InputError("does not have the records of its twin", where="records", value=mine, remedy=str(others))
     evidence = plain.evidence.of(campaign, datasets)

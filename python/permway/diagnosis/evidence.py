@@ -12,6 +12,7 @@ import xarray as xr
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Block, Rows
 from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.blocks_noise import NoiseBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
 from permway.diagnosis.wander import FIRST_LENGTH
@@ -126,12 +127,16 @@ class Evidence:
         for sweep in sweeps:
             answers[sweep.state] = solve(sweep, campaign.model, threads=self.threads)
         kept = [] if near is None else _kept(self.datasets, needs, answers, campaign, near)
-        datasets = [
-            near.datasets[index]
-            if near is not None and kept[index]
-            else predict_one(campaign, dataset, need, None if need is None else answers[need.state])
-            for index, (dataset, need) in enumerate(zip(self.datasets, needs, strict=True))
-        ]
+        datasets: list[xr.Dataset] = []
+        made: dict[int, xr.Dataset] = {}
+        for index, (dataset, need) in enumerate(zip(self.datasets, needs, strict=True)):
+            if near is not None and kept[index]:
+                made[id(dataset)] = near.datasets[index]
+            elif id(dataset) not in made:
+                answer = None if need is None else answers[need.state]
+                made[id(dataset)] = predict_one(campaign, dataset, need, answer)
+            # Two blocks may be of one dataset.
+            datasets.append(made[id(dataset)])
         return Solved(campaign, tuple(needs), answers, datasets)
 
     def deviations(self, predicted: Sequence[xr.Dataset]) -> Reals:
@@ -229,10 +234,16 @@ class Evidence:
         ----------
         campaign : Campaign
         datasets : sequence of Dataset
-            One for each block, in their order.
+            One for each record, in their order.
         """
-        blocks = tuple(b.of(thinned(dataset)) for b, dataset in zip(self.blocks, datasets, strict=True))
+        known = {id(self.datasets[i]): thinned(d) for i, d in zip(self.records, datasets, strict=True)}
+        blocks = tuple(b.of(known[id(b.dataset)]) for b in self.blocks)
         return replace(self, campaign=campaign, blocks=blocks)
+
+    @property
+    def records(self) -> list[int]:
+        """Indices of the blocks that are records themselves, and no noise of one."""
+        return [index for index, block in enumerate(self.blocks) if not isinstance(block, NoiseBlock)]
 
     def selected(self, keep: Sequence[int]) -> Evidence:
         """Of some blocks only."""
@@ -269,15 +280,16 @@ def gather(
     """
     evidence = _blocked(campaign, campaign.load() if datasets is None else datasets, threads)
     names = [origin.name for origin in evidence.columns.origins]
-    return evidence.with_sizes({name: _first_size(campaign, name) for name in names})
+    fixed = {origin.name for origin in evidence.columns.origins if origin.fixed}
+    return evidence.with_sizes({n: 1.0 if n in fixed else _first_size(campaign, n) for n in names})
 
 
 def evidence_of(campaign: Campaign, datasets: Sequence[Dataset], like: Evidence) -> Evidence:
     """Datasets that need not be of the campaign's files, with the sizes of smooth errors that another has."""
     evidence = _blocked(campaign, datasets, like.threads)
     usual = float(np.median(list(like.sizes.values()))) if like.sizes else _first_size(campaign, "")
-    names = [origin.name for origin in evidence.columns.origins]
-    return evidence.with_sizes({name: like.sizes.get(name, usual) for name in names}, like.length)
+    sizes = {o.name: 1.0 if o.fixed else like.sizes.get(o.name, usual) for o in evidence.columns.origins}
+    return evidence.with_sizes(sizes, like.length)
 
 
 def _blocked(campaign: Campaign, datasets: Sequence[Dataset], threads: int | None) -> Evidence:
@@ -285,10 +297,11 @@ def _blocked(campaign: Campaign, datasets: Sequence[Dataset], threads: int | Non
     loaded = [thinned(dataset) for dataset in datasets]
     predicted = predict(campaign, loaded, threads=threads)
     spans = _spans(loaded)
-    blocks = tuple(
+    blocks = [
         _block(campaign, dataset, prediction, spans) for dataset, prediction in zip(loaded, predicted, strict=True)
-    )
-    return Evidence(campaign, blocks, {}, threads=threads)
+    ]
+    blocks += [NoiseBlock(dataset) for dataset in loaded if NoiseBlock.tells(dataset)]
+    return Evidence(campaign, tuple(blocks), {}, threads=threads)
 
 
 def _spans(datasets: Sequence[Dataset]) -> dict[str, tuple[float, float]]:

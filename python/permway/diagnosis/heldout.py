@@ -16,6 +16,7 @@ from scipy import linalg
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.blocks_noise import NoiseBlock
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.whitener import Whitener
@@ -130,6 +131,8 @@ def _rows_of(mask: xr.DataArray, block: Block) -> np.ndarray:
     """A mark of a dataset's data, for each of its block's rows."""
     if isinstance(block, FrfBlock):
         return np.tile(mask.values.reshape(-1), 2)
+    if isinstance(block, NoiseBlock):
+        return block.held(mask.transpose("sensor", "force", "frequency").values)
     if "channel" not in mask.dims:
         return np.resize(mask.values, block.rows.channel.size)
     channels = [str(name) for name in mask["channel"].values]

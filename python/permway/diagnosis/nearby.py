@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 
 from permway.arrays import Complexes
 from permway.diagnosis.evidence import Evidence, Solved
@@ -61,11 +62,11 @@ class Nearby:
         if not all(_same_places(new, old) for new, old in zip(needs, near.needs, strict=True)):
             return None
         moved = {id(need): self._moved(need, campaign) for need in near.needs if need is not None}
-        datasets = [
-            predict_one(campaign, dataset, old, None if old is None else moved[id(old)])
-            for dataset, old in zip(self.evidence.datasets, near.needs, strict=True)
-        ]
-        return Solved(campaign, near.needs, {}, datasets)
+        made: dict[int, xr.Dataset] = {}
+        for dataset, old in zip(self.evidence.datasets, near.needs, strict=True):
+            if id(dataset) not in made:
+                made[id(dataset)] = predict_one(campaign, dataset, old, None if old is None else moved[id(old)])
+        return Solved(campaign, near.needs, {}, [made[id(dataset)] for dataset in self.evidence.datasets])
 
     def _moved(self, need: Need, campaign: Campaign) -> Answer:
         before = model_under(self.solved.campaign.model, need.factors).line

@@ -92,7 +92,9 @@ def of_file(campaign: Path) -> dict[str, Answer]:
 def independent(evidence: Evidence) -> Evidence:
     """The same records with errors that know nothing of their neighbours in frequency."""
     blocks: list[Block] = [b.with_pair(NONE) if isinstance(b, FrfBlock) else b for b in evidence.blocks]
-    return replace(evidence, blocks=tuple(blocks)).with_sizes(dict.fromkeys(evidence.sizes, NONE))
+    fixed = {origin.name for origin in evidence.columns.origins if origin.fixed}
+    sizes = {name: size if name in fixed else NONE for name, size in evidence.sizes.items()}
+    return replace(evidence, blocks=tuple(blocks)).with_sizes(sizes)
 
 
 def _answer(quick: Quick | None) -> Answer:

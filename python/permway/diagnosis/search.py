@@ -8,10 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from permway.diagnosis.compete import Quick, Ring
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit, gained
 from permway.diagnosis.hypothesis import Hypothesis
-from permway.diagnosis.recalibrate import learnt, recalibrate
+from permway.diagnosis.recalibrate import relearnt
 from permway.diagnosis.result import Candidate
 
 FOLLOWED, PER_ENTRY = 10, 2
@@ -192,16 +191,10 @@ def search(
     return Round(ring, tuple(screened), tuple(followed), tuple(finalists), least)
 
 
-def _key(hypothesis: Hypothesis) -> tuple[str, str]:
-    """What makes a hypothesis the same as one of an earlier round: effect and place."""
+def _key(hypothesis: Hypothesis) -> tuple[str, ...]:
+    """What makes a hypothesis the same as one of an earlier round: effect, place, and what is free."""
     values = {f.name: f.value(float(z)) for f, z in zip(hypothesis.free, hypothesis.starts[0], strict=True)}
-    return hypothesis.entry, hypothesis.locate(values).label
-
-
-def relearnt(fit: Fit, sharp: Evidence) -> Fit:
-    """On the records as they are, the sizes of smooth errors learnt anew, now that less is left to explain."""
-    evidence, _ = learnt(sharp, sharp.predicted(fit.campaign))
-    return recalibrate(evidence, build=fit.build, free=fit.free, start=fit.z, learn=False)
+    return hypothesis.entry, hypothesis.locate(values).label, *(f.name for f in hypothesis.free)
 
 
 def _chosen(screened: Sequence[Quick], ring: Ring) -> list[Quick]:

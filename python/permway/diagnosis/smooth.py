@@ -10,7 +10,17 @@ import numpy as np
 from scipy import sparse
 
 from permway.arrays import Complexes, Reals
-from permway.diagnosis.wander import Wander
+
+
+class Functions(Protocol):
+    """What smooth errors are sums of; :class:`permway.diagnosis.wander.Wander` of frequency."""
+
+    @property
+    def count(self) -> int:
+        """How many functions."""
+
+    def root(self, length: float | None) -> Reals:
+        """R so that R times independent unit coefficients has this length, shape (count, count)."""
 
 
 @dataclass(frozen=True)
@@ -21,18 +31,20 @@ class Origin:
     ----------
     name : str
         As "sensor rail@16" or "irregularity".
-    wander : Wander
-        Functions of frequency.
+    wander : Functions
     parts : int
         2 for log gain and phase, each with coefficients of its own; 1 for a level.
     chain : bool
         Whether its length is that of measuring chains; else it is the shortest of its functions.
+    fixed : bool
+        Whether its columns have the size of its errors already, so that none is learnt.
     """
 
     name: str
-    wander: Wander
+    wander: Functions
     parts: int
     chain: bool = True
+    fixed: bool = False
 
     @property
     def count(self) -> int:

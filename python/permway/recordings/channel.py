@@ -65,6 +65,8 @@ class Chain(FrozenModel):
         One-sided density of what is read with nothing there, unit squared per hertz.
     noise_flicker : float
         Noise that falls with frequency: its density times frequency, unit squared.
+    noise_factor : float
+        Times that its noise is more than so, or, in hammer tests, than that of the other sensors; of power.
     mains : Mains, optional
     """
 
@@ -75,6 +77,7 @@ class Chain(FrozenModel):
     mount_loss_factor: NonNegativeFloat = 0.05
     noise_floor: NonNegativeFloat = 0.0
     noise_flicker: NonNegativeFloat = 0.0
+    noise_factor: PositiveFloat = 1.0
     mains: Mains | None = None
 
     @property
@@ -152,7 +155,8 @@ class Sensor(FrozenModel):
 
     def noise(self, frequency_Hz: Reals) -> Reals:
         """One-sided density of all noise of the chain, SI unit squared per hertz, shape (F,)."""
-        return np.asarray(self.noise_density + self.chain.noise_flicker * self.to_SI**2 / frequency_Hz)
+        density = self.noise_density + self.chain.noise_flicker * self.to_SI**2 / frequency_Hz
+        return np.asarray(self.chain.noise_factor * density)
 
     def there(self, frequency_Hz: Reals) -> Complexes:
         """What an ideal chain reads over the displacement down in m (over the force down in N), shape (F,)."""

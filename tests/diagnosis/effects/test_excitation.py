@@ -16,8 +16,7 @@ from permway.diagnosis.catalogue._excite import chain_with, with_irregularity, w
 from permway.diagnosis.compete import Quick, Ring
 from permway.diagnosis.evidence import gather
 from permway.diagnosis.hypothesis import Hypothesis, Situation
-from permway.diagnosis.recalibrate import recalibrate
-from permway.diagnosis.search import relearnt
+from permway.diagnosis.recalibrate import recalibrate, relearnt
 from permway.model.contact import GivenContact
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_excitation import Push, RoughBand, TrackLines, WheelLines

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from permway.laws import AnyLaw, Parallel
 from permway.model.line import Line
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_factors import model_under
@@ -17,6 +18,8 @@ STIFFNESS: dict[str, Keys] = {
     "hysteretic": ("stiffness",),
     "kelvin_voigt": ("stiffness", "damping"),
     "fractional_kelvin_voigt": ("stiffness", "coefficient"),
+    "springpot": ("coefficient",),
+    "maxwell": ("stiffness", "damping"),
 }
 """Numbers of a law that all scale with its stiffness."""
 
@@ -24,10 +27,22 @@ LOSS: dict[str, Keys] = {
     "hysteretic": ("loss_factor",),
     "kelvin_voigt": ("damping",),
     "fractional_kelvin_voigt": ("coefficient",),
+    "springpot": ("coefficient",),
+    "maxwell": ("stiffness", "damping"),
 }
 """Numbers that scale its loss, the stiffness at rest as it is."""
 
 REFERENCE_HZ = 60.0
+
+
+def keys_of(law: AnyLaw, of: Mapping[str, Keys]) -> Keys:
+    """Paths from a law to such numbers; none if it has none, or a part of it has none."""
+    if isinstance(law, Parallel):
+        parts = {"first": keys_of(law.first, of), "second": keys_of(law.second, of)}
+        if not all(parts.values()):
+            return ()
+        return tuple(f"{part}.{key}" for part, keys in parts.items() for key in keys)
+    return of.get(law.type, ())
 
 
 def pad_laws(line: Line) -> list[str]:
@@ -35,7 +50,7 @@ def pad_laws(line: Line) -> list[str]:
     laws = dict.fromkeys(
         layer.law for layer in line.joints if "rail" in (body.split("[")[0] for body in layer.between)
     )
-    return [name for name in laws if line.laws[name].type in STIFFNESS]
+    return [name for name in laws if keys_of(line.laws[name], STIFFNESS)]
 
 
 def loss_factor(line: Line, law: str) -> float:
@@ -45,9 +60,8 @@ def loss_factor(line: Line, law: str) -> float:
 
 def factors(line: Line, law: str, stiffness: float, loss: float = 1.0) -> dict[str, float]:
     """Factors by path that multiply a law's stiffness, and its loss over its stiffness."""
-    kind = line.laws[law].type
-    found = {f"line.laws.{law}.{key}": stiffness for key in STIFFNESS[kind]}
-    for key in LOSS[kind]:
+    found = {f"line.laws.{law}.{key}": stiffness for key in keys_of(line.laws[law], STIFFNESS)}
+    for key in keys_of(line.laws[law], LOSS):
         path = f"line.laws.{law}.{key}"
         found[path] = found.get(path, 1.0) * loss
     return found

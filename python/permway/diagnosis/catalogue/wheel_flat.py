@@ -37,7 +37,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     if not runs:
         return
     around = 2.0 * np.pi * situation.campaign.said.irregularity.wheel_radius_m
-    for wheel, channels in candidates(situation, every=False, most=3):
+    for wheel, channels in candidates(situation, every=False, most=4):
         (found,) = combs(runs, [1.0 / around], harmonics=None, decay=0.3, most=1, channel=channels[0])
         first = coordinate(found.amplitude_m, CENTRE_M, FACTOR)
 

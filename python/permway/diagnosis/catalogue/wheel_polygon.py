@@ -33,7 +33,7 @@ CENTRE, FACTOR, AMPLITUDE_M = 15.0, 2.0, 5e-6
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
-    """Of every wheel, and of the two whose axle boxes fit worst."""
+    """Of every wheel, and of the four whose axle boxes fit worst."""
     runs = excesses(situation)
     if not runs:
         return
@@ -70,7 +70,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
 
 
 def candidates(
-    situation: Situation, *, every: bool = True, most: int = 2
+    situation: Situation, *, every: bool = True, most: int = 4
 ) -> list[tuple[int | None, tuple[str, ...]]]:
     """Wheels to try, from 1, with the channels on them; None for all wheels."""
     train = situation.campaign.model.train

@@ -142,7 +142,9 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
         case "frf":
             frequency = _frequency(data)
             read = hammer.read(campaign, _names(data, "sensor"), _names(data, "force"), frequency)
-            return _like(data, "frf", np.ascontiguousarray(np.moveaxis(values * read, 0, -1)))
+            noise = [campaign.sensor(name).chain.noise_factor for name in _names(data, "sensor")]
+            found = _like(data, "frf", np.ascontiguousarray(np.moveaxis(values * read, 0, -1)))
+            return found.assign(noise_factor=("sensor", np.array(noise)))
         case "csd" | "psd":
             sensors = [campaign.sensor(name) for name in _names(data, "channel")]
             matrix = run.expected_csd(

@@ -1,0 +1,96 @@
+"""Noise of a hammer test's sensors against each other, from blows of the challenge's own making."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from permway.challenge.errors_of_measurement import struck
+from permway.diagnosis.blocks_noise import FEWEST, NoiseBlock
+from permway.diagnosis.catalogue import noise_floor
+from permway.diagnosis.compete import Ring
+from permway.diagnosis.evidence import Evidence, gather
+from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.recalibrate import recalibrate
+from permway.laws.toml import to_toml
+from permway.recordings.campaign import Campaign, read_campaign
+from permway.recordings.predict import predict
+from simulated import BLOWS, CAMPAIGN, FREQUENCY, MODEL
+
+PLACES = [("rail", 6.0), ("rail", 9.0), ("deck", 3.0), ("deck", 6.0), ("deck", 8.0), ("deck", 10.5)]
+NOISY = "deck@8"
+
+
+def campaign(folder: Path, seed: int, ratio: float) -> Campaign:
+    """Six sensors, noise alike within a factor, that of one `ratio` times the power."""
+    names = [f"{body}@{x:g}" for body, x in PLACES]
+    sensors = [
+        {"name": name, "body": body, "x_m": x, "unit": "m/s2"}
+        for name, (body, x) in zip(names, PLACES, strict=True)
+    ]
+    record: dict[str, Any] = {**CAMPAIGN["records"][0], "responses": {name: name for name in names}}
+    (folder / "model.toml").write_text(to_toml(MODEL))
+    (folder / "campaign.toml").write_text(to_toml({**CAMPAIGN, "sensors": sensors, "records": [record]}))
+    random = np.random.default_rng(seed)
+    shape = (FREQUENCY.size, len(names), 3)
+    labels = {"f": FREQUENCY, "responses": names, "references": ["a", "b", "c"]}
+    blank = {"frf": np.ones(shape, dtype=np.complex128), "coh": np.full(shape, 0.9)}
+    np.savez(folder / "frf.npz", **labels, **blank)
+    made = read_campaign(folder / "campaign.toml")
+    (there,) = predict(made, made.load())
+    response = np.moveaxis(there["frf"].values, -1, 0)
+    size = 0.02 * np.median(np.abs(response)) * np.exp(0.25 * random.standard_normal(len(names)))
+    size[names.index(NOISY)] *= np.sqrt(ratio)
+    estimate, coherence = struck(random, response, np.tile(size, (FREQUENCY.size, 1)), blows=BLOWS)
+    np.savez(folder / "frf.npz", **labels, frf=estimate, coh=coherence)
+    return read_campaign(folder / "campaign.toml")
+
+
+def blocks_of(evidence: Evidence) -> list[NoiseBlock]:
+    return [block for block in evidence.blocks if isinstance(block, NoiseBlock)]
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_noisy_sensor_is_told_and_by_how_much(tmp_path: Path, seed: int) -> None:
+    evidence = gather(campaign(tmp_path, seed, 200.0))
+    (block,) = blocks_of(evidence)
+    assert str(block.names[int(np.argmax(block.own()))]) == NOISY
+    fit = recalibrate(evidence)
+    ring = Ring(fit)
+    found = [ring.quick(h) for h in noise_floor.hypotheses(Situation(fit, ()))]
+    best = max(found, key=lambda quick: quick.gain)
+    assert best.hypothesis.locate(best.values).channels == (NOISY,)
+    assert best.gain > 20.0
+    # Sensors differ by exp(0.25) in amplitude themselves.
+    assert best.values["noise_ratio"] == pytest.approx(200.0, rel=0.8)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_sensors_that_differ_as_sensors_do_are_not_called_noisy(tmp_path: Path, seed: int) -> None:
+    fit = recalibrate(gather(campaign(tmp_path, seed, 1.0)))
+    ring = Ring(fit)
+    gains = [ring.quick(h).gain for h in noise_floor.hypotheses(Situation(fit, ()))]
+    assert gains
+    assert max(gains) < 9.0
+
+
+def test_noise_moves_no_response_and_is_no_record_of_its_own(tmp_path: Path) -> None:
+    evidence = gather(campaign(tmp_path, 4, 1.0))
+    assert [evidence.blocks[i].dataset.record.statistic for i in evidence.records] == ["frf"]
+    (block,) = blocks_of(evidence)
+    fit = recalibrate(evidence)
+    # The columns of noise are of a known size: nothing is learnt of them.
+    fixed = {o.name for o in block.smooth.origins}
+    assert {fit.evidence.sizes[name] for name in fixed} == {1.0}
+    mine = fit.evidence.block_of == fit.evidence.blocks.index(fit.evidence.blocks[-1])
+    assert not fit.jacobian[mine].any()
+
+
+def test_few_sensors_tell_nothing_of_each_other(tmp_path: Path) -> None:
+    made = campaign(tmp_path, 5, 1.0)
+    (dataset,) = made.load()
+    few = dataset.data.isel(sensor=slice(0, FEWEST - 1))
+    assert NoiseBlock.tells(dataset)
+    assert not NoiseBlock.tells(type(dataset)(dataset.record, dataset.condition, few))
