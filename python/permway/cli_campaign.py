@@ -68,18 +68,22 @@ def diagnose(
 
     Recalibrates the model, looks for what no value of it explains, names the effect or says that the records do
     not tell, and proves it on records that were not fitted. Writes report.html, verdict.json and amended.toml;
-    takes minutes. The same seed gives the same verdict.
+    takes minutes. The same seed gives the same verdict. Stopped and called again, it goes on where it was.
     """
     from permway.diagnosis.diagnose import diagnose as run
+    from permway.diagnosis.journal import FOLDER, keeping, key_of
     from permway.files import prepare_folder
     from permway.recordings.campaign import read_campaign
     from permway.report.diagnosis import write_diagnosis
 
     described = read_campaign(campaign, allow_outside=allow_outside)
     folder = prepare_folder(output or campaign.parent / "diagnosis")
-    with stage_bar("diagnosing", as_json) as progress:
-        result = run(described, seed=seed, threads=threads, progress=progress)
-    say(write_diagnosis(result, folder, page=not no_report), as_json)
+    with keeping(folder / FOLDER, key_of(described, seed)) as journal:
+        with stage_bar("diagnosing", as_json) as progress:
+            result = run(described, seed=seed, threads=threads, progress=progress)
+        written = write_diagnosis(result, folder, page=not no_report)
+        journal.close()
+    say(written, as_json)
 
 
 @campaigns.command(epilog=examples("permway separability campaign/campaign.toml --json"))

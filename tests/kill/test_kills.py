@@ -45,22 +45,32 @@ def test_killed_between_writing_and_naming(tmp_path: Path, older: str | None) ->
     assert not left.exists()
 
 
-def test_a_diagnosis_killed_at_work_leaves_nothing(tmp_path: Path) -> None:
-    """It writes at its end alone; begun again it begins anew."""
+def test_a_diagnosis_killed_at_work_goes_on_where_it_was(tmp_path: Path) -> None:
     for name, content in campaign_files().items():
         (tmp_path / name).write_bytes(content)
     scratch = tmp_path / "scratch"
     scratch.mkdir()
     folder = tmp_path / "diagnosis"
     command = [sys.executable, "-m", "permway", "diagnose", str(tmp_path / "campaign.toml"), "-o", str(folder)]
+    command += ["--threads", "1", "--no-report"]
     environment = {**os.environ, "TMPDIR": str(scratch)}
-    process = subprocess.Popen([*command, "--threads", "1"], env=environment)
-    end = time.monotonic() + 60.0
-    while not folder.is_dir() and time.monotonic() < end:
+    process = subprocess.Popen(command, env=environment)
+    steps = folder / "unfinished"
+    end = time.monotonic() + 90.0
+    while not list(steps.glob("step-*.npz")) and time.monotonic() < end:
         time.sleep(0.05)
-    time.sleep(1.0)
     assert process.poll() is None
     process.kill()
     process.wait(30)
-    assert list(folder.iterdir()) == []
+    assert [path.name for path in folder.iterdir()] == ["unfinished"]
+    assert list(scratch.iterdir()) == []
+    kept = {path: path.stat().st_mtime_ns for path in steps.glob("step-*.npz")}
+    # In the same folder it goes on: what was kept is not written again.
+    process = subprocess.Popen(command, env=environment)
+    while len(list(steps.glob("step-*.npz"))) <= len(kept) and process.poll() is None:
+        time.sleep(0.05)
+    assert kept == {path: path.stat().st_mtime_ns for path in kept}
+    assert process.wait(240) == 0
+    assert (folder / "verdict.json").is_file()
+    assert not steps.exists()
     assert list(scratch.iterdir()) == []

@@ -15,8 +15,9 @@ from scipy import linalg
 from permway.arrays import Reals
 from permway.diagnosis.evidence import LARGEST_SMOOTH, SMALLEST_SMOOTH, Evidence, Solved
 from permway.diagnosis.fit import Build, Fit, Free, free_parameters
+from permway.diagnosis.journal import Arrays, current
 from permway.diagnosis.speeds import begin
-from permway.diagnosis.tangent import Problem
+from permway.diagnosis.tangent import Problem, State, Tangent
 from permway.diagnosis.wander import LENGTHS
 from permway.errors import InputError
 
@@ -39,6 +40,9 @@ MOST_RELEARNT, RELEARNT = 6, 2.0
 """Times that sizes are learnt of a model that is fitted, and what the objective must then gain."""
 
 Progress = Callable[[str], object]
+
+Changes = list[tuple[bool, bool, Reals]]
+"""Where the evidence was changed: whether spectra were weighed anew, whether sizes were learnt, and at which z."""
 
 
 def recalibrate(
@@ -85,10 +89,61 @@ def recalibrate(
     free = free_parameters(evidence.campaign) if free is None else free
     problem = Problem(evidence, build, free)
     own = start is None and build == evidence.campaign.with_values
-    z = begin(evidence, problem) if own else np.zeros(len(free)) if start is None else start.copy()
-    state = problem.at(_inside(z, free))
-    if state is None:
-        raise InputError("the model cannot be solved there", where="start", value=z.tolist())
+    journal = current()
+    names = [f.name for f in free]
+    given = (
+        names,
+        start,
+        slopes is None,
+        learn,
+        reweigh,
+        most_steps,
+        evidence.length,
+        sorted(evidence.sizes.items()),
+    )
+    kept = None if journal is None else journal.recall("recalibrate", *given)
+    if kept is None:
+        z = begin(evidence, problem) if own else np.zeros(len(free)) if start is None else start.copy()
+        state, tangent, changes = _descended(problem, z, learn, reweigh, slopes, most_steps, progress)
+        if journal is not None:
+            journal.keep(_noted(state, changes, problem.evaluations))
+    else:
+        state = _recalled(problem, kept)
+        tangent = problem.tangent(state)
+    chi2 = tangent.chi2(state)
+    heat = max(1.0, chi2 / max(1, state.deviations.size))
+    whitener = tangent.whitener
+    smooth = whitener.smooth(whitener.explained(state.deviations), state.deviations.size)
+    return Fit(
+        free=free,
+        z=state.z,
+        covariance=np.asarray(linalg.inv(tangent.normal(heat))),
+        campaign=state.solved.campaign,
+        evidence=problem.evidence,
+        deviations=state.deviations,
+        clean=state.deviations - smooth,
+        chi2=chi2,
+        prior=float(state.z @ state.z),
+        log_determinant=tangent.whitener.log_determinant,
+        jacobian=tangent.jacobian,
+        heat=heat,
+        evaluations=problem.evaluations,
+        build=build,
+    )
+
+
+def _descended(
+    problem: Problem,
+    z: Reals,
+    learn: bool,
+    reweigh: bool,
+    slopes: Reals | None,
+    most_steps: int,
+    progress: Progress | None,
+) -> tuple[State, Tangent, Changes]:
+    """The most probable state, its tangent, and where on the way to it the evidence was changed."""
+    free, changes = problem.free, []
+    state = _solvable(problem, z)
     tangent = problem.tangent(state, slopes)
     exact = slopes is None
     damping, rounds = 1e-3, 0
@@ -119,10 +174,9 @@ def recalibrate(
         elif moved is None and not fresh:
             tangent, exact = problem.tangent(state), True
         elif (learn and rounds < MOST_LEARNT) or reweigh:
-            if reweigh:
-                problem.evidence, reweigh = problem.evidence.reweighed(state.solved), False
+            changes.append((reweigh, learn, state.z))
+            change, reweigh = _changed(problem, state, reweigh, learn), False
             if learn:
-                problem.evidence, change = learnt(problem.evidence, state.solved)
                 rounds = rounds + 1 if change >= 0.1 else MOST_LEARNT
             state = problem.again(state)
             tangent, exact = problem.tangent(state), True
@@ -131,26 +185,42 @@ def recalibrate(
             break
     if tangent.at is not state or not exact:
         tangent = problem.tangent(state)
-    chi2 = tangent.chi2(state)
-    heat = max(1.0, chi2 / max(1, state.deviations.size))
-    whitener = tangent.whitener
-    smooth = whitener.smooth(whitener.explained(state.deviations), state.deviations.size)
-    return Fit(
-        free=free,
-        z=state.z,
-        covariance=np.asarray(linalg.inv(tangent.normal(heat))),
-        campaign=state.solved.campaign,
-        evidence=problem.evidence,
-        deviations=state.deviations,
-        clean=state.deviations - smooth,
-        chi2=chi2,
-        prior=float(state.z @ state.z),
-        log_determinant=tangent.whitener.log_determinant,
-        jacobian=tangent.jacobian,
-        heat=heat,
-        evaluations=problem.evaluations,
-        build=build,
-    )
+    return state, tangent, changes
+
+
+def _changed(problem: Problem, state: State, reweigh: bool, learn: bool) -> float:
+    """Weigh spectra anew, learn the sizes of smooth errors: the largest change of a size's logarithm."""
+    change = 0.0
+    if reweigh:
+        problem.evidence = problem.evidence.reweighed(state.solved)
+    if learn:
+        problem.evidence, change = learnt(problem.evidence, state.solved)
+    return change
+
+
+def _noted(state: State, changes: Changes, evaluations: int) -> dict[str, np.ndarray]:
+    """What it takes to come to a state again."""
+    return {
+        "z": state.z,
+        "changed": np.array([(reweigh, learn) for reweigh, learn, _ in changes], dtype=bool).reshape(-1, 2),
+        "changed_at": np.array([z for _, _, z in changes]).reshape(-1, state.z.size),
+        "evaluations": np.array(evaluations),
+    }
+
+
+def _recalled(problem: Problem, kept: Arrays) -> State:
+    """The state that an earlier run came to, the evidence changed on the way as it was then."""
+    for (reweigh, learn), z in zip(kept["changed"], kept["changed_at"], strict=True):
+        _changed(problem, _solvable(problem, z), bool(reweigh), bool(learn))
+    problem.evaluations = int(kept["evaluations"])
+    return _solvable(problem, kept["z"])
+
+
+def _solvable(problem: Problem, z: Reals) -> State:
+    state = problem.at(_inside(z, problem.free))
+    if state is None:
+        raise InputError("the model cannot be solved there", where="start", value=z.tolist())
+    return state
 
 
 def relearnt(fit: Fit, sharp: Evidence) -> Fit:

@@ -10,6 +10,8 @@ import numpy as np
 from permway.diagnosis.compete import Quick, Ring
 from permway.diagnosis.fit import Fit, gained
 from permway.diagnosis.hypothesis import Hypothesis
+from permway.diagnosis.journal import current
+from permway.diagnosis.quick_files import noted, recalled
 from permway.diagnosis.recalibrate import relearnt
 from permway.diagnosis.result import Candidate
 
@@ -142,27 +144,14 @@ def search(
     """
     ring = Ring(fit)
     offered = list(hypotheses)
-    screened = []
-    best = 0.0
-    known = {_key(q.hypothesis): q for q in before if q.direction is not None}
-    for index, hypothesis in enumerate(offered):
-        progress("screen", index, len(offered))
-        asked = len(hypothesis.free) * np.log(lines(fit))
-        old = known.get(_key(hypothesis))
-        if old is not None and (promise := ring.promise(old)) < asked / PROMISE:
-            screened.append(replace(old, hypothesis=hypothesis, base_z=fit.z, gain=promise))
-            continue
-        found = ring.screen(hypothesis, least=max(asked / PROMISE, WORTH * best / PROMISE))
-        if np.isfinite(found.gain):
-            screened.append(found)
-            best = max(best, found.gain)
-    screened.sort(key=lambda q: penalty(q, ring) - q.gain)
-    chosen = _chosen(screened, ring)
-    followed = []
-    for index, one in enumerate(chosen):
-        progress("follow", index, len(chosen))
-        followed.append(ring.quick(one.hypothesis, after=one))
-    followed.sort(key=lambda q: penalty(q, ring) - q.gain)
+    journal = current()
+    kept = None if journal is None else journal.recall("search", [_key(h) for h in offered], fit.z)
+    if kept is None:
+        screened, followed = _looked(ring, offered, before, progress)
+        if journal is not None:
+            journal.keep({**noted(screened, offered, "screened"), **noted(followed, offered, "followed")})
+    else:
+        screened, followed = (recalled(kept, offered, name) for name in ("screened", "followed"))
     least = threshold(ring, screened)
     rivals = _finalists(followed, ring, least)
     fitted: list[tuple[Quick, Fit]] = []
@@ -189,6 +178,34 @@ def search(
             finalists.append(Finalist(one, rough, amended, prefix, gain, more))
     finalists.sort(key=lambda f: -f.fit.log_evidence)
     return Round(ring, tuple(screened), tuple(followed), tuple(finalists), least)
+
+
+def _looked(
+    ring: Ring, offered: Sequence[Hypothesis], before: Sequence[Quick], progress: Progress
+) -> tuple[list[Quick], list[Quick]]:
+    """All that could be solved after a step, and the most promising as far as they go, the best first."""
+    screened: list[Quick] = []
+    best = 0.0
+    known = {_key(q.hypothesis): q for q in before if q.direction is not None}
+    for index, hypothesis in enumerate(offered):
+        progress("screen", index, len(offered))
+        asked = len(hypothesis.free) * np.log(lines(ring.fit))
+        old = known.get(_key(hypothesis))
+        if old is not None and (promise := ring.promise(old)) < asked / PROMISE:
+            screened.append(replace(old, hypothesis=hypothesis, base_z=ring.fit.z, gain=promise))
+            continue
+        found = ring.screen(hypothesis, least=max(asked / PROMISE, WORTH * best / PROMISE))
+        if np.isfinite(found.gain):
+            screened.append(found)
+            best = max(best, found.gain)
+    screened.sort(key=lambda q: penalty(q, ring) - q.gain)
+    chosen = _chosen(screened, ring)
+    followed: list[Quick] = []
+    for index, one in enumerate(chosen):
+        progress("follow", index, len(chosen))
+        followed.append(ring.quick(one.hypothesis, after=one))
+    followed.sort(key=lambda q: penalty(q, ring) - q.gain)
+    return screened, followed
 
 
 def _key(hypothesis: Hypothesis) -> tuple[str, ...]:
