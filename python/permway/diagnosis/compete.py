@@ -20,6 +20,9 @@ from permway.recordings.campaign import Campaign
 STEPS_BACK = 4
 """Further steps of a hypothesis that promises much and whose start is worse than nothing."""
 
+STEPS_TOGETHER = 5
+"""Of base and effect, where the effect alone does not gain what it promises."""
+
 Progress = Callable[[str], object]
 
 
@@ -42,6 +45,8 @@ class Quick:
         What the start that it was screened from does to the deviations.
     start : ndarray, optional
         Coordinates of that start.
+    promise : float
+        What the change that the start makes would gain, if it could be taken in any measure.
     """
 
     hypothesis: Hypothesis
@@ -51,6 +56,7 @@ class Quick:
     columns: np.ndarray | None = None
     direction: np.ndarray | None = None
     start: Reals | None = None
+    promise: float = 0.0
 
     @property
     def values(self) -> dict[str, float]:
@@ -147,7 +153,7 @@ class Ring:
             return Quick(hypothesis, np.zeros(len(hypothesis.free)), self.fit.z, -np.inf)
         (_, promise), objective, z, deviations, move = best
         direction = (deviations - self.fit.deviations).astype(np.float32)
-        found = Quick(hypothesis, z, self.fit.z + move, self.start - objective, None, direction, z)
+        found = Quick(hypothesis, z, self.fit.z + move, self.start - objective, None, direction, z, promise)
         if promise < least:
             return replace(found, gain=promise)
         found = self._descend(found, deviations, 1)
@@ -180,6 +186,14 @@ class Ring:
         found = self.screen(hypothesis) if after is None else after
         deviations = self._deviations(hypothesis, found.z)
         return found if deviations is None else self._descend(found, deviations, steps)
+
+    def together(self, found: Quick) -> Quick:
+        """Some steps of base and effect together, for what the base has to move far for."""
+        fit = self.full(replace(found, columns=None), most_steps=STEPS_TOGETHER)
+        own = len(self.fit.free)
+        objective = self.whitener.square(fit.deviations) / self.fit.heat + fit.prior
+        gain = self.start - objective
+        return replace(found, z=fit.z[own:], base_z=fit.z[:own], gain=gain) if gain > found.gain else found
 
     def _descend(self, found: Quick, deviations: Reals, steps: int) -> Quick:
         hypothesis, z, objective = found.hypothesis, found.z, self.start - found.gain

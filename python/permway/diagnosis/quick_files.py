@@ -27,6 +27,7 @@ def noted(quicks: Sequence[Quick], offered: Sequence[Hypothesis], name: str) -> 
     found = {
         name: np.array([place[id(q.hypothesis)] for q in quicks], dtype=np.int64),
         f"{name}.gain": np.array([q.gain for q in quicks]),
+        f"{name}.promise": np.array([q.promise for q in quicks]),
     }
     for index, quick in enumerate(quicks):
         found |= {f"{name}.{index}.z": quick.z, f"{name}.{index}.base_z": quick.base_z}
@@ -46,6 +47,7 @@ def recalled(kept: Arrays, offered: Sequence[Hypothesis], name: str) -> list[Qui
             kept[f"{name}.{index}.base_z"],
             float(kept[f"{name}.gain"][index]),
             **{key: kept.get(f"{name}.{index}.{key}") for key in OPTIONAL},
+            promise=float(kept[f"{name}.promise"][index]),
         )
         for index, place in enumerate(kept[name])
     ]

@@ -18,6 +18,9 @@ from permway.diagnosis.result import Candidate
 FOLLOWED, PER_ENTRY = 10, 2
 """Hypotheses that are followed after screening, in all and of one effect."""
 
+TOGETHER = 2
+"""Hypotheses that promise more than all others gain, and gain nothing while the base moves linearly."""
+
 FINALISTS = 3
 """Hypotheses that are fitted in full, each of another effect."""
 
@@ -204,6 +207,12 @@ def _looked(
     for index, one in enumerate(chosen):
         progress("follow", index, len(chosen))
         followed.append(ring.quick(one.hypothesis, after=one))
+    best = max([1.0, *(q.gain for q in followed)])
+    unkept = sorted((q for q in screened if q.gain <= 0.0 and q.promise > best), key=lambda q: -q.promise)
+    for one in unkept[:TOGETHER]:
+        # The base is bent so far that moving it in a straight line leads nowhere.
+        progress("follow", len(chosen), len(chosen))
+        followed.append(ring.together(one))
     followed.sort(key=lambda q: penalty(q, ring) - q.gain)
     return screened, followed
 
