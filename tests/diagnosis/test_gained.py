@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from permway.diagnosis.evidence import gather
 from permway.diagnosis.fit import Fit, gained
-from permway.diagnosis.heldout import Part, Rest, gains, upper_half
+from permway.diagnosis.heldout import Part, Rest, at_fault, gains
 from permway.diagnosis.recalibrate import recalibrate
 from simulated import simulate
 
@@ -57,19 +57,19 @@ def volume_of(rest: Rest, part: np.ndarray) -> float:
     return float(rest._volume[part].sum())
 
 
-def test_the_upper_half_of_a_channel_is_of_that_channel(base: Fit) -> None:
-    (part,) = upper_half(base.evidence, ("deck@3",))
+def test_the_at_fault_of_a_channel_is_of_that_channel(base: Fit) -> None:
+    (part,) = at_fault(base.evidence, ("deck@3",))
     rows = base.evidence.rows
     assert part.shared
     assert set(rows.sensor[part.rows]) == {"deck@3"}
     mine = rows.frequency_Hz[rows.sensor == "deck@3"]
     assert rows.frequency_Hz[part.rows].min() > np.sqrt(mine.min() * mine.max())
-    assert list(upper_half(base.evidence, ("no such channel",))) == []
+    assert list(at_fault(base.evidence, ("no such channel",))) == []
 
 
 def test_one_shared_error_is_no_many_witnesses(base: Fit) -> None:
     """The same lines, said to share one error or not: one gain, and the standard error of one variable."""
-    (part,) = upper_half(base.evidence, ("deck@3",))
+    (part,) = at_fault(base.evidence, ("deck@3",))
     quiet = {
         name: (0.25 * size if name == "sensor deck@3" else size) for name, size in base.evidence.sizes.items()
     }

@@ -81,18 +81,21 @@ def parts(evidence: Evidence) -> Iterator[Part]:
     yield from (p for p in (own or list(_usual(evidence))) if p.rows.any() and not p.rows.all())
 
 
-def upper_half(evidence: Evidence, channels: Sequence[str]) -> Iterator[Part]:
-    """The upper half of the band of channels that are said to be at fault.
+def at_fault(evidence: Evidence, channels: Sequence[str]) -> Iterator[Part]:
+    """Of channels that are said to be at fault: the upper half of their band, and their noise.
 
-    There a fault goes on as below, and errors of a chain wander as they like; all else is known from the others.
+    In the one a fault goes on as below, and errors of a chain wander as they like; of the other the other sensors
+    say what is usual.
     """
-    rows = evidence.rows
+    rows, names = evidence.rows, " and ".join(channels)
     mine = np.isin(rows.sensor, channels)
+    noise = mine & ~np.isin(evidence.block_of, evidence.records)
+    mine &= ~noise
     if mine.any():
         middle = np.sqrt(rows.frequency_Hz[mine].min() * rows.frequency_Hz[mine].max())
-        yield Part(
-            "band", f"upper half of {' and '.join(channels)}", mine & (rows.frequency_Hz > middle), shared=True
-        )
+        yield Part("band", f"upper half of {names}", mine & (rows.frequency_Hz > middle), shared=True)
+    if noise.any():
+        yield Part("channel", f"noise of {names}", noise, shared=True)
 
 
 def _usual(evidence: Evidence) -> Iterator[Part]:

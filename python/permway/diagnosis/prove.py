@@ -8,7 +8,7 @@ from permway.diagnosis import decide
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.compete import Quick
 from permway.diagnosis.fit import Fit, gained
-from permway.diagnosis.heldout import Rest, gains, log_e_value, parts, upper_half
+from permway.diagnosis.heldout import Rest, at_fault, gains, log_e_value, parts
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.search import Finalist, Round, lines
 from permway.diagnosis.speak import Proof
@@ -22,7 +22,7 @@ def prove(
     for one in accepted:
         channels = one.hypothesis.locate(one.values).channels
         if one.hypothesis.domain == "measurement" and channels:
-            chosen += upper_half(base.evidence, channels)
+            chosen += at_fault(base.evidence, channels)
     before, after = Rest(base), Rest(amended)
     held_out = gains(before, after, chosen)
     log_e = log_e_value(before, after)
