@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import linalg
+from scipy import linalg, optimize
 
 from permway.arrays import Reals
 from permway.diagnosis.evidence import Evidence, Solved
@@ -85,6 +85,31 @@ def stacked(build: Build, hypothesis: Hypothesis, prefix: str) -> tuple[Build, t
     return made, free
 
 
+def weaker(hypothesis: Hypothesis, z: Reals, share: float) -> list[Reals]:
+    """The same with a size so much nearer to none; nothing where an effect has no such size.
+
+    Parameters
+    ----------
+    hypothesis : Hypothesis
+    z : ndarray
+        Of its parameters.
+    share : float
+        Of how far the size is from none.
+    """
+    names = [f.name for f in hypothesis.free]
+    if not 0.0 < share < 1.0 or hypothesis.size not in names or np.isinf(hypothesis.none):
+        return []
+    place = names.index(hypothesis.size)
+    free = hypothesis.free[place]
+    size = hypothesis.none + share * (free.value(float(z[place])) - hypothesis.none)
+    low, high = free.limits
+    if (free.value(low) - size) * (free.value(high) - size) >= 0.0:
+        return []
+    found = z.copy()
+    found[place] = optimize.brentq(lambda one: free.value(one) - size, low, high)
+    return [found]
+
+
 class Ring:
     """The recalibrated base, made ready for many hypotheses to be held against it.
 
@@ -134,28 +159,31 @@ class Ring:
         least : float
             Promised gain below which the step is not taken, and the promise is what it is said to gain.
         """
-        best: tuple[tuple[float, float], float, Reals, Reals, Reals] | None = None
+        best: tuple[tuple[float, float], Quick, Reals] | None = None
         low, high = np.array([f.limits for f in hypothesis.free]).T
-        for start in hypothesis.starts:
-            z = np.clip(np.array(start, dtype=np.float64), low, high)
+        tried = [np.clip(np.array(start, dtype=np.float64), low, high) for start in hypothesis.starts]
+        for index, z in enumerate(tried):
             deviations = self._deviations(hypothesis, z)
             if deviations is None:
                 continue
             curvature, slope = self._projected((deviations - self.fit.deviations)[:, None], self.fit.deviations)
-            promise = max(-float(slope[0]), 0.0) ** 2 / max(float(curvature[0, 0]), 1e-12)
+            measure = max(-float(slope[0]), 0.0) / max(float(curvature[0, 0]), 1e-12)
+            promise = measure * max(-float(slope[0]), 0.0)
             objective, move = self._objective(deviations)
-            objective += float(z @ z)
+            gain, direction = self.start - objective - float(z @ z), deviations - self.fit.deviations
+            one = Quick(hypothesis, z, self.fit.z + move, gain, None, direction.astype(np.float32), z, promise)
             # What a start gains as it is counts before what it promises.
-            rank = max(self.start - objective, 0.0), promise
+            rank = max(gain, 0.0), promise
             if best is None or rank > best[0]:
-                best = rank, objective, z, deviations, move
+                best = rank, one, deviations
+            if index < len(hypothesis.starts) and gain < 0.0 and promise > max(least, best[1].gain):
+                # It does more than is asked for: as much as is.
+                tried += weaker(hypothesis, z, measure)
         if best is None:
             return Quick(hypothesis, np.zeros(len(hypothesis.free)), self.fit.z, -np.inf)
-        (_, promise), objective, z, deviations, move = best
-        direction = (deviations - self.fit.deviations).astype(np.float32)
-        found = Quick(hypothesis, z, self.fit.z + move, self.start - objective, None, direction, z, promise)
-        if promise < least:
-            return replace(found, gain=promise)
+        _, found, deviations = best
+        if found.promise < least:
+            return replace(found, gain=found.promise)
         found = self._descend(found, deviations, 1)
         # A start that is too strong takes some steps back before it gains.
         return found if found.gain > 0.0 else self.quick(hypothesis, after=found, steps=STEPS_BACK)

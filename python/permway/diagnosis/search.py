@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,6 +15,7 @@ from permway.diagnosis.journal import current
 from permway.diagnosis.quick_files import noted, recalled
 from permway.diagnosis.recalibrate import relearnt
 from permway.diagnosis.result import Candidate
+from permway.errors import InputError, SolveError
 
 FOLLOWED, PER_ENTRY = 10, 2
 """Hypotheses that are followed after screening, in all and of one effect."""
@@ -166,7 +168,9 @@ def search(
             close = CLOSE_TO_FITTING
             if one.gain < close * fitted[0][0].gain:
                 continue
-        fitted.append((one, ring.full(one, prefix=prefix)))
+        # What cannot be solved all around is no finalist.
+        with contextlib.suppress(InputError, SolveError):
+            fitted.append((one, ring.full(one, prefix=prefix)))
     fitted.sort(key=lambda pair: pair[1].objective + penalty(pair[0], ring))
     finalists = []
     for index, (one, rough) in enumerate(fitted):
@@ -212,7 +216,8 @@ def _looked(
     for one in unkept[:TOGETHER]:
         # The base is bent so far that moving it in a straight line leads nowhere.
         progress("follow", len(chosen), len(chosen))
-        followed.append(ring.together(one))
+        with contextlib.suppress(InputError, SolveError):
+            followed.append(ring.together(one))
     followed.sort(key=lambda q: penalty(q, ring) - q.gain)
     return screened, followed
 

@@ -110,10 +110,17 @@ class Problem:
         """Derivative of the deviations by z: forward differences, solves spared where derivatives do."""
         nearby, columns = Nearby(self.evidence, state.solved), []
         for index, f in enumerate(self.free):
-            step = STEP if state.z[index] + STEP <= f.limits[1] else -STEP
-            moved = state.z.copy()
-            moved[index] += step
-            campaign = self._campaign(moved)
-            predicted = nearby.predicted(campaign) or self.evidence.predicted(campaign, state.solved)
-            columns.append((self._near(predicted, state) - state.deviations) / step)
+            forward = state.z[index] + STEP <= f.limits[1]
+            try:
+                columns.append(self._slope(state, index, STEP if forward else -STEP, nearby))
+            except (SolveError, InputError):
+                # A number may stand at the edge of what there can be: then from its other side.
+                columns.append(self._slope(state, index, -STEP if forward else STEP, nearby))
         return np.column_stack(columns) if columns else np.zeros((state.deviations.size, 0))
+
+    def _slope(self, state: State, index: int, step: float, nearby: Nearby) -> Reals:
+        moved = state.z.copy()
+        moved[index] += step
+        campaign = self._campaign(moved)
+        predicted = nearby.predicted(campaign) or self.evidence.predicted(campaign, state.solved)
+        return np.asarray((self._near(predicted, state) - state.deviations) / step)
