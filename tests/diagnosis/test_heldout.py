@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from permway.diagnosis.catalogue import sensor_gain
 from permway.diagnosis.catalogue._interval import weakened
+from permway.diagnosis.compete import Ring
 from permway.diagnosis.evidence import Evidence, gather
 from permway.diagnosis.heldout import Rest, gains, log_e_value, parts
+from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_parts import HeldOut
@@ -59,6 +64,24 @@ def test_the_right_model_gains_and_the_same_model_does_not(evidence: Evidence) -
         assert gain.after_dB < gain.before_dB
     for gain in gains(before, before, chosen):
         assert gain.nats == pytest.approx(0.0, abs=1e-6)
-    assert log_e_value(before, after) > np.log(20.0)
-    # The base may fit the judging half itself, which the model it is held against may not.
-    assert log_e_value(before, before) <= 0.0
+    assert log_e_value(before, after, 1) > np.log(20.0)
+    # What was chosen among many has to foretell as much more.
+    assert log_e_value(before, after, 100) == pytest.approx(log_e_value(before, after, 1) - np.log(100.0))
+    assert log_e_value(before, before, 1) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_with_nothing_missing_the_e_value_passes_20_once_in_twenty_times_at_most(tmp_path: Path) -> None:
+    """An effect that was not chosen by these records, on twenty campaigns without it: P(E > 20) <= 1/20."""
+    passed, drawn = 0, []
+    for seed in range(20):
+        base = recalibrate(gather(simulate(tmp_path / str(seed), seed).campaign, threads=1), learn=False)
+        (effect,) = (
+            h for h in sensor_gain.hypotheses(Situation(base, ())) if h.locate({}).channels == ("deck@3",)
+        )
+        ring = Ring(base)
+        amended = ring.full(ring.quick(effect), prefix="1.")
+        drawn.append(log_e_value(Rest(base), Rest(amended), 1))
+        passed += drawn[-1] > np.log(20.0)
+    # Four or more would come once in sixty times.
+    assert passed <= 3
+    assert np.exp(np.minimum(drawn, 3.0)).mean() < 2.0

@@ -55,7 +55,7 @@ class Conditions:
     bic : bool
         The gain of BIC is above the threshold.
     e_value : bool
-        The split-likelihood e-value is above 20.
+        The e-value is above 20.
     held_out : bool
         The gain on records left out is above two standard errors on some axis, and none is predicted worse.
     placebo : bool

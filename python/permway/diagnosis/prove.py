@@ -25,7 +25,8 @@ def prove(
             chosen += at_fault(base.evidence, channels)
     before, after = Rest(base), Rest(amended)
     held_out = gains(before, after, chosen)
-    log_e = log_e_value(before, after)
+    tried = [len(found.screened) for found in rounds[: len(accepted)]]
+    log_e = log_e_value(before, after, int(np.prod(tried)))
     clock("placebo")
     sham = _placebo(others, accepted[0])
     placebo_gain, placebo_held_out = 0.0, []

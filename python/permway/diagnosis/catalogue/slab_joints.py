@@ -88,6 +88,8 @@ def _between(x: Reals, slab: Segment) -> Iterator[tuple[float, float]]:
 def _joints(segment: Segment, values: Mapping[str, float]) -> list[float]:
     """Where the joints of a slab are, m: a piece that would be short belongs to its neighbour."""
     length = values["length_m"]
+    if np.isinf(length):
+        return []
     first = segment.start + length * values["offset"]
     places = first + length * np.arange(np.ceil((segment.stop - first) / length))
     least = max(SHORT * length, JOINT_M)
