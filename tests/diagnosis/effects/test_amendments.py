@@ -1,0 +1,122 @@
+"""What amendments do to a line, held against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from permway.diagnosis.catalogue import slab_joints
+from permway.diagnosis.catalogue._pads import STIFFNESS, keys_of
+from permway.diagnosis.catalogue._relaxing import REFERENCE_HZ, relaxing, relaxing_once
+from permway.diagnosis.compete import weaker
+from permway.diagnosis.hypothesis import Hypothesis, Where, between_free, log_free
+from permway.laws import Hysteretic
+from permway.laws.checks import check_law
+from permway.model.segments import Segment
+from permway.recordings.campaign import Campaign
+from simulated import simulate
+
+FREQUENCY = np.geomspace(1.0, 1000.0, 200)
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
+    return simulate(tmp_path_factory.mktemp("pads"), 1).campaign
+
+
+def constant(campaign: Campaign) -> Hysteretic:
+    law = campaign.model.line.laws["pad"]
+    assert isinstance(law, Hysteretic)
+    return law
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    factor=st.floats(0.4, 2.5), order=st.floats(0.02, 0.8), share=st.floats(0.02, 0.97), rest=st.floats(0.0, 1.0)
+)
+def test_a_springpot_takes_over_stiffness_and_loss(
+    campaign: Campaign, factor: float, order: float, share: float, rest: float
+) -> None:
+    before = constant(campaign)
+    after = relaxing(campaign, "pad", stiffness_factor=factor, order=order, share=share, rest=rest)
+    law = after.model.line.laws["pad"]
+    k = before.stiffness * factor
+    (at,) = law.complex(np.array([REFERENCE_HZ]), None)
+    assert at.real == pytest.approx(k)
+    assert at.imag == pytest.approx(k * (rest * before.eta + share * np.tan(0.5 * np.pi * order)))
+    # Its part grows with frequency by the order, and the constant part stays.
+    high, low = law.complex(np.array([10.0 * REFERENCE_HZ, 0.0 * REFERENCE_HZ + 1e-9]), None)
+    assert (high.real - k * (1.0 - share)) / (k * share) == pytest.approx(10.0**order)
+    assert low.real >= k * (1.0 - share) * (1.0 - 1e-9)
+    assert check_law(law, (1.0, 1000.0)).passive
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    factor=st.floats(0.4, 2.5), rise=st.floats(0.02, 10.0), hertz=st.floats(4.0, 1000.0), rest=st.floats(0.0, 1.0)
+)
+def test_a_relaxation_rises_by_what_it_says(
+    campaign: Campaign, factor: float, rise: float, hertz: float, rest: float
+) -> None:
+    before = constant(campaign)
+    after = relaxing_once(campaign, "pad", stiffness_factor=factor, rise=rise, relaxation_Hz=hertz, rest=rest)
+    law = after.model.line.laws["pad"]
+    k = before.stiffness * factor
+    at, low, middle, high = law.complex(np.array([REFERENCE_HZ, 1e-6, hertz, 1e9]), None)
+    assert at.real == pytest.approx(k)
+    assert high.real / low.real == pytest.approx(1.0 + rise, rel=1e-6)
+    assert middle.real == pytest.approx(0.5 * (low.real + high.real), rel=1e-6)
+    # Debye's peak: half the step.
+    assert middle.imag - k * rest * before.eta == pytest.approx(0.5 * (high.real - low.real), rel=1e-6)
+    assert check_law(law, (1.0, 1000.0)).passive
+
+
+def test_a_law_of_two_parts_scales_with_both(campaign: Campaign) -> None:
+    after = relaxing(campaign, "pad", stiffness_factor=1.0, order=0.2, share=0.5, rest=0.5)
+    assert keys_of(after.model.line.laws["pad"], STIFFNESS) == ("first.stiffness", "second.coefficient")
+
+
+@settings(max_examples=100, deadline=None)
+@given(length=st.floats(1.5, 26.0), offset=st.floats(-0.5, 0.5), stop=st.floats(10.0, 120.0))
+def test_slabs_between_joints_are_alike_and_none_is_a_stub(length: float, offset: float, stop: float) -> None:
+    places = slab_joints._joints(Segment("slab", "slab", 0.0, stop), {"length_m": length, "offset": offset})
+    if not places:
+        return
+    pieces = np.diff([0.0, *places, stop])
+    assert pieces[1:-1] == pytest.approx(length)
+    assert min(pieces[0], pieces[-1]) > slab_joints.SHORT * length * (1.0 - 1e-9)
+    assert max(pieces[0], pieces[-1]) <= (1.0 + slab_joints.SHORT) * length * (1.0 + 1e-9)
+
+
+def sized(none: float, *, size: str = "size") -> Hypothesis:
+    return Hypothesis(
+        entry="rail_absorber",
+        domain="path",
+        family="resonator",
+        free=(log_free("size", "kg", 5.0, 2.5), between_free("place", "1", 0.0, 1.0)),
+        amend=lambda campaign, _values: campaign,
+        locate=lambda _values: Where(what="rail"),
+        starts=((0.0, 0.3),),
+        law=lambda _values: "",
+        size=size,
+        none=none,
+    )
+
+
+def test_a_start_is_made_weaker_in_its_size_alone() -> None:
+    start = np.array([0.0, 0.3])
+    (half,) = weaker(sized(0.0), start, 0.5)
+    assert sized(0.0).free[0].value(float(half[0])) == pytest.approx(2.5)
+    assert half[1] == start[1]
+    # Where none is a number to be divided by, on the way there.
+    (nearer,) = weaker(sized(1.0), start, 0.25)
+    assert sized(1.0).free[0].value(float(nearer[0])) == pytest.approx(2.0)
+
+
+def test_what_has_no_size_or_would_grow_is_left_as_it_is() -> None:
+    start = np.array([0.0, 0.3])
+    assert weaker(sized(np.inf), start, 0.5) == []
+    assert weaker(sized(0.0, size=""), start, 0.5) == []
+    assert weaker(sized(0.0), start, 1.5) == []
+    assert weaker(sized(0.0), start, 0.0) == []
