@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from permway.challenge.rivals import answered
 from permway.challenge.score import score
+from permway.diagnosis.catalogue._interval import weakened
+from permway.diagnosis.discrepancy import discrepancy
 from permway.diagnosis.evidence import gather
+from permway.diagnosis.fit import Fit
+from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.rivals import NONE, RIVALS, independent, rivals
 from permway.errors import InputError
+from permway.recordings.campaign import Campaign
 from simulated import simulate
 
 
@@ -28,6 +34,27 @@ def test_without_guards_smooth_errors_are_called_an_effect(tmp_path: Path) -> No
     for name in ("smallest residual", "BIC, independent errors"):
         assert said[name]["effects"]
     assert rivals(campaign, threads=1) == said
+
+
+def test_a_gaussian_process_says_that_and_near_which_sensor_and_not_what(tmp_path: Path) -> None:
+    def lost(campaign: Campaign) -> Campaign:
+        return weakened(campaign, "pad", 6.0, 1.2, 0.05)
+
+    plain, missing = (
+        independent_fit(simulate(tmp_path / name, 3, smooth=1e-9, amend=amend).campaign)
+        for name, amend in (("plain", lambda campaign: campaign), ("missing", lost))
+    )
+    assert discrepancy(plain).gain <= 0.0
+    found = discrepancy(missing)
+    assert found.gain > 100.0
+    assert found.sensor.name == "rail@6"
+    # It cannot tell a chain's smooth error from what a model lacks.
+    assert discrepancy(independent_fit(simulate(tmp_path / "smooth", 3, smooth=0.08).campaign)).gain > 100.0
+
+
+def independent_fit(campaign: Campaign) -> Fit:
+    fit = recalibrate(independent(gather(campaign, threads=1)), learn=False, reweigh=True)
+    return replace(fit, heat=1.0)
 
 
 def test_independent_errors_explain_nothing_smooth(tmp_path: Path) -> None:

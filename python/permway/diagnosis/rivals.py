@@ -18,11 +18,13 @@ from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.discrepancy import Discrepancy, discrepancy
 from permway.diagnosis.evidence import Evidence, gather, predictable
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.search import lines
+from permway.diagnosis.verdict import NOVEL
 from permway.recordings.campaign import Campaign, read_campaign
 
 NONE = 1e-6
@@ -31,7 +33,13 @@ NONE = 1e-6
 CALLED = 0.5
 """How often a random answer calls something missing."""
 
-RIVALS = ("recalibration only", "smallest residual", "BIC, independent errors", "random answers")
+RIVALS = (
+    "recalibration only",
+    "smallest residual",
+    "BIC, independent errors",
+    "random answers",
+    "Gaussian process",
+)
 
 Progress = Callable[[str, int, int], object]
 Answer = dict[str, Any]
@@ -80,8 +88,9 @@ def rivals(
     text = f"{seed} {campaign.said.title}".encode()
     random = np.random.default_rng(int.from_bytes(hashlib.sha256(text).digest()[:8], "big"))
     drawn = screened[int(random.integers(len(screened)))]
-    answers = (None, best, by_bic if missing else None, drawn if random.random() < CALLED else None)
-    return {name: _answer(quick) for name, quick in zip(RIVALS, answers, strict=True)}
+    quicks = (None, best, by_bic if missing else None, drawn if random.random() < CALLED else None)
+    answers = [*(_answer(quick) for quick in quicks), _of_process(discrepancy(fit))]
+    return dict(zip(RIVALS, answers, strict=True))
 
 
 def of_file(campaign: Path) -> dict[str, Answer]:
@@ -115,6 +124,20 @@ def _answer(quick: Quick | None) -> Answer:
         ],
         "held_out": {},
     }
+
+
+def _of_process(found: Discrepancy) -> Answer:
+    """What a Gaussian process says: that something is missing, and near which sensor; not what."""
+    if found.gain <= 0.0:
+        return {"status": "recalibrated", "effects": [], "held_out": {}}
+    effect = {
+        "domain": "path" if found.sensor.body is not None else "vehicle",
+        "name": None,
+        "class": [{"name": NOVEL, "probability": 1.0}],
+        "place": found.place,
+        "parameters": {},
+    }
+    return {"status": "located", "effects": [effect], "held_out": {}}
 
 
 def _parameters(values: Mapping[str, float]) -> dict[str, Any]:

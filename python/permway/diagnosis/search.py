@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.felt import FELT, moved
 from permway.diagnosis.fit import Fit, gained
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.journal import current
@@ -179,7 +180,9 @@ def search(
         progress("learn", index, len(fitted))
         amended = relearnt(rough, learnt_base.evidence)
         gain = gained(learnt_base, amended)
-        if gain - penalty(one, ring) > least:
+        # A fault of a sensor may show in phases, or in noise, alone.
+        felt = one.hypothesis.domain == "measurement" or moved(learnt_base, amended) > FELT
+        if gain - penalty(one, ring) > least and felt:
             more = amended.log_evidence - learnt_base.log_evidence
             more -= 0.5 * (learnt_base.objective - amended.objective - gain)
             finalists.append(Finalist(one, rough, amended, prefix, gain, more))
@@ -212,7 +215,8 @@ def _looked(
         progress("follow", index, len(chosen))
         followed.append(ring.quick(one.hypothesis, after=one))
     best = max([1.0, *(q.gain for q in followed)])
-    unkept = sorted((q for q in screened if q.gain <= 0.0 and q.promise > best), key=lambda q: -q.promise)
+    unkept = [q for q in screened if q.hypothesis.domain == "path" and q.gain <= 0.0 and q.promise > best]
+    unkept.sort(key=lambda q: -q.promise)
     for one in unkept[:TOGETHER]:
         # The base is bent so far that moving it in a straight line leads nowhere.
         progress("follow", len(chosen), len(chosen))

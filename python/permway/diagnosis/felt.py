@@ -1,0 +1,37 @@
+"""How much an amendment changes what is predicted, beside how finely models of one kind agree with each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from permway.arrays import Reals
+from permway.diagnosis.fit import Fit
+from permway.recordings.compare import POWERS, VARIABLE
+
+FELT = 0.01
+"""Change of a sensor's prediction, neper (0.09 dB), below which nothing is called missing: two discretisations of
+one structure differ by a third of it, and thousands of lines make sure of much less."""
+
+
+def moved(base: Fit, amended: Fit) -> float:
+    """Largest change of what a sensor is predicted to read, of all records: root mean square over lines, neper."""
+    before, after = (fit.evidence.predicted(fit.campaign).datasets for fit in (base, amended))
+    evidence = amended.evidence
+    return max(
+        (
+            float(np.sqrt(np.nanmean(one**2)))
+            for index in evidence.records
+            for one in _by_sensor(evidence.blocks[index].dataset.record.statistic, before[index], after[index])
+        ),
+        default=0.0,
+    )
+
+
+def _by_sensor(statistic: str, before: xr.Dataset, after: xr.Dataset) -> list[Reals]:
+    """Changes of the logarithm of every sensor's amplitudes; where nothing is predicted, none."""
+    name = VARIABLE[statistic]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        change = np.abs(np.log(after[name].values / before[name].values))
+    change = np.where(np.isfinite(change), change, np.nan) * (0.5 if name in POWERS else 1.0)
+    return [one for one in change.reshape(change.shape[0] if change.ndim > 1 else 1, -1) if np.isfinite(one).any()]
