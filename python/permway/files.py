@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import glob
 import os
 import tempfile
@@ -11,6 +12,9 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from permway.errors import InputError
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""What an error's number is where there is no room."""
 
 LEFT_BEHIND_S = 3600.0
 """A part of a file that is older was left by a process that was killed."""
@@ -89,11 +93,10 @@ def write_text(path: Path, text: str) -> Path:
 
 
 def _unwritable(path: Path, error: OSError) -> InputError:
-    return InputError(
-        f"cannot be written: {error.strerror or error}",
-        where=str(path),
-        remedy="name a place that you may write to",
+    remedy = (
+        "make room there, or name another place" if error.errno in FULL else "name a place that you may write to"
     )
+    return InputError(f"cannot be written: {error.strerror or error}", where=str(path), remedy=remedy)
 
 
 def _umask() -> int:

@@ -10,6 +10,7 @@ from scipy import linalg, optimize
 
 from permway.arrays import Reals
 from permway.diagnosis.evidence import Evidence, Solved
+from permway.diagnosis.felt import changed
 from permway.diagnosis.fit import Build, Fit, Free
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.recalibrate import recalibrate
@@ -146,6 +147,12 @@ class Ring:
         except (InputError, SolveError):
             return None
         return deviations if np.isfinite(deviations).all() else None
+
+    def felt(self, hypothesis: Hypothesis, z: Reals) -> float:
+        """Largest change of what a sensor is predicted to read, neper, the base's parameters as they are."""
+        values = {f.name: f.value(float(v)) for f, v in zip(hypothesis.free, z, strict=True)}
+        after = self.evidence.predicted(hypothesis.amend(self.fit.campaign, values), self._solved)
+        return changed(self.evidence, self._solved.datasets, after.datasets)
 
     def screen(self, hypothesis: Hypothesis, *, least: float = 0.0) -> Quick:
         """One step from the most promising of the hypothesis' starts.

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.felt import FELT
 from permway.diagnosis.fit import Fit, Free
 from permway.diagnosis.heldout import Gain
 from permway.diagnosis.locate import Found
@@ -166,8 +167,8 @@ def _twins(found: Round, best: Finalist) -> list[Quick]:
 def detectable(ring: Ring, screened: Sequence[Quick], threshold: float) -> dict[str, Smallest]:
     """The smallest size of every effect that these records would have shown.
 
-    Its deviance, which grows with the square of its size, must pass the threshold and what BIC asks; it is known
-    at the size that the effect was screened at.
+    Its deviance, which grows with the square of its size, must pass the threshold and what BIC asks, and its
+    change of predictions what is felt; both are known at the size that the effect was screened at.
 
     Returns
     -------
@@ -187,6 +188,9 @@ def detectable(ring: Ring, screened: Sequence[Quick], threshold: float) -> dict[
         if deviance <= 0.0:
             continue
         needed = float(np.sqrt((threshold + penalty(quick, ring)) / deviance))
+        if hypothesis.domain != "measurement":
+            # However sure, what nobody would feel is not called.
+            needed = max(needed, FELT / max(ring.felt(hypothesis, quick.start), 1e-12))
         size = _size(hypothesis.free[index], float(quick.start[index]), hypothesis.none, needed)
         if size is not None and needed < shown.get(hypothesis.entry, MOST_TIMES):
             shown[hypothesis.entry], found[hypothesis.entry] = needed, size

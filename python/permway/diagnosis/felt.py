@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
+from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
 from permway.recordings.compare import POWERS, VARIABLE
 
@@ -16,8 +19,11 @@ one structure differ by a third of it, and thousands of lines make sure of much 
 
 def moved(base: Fit, amended: Fit) -> float:
     """Largest change of what a sensor is predicted to read, of all records: root mean square over lines, neper."""
-    before, after = (fit.evidence.predicted(fit.campaign).datasets for fit in (base, amended))
-    evidence = amended.evidence
+    return changed(amended.evidence, *(fit.evidence.predicted(fit.campaign).datasets for fit in (base, amended)))
+
+
+def changed(evidence: Evidence, before: Sequence[xr.Dataset], after: Sequence[xr.Dataset]) -> float:
+    """The same between two predictions of all blocks."""
     return max(
         (
             float(np.sqrt(np.nanmean(one**2)))

@@ -87,10 +87,11 @@ class Journal:
         return found
 
     def keep(self, found: Arrays) -> None:
-        """Write what the step found that was asked for last."""
+        """Write what the step found that was asked for last; where there is no room, it is not kept."""
         content = io.BytesIO()
         np.savez(content, allow_pickle=False, **{DIGEST: np.array(self._digest)}, **found)
-        write_bytes(self._path, content.getvalue())
+        with contextlib.suppress(InputError):
+            write_bytes(self._path, content.getvalue())
 
     @property
     def _path(self) -> Path:
