@@ -12,8 +12,8 @@ from permway.challenge.rivals import answered
 from permway.challenge.score import score
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.discrepancy import discrepancy
-from permway.diagnosis.evidence import gather
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.rivals import NONE, RIVALS, independent, rivals
 from permway.errors import InputError

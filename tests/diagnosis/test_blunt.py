@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from permway.diagnosis.blocks_frf import FLOOR, FrfBlock
-from permway.diagnosis.evidence import Evidence, Solved, gather
+from permway.diagnosis.evidence import Evidence, Solved
+from permway.diagnosis.gather import gather
 from simulated import simulate
 
 MISSED = 0.9

@@ -10,9 +10,9 @@ import pytest
 from permway.diagnosis.catalogue import pad_frequency
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._relaxing import relaxing
-from permway.diagnosis.evidence import gather
 from permway.diagnosis.felt import FELT, moved
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.search import search

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from permway.diagnosis.evidence import gather
 from permway.diagnosis.fit import Fit, gained
+from permway.diagnosis.gather import gather
 from permway.diagnosis.heldout import Rest, at_fault, gains
 from permway.diagnosis.recalibrate import recalibrate
 from simulated import simulate

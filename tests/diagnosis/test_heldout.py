@@ -9,7 +9,8 @@ import pytest
 from permway.diagnosis.catalogue import sensor_gain
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.compete import Ring
-from permway.diagnosis.evidence import Evidence, gather
+from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.gather import gather
 from permway.diagnosis.heldout import Rest, gains, log_e_value, parts
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate

@@ -13,8 +13,8 @@ from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.catalogue.deck_attachment import resonators
 from permway.diagnosis.compete import Ring
-from permway.diagnosis.evidence import gather
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import Found, scan
 from permway.diagnosis.recalibrate import recalibrate

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from effects.trains import campaign_in, drawn
 from permway.diagnosis.blocks import Basis
-from permway.diagnosis.evidence import Evidence, gather
+from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import free_parameters
+from permway.diagnosis.gather import gather
 from permway.diagnosis.nearby import Nearby
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.tangent import STEP, Problem

@@ -11,7 +11,8 @@ from permway.challenge.errors_of_measurement import struck
 from permway.diagnosis.blocks_noise import FEWEST, NoiseBlock
 from permway.diagnosis.catalogue import noise_floor
 from permway.diagnosis.compete import Ring
-from permway.diagnosis.evidence import Evidence, gather
+from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.laws.toml import to_toml

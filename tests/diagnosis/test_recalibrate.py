@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from permway.diagnosis.compare import CLEAN, RAW, RECALIBRATED, Comparison, assemble
-from permway.diagnosis.evidence import Evidence, gather
+from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.residuals import channel_rms, lag_correlation
 from permway.laws import FractionalKelvinVoigt

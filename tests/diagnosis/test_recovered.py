@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from permway.diagnosis.catalogue._change import hung_mass, with_joints
 from permway.diagnosis.catalogue._interval import weakened
-from permway.diagnosis.evidence import gather
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather
 from permway.diagnosis.locate import Found, scan
 from permway.diagnosis.recalibrate import untouched
 from permway.diagnosis.recovered import law_stiffness

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from permway.diagnosis.advise import separation
 from permway.diagnosis.catalogue._interval import weakened
-from permway.diagnosis.evidence import gather
+from permway.diagnosis.gather import gather
 from permway.diagnosis.menu import menu
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.separability import Separability, separability

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from permway.diagnosis.evidence import gather
+from permway.diagnosis.gather import gather
 from permway.diagnosis.recalibrate import learnt
 from permway.diagnosis.smooth import Origin, PairColumns, Smooth, SparseColumns
 from permway.diagnosis.wander import LENGTHS, SHORTEST, Wander

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from lines import hysteretic, supported, uic60
 from permway.diagnosis.compare import assemble
-from permway.diagnosis.evidence import gather
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Where
 from permway.diagnosis.locate import scan
 from permway.diagnosis.recalibrate import recalibrate

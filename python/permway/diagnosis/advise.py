@@ -8,8 +8,8 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
-from permway.diagnosis.evidence import evidence_of
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import evidence_of
 from permway.diagnosis.menu import Item, menu
 from permway.diagnosis.search import Progress
 from permway.diagnosis.tangent import STEP

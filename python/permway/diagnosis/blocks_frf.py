@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -18,6 +19,10 @@ FLOOR = 0.003
 
 MOST_PAIR_STEPS, PAIR_CLOSE = 50, 1e-3
 """Of the fixed point for the size of pairs' errors, and the change of its logarithm that is none."""
+
+
+LINES_PER_FREQUENCY = 40.0
+"""Lines of a frequency response within its own frequency, at most."""
 
 
 class FrfBlock:
@@ -229,3 +234,19 @@ def _noise_variance(raw: Reals, reach: int = 4) -> Reals:
             return np.asarray(np.where(there, total / count, np.nan))
 
     return np.apply_along_axis(line, -1, raw)
+
+
+def thinned(dataset: Dataset) -> Dataset:
+    """Frequency responses on lines no closer than 1/LINES_PER_FREQUENCY of their frequency.
+
+    What lies closer says nothing new of a structure with loss factors above that.
+    """
+    if dataset.record.statistic != "frf":
+        return dataset
+    frequency = dataset.data["frequency"].values
+    kept, last = [], -np.inf
+    for index, value in enumerate(frequency):
+        if value - last >= value / LINES_PER_FREQUENCY * (1.0 - 1e-9):
+            kept.append(index)
+            last = value
+    return replace(dataset, data=dataset.data.isel(frequency=kept))

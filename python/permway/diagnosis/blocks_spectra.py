@@ -13,6 +13,7 @@ from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks import SURE, Rows
 from permway.diagnosis.smooth import Origin, Smooth, SparseColumns
 from permway.diagnosis.wander import Wander
+from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
 
 SMALL = 1e-4
@@ -237,3 +238,10 @@ def _tree(coherence: Reals) -> tuple[int, list[tuple[int, int]]]:
         tree.append((child, parent))
         inside.append(child)
     return 0, tree
+
+
+def noise_of(campaign: Campaign, dataset: Dataset) -> Reals:
+    """Expected power of the noise of each channel of a run, (channels, F)."""
+    data = dataset.data
+    frequency = np.asarray(data["frequency"].values, dtype=np.float64)
+    return np.stack([campaign.sensor(str(name)).noise(frequency) for name in data["channel"].values])

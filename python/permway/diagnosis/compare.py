@@ -12,8 +12,9 @@ import xarray as xr
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
-from permway.diagnosis.evidence import Evidence, Solved, gather, predictable
+from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.fit import Fit, Free, free_parameters
+from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.residuals import standardised
 from permway.diagnosis.tangent import STEP

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from permway.diagnosis.evidence import gather, predictable
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.recalibrate import recalibrate
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign, read_campaign

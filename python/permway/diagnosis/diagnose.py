@@ -15,8 +15,8 @@ from permway.diagnosis.compare import assemble
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.constancy import constancy
 from permway.diagnosis.decide import CLASS_DEVIANCE
-from permway.diagnosis.evidence import gather, predictable
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.labels import mislabelled
 from permway.diagnosis.locate import Found, scanned

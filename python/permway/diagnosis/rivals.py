@@ -19,7 +19,8 @@ from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.compete import Quick, Ring
 from permway.diagnosis.discrepancy import Discrepancy, discrepancy
-from permway.diagnosis.evidence import Evidence, gather, predictable
+from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.recalibrate import recalibrate

@@ -16,7 +16,7 @@ from permway.arrays import Reals
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.decide import CLASS_DEVIANCE
-from permway.diagnosis.evidence import gather, predictable
+from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.locate import unseen
 from permway.diagnosis.recalibrate import untouched

@@ -176,6 +176,12 @@ def _effect(one: Finalist, found: Round, amended: Fit, base: Fit, explained: flo
             for end in (estimate.low, estimate.high):
                 moved = hypothesis.locate({**values, f.name: float(end if end is not None else values[f.name])})
                 ends.extend(moved.x_m or ())
+        for other in found.followed:
+            # The same effect elsewhere, which does as well: the records do not tell the two places apart.
+            alike = (
+                other.hypothesis.entry == hypothesis.entry and one.quick.gain - other.gain < decide.CLASS_DEVIANCE
+            )
+            ends.extend((other.hypothesis.locate(other.values).x_m or ()) if alike else ())
         within = (min(ends), max(ends))
     named = members[0].name != NOVEL and members[0].probability >= decide.NAMED
     base_square = base.clean**2

@@ -14,7 +14,7 @@ from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._excite import chain_with, with_irregularity, with_speed
 from permway.diagnosis.compete import Quick, Ring
-from permway.diagnosis.evidence import gather
+from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.recalibrate import recalibrate, relearnt
 from permway.model.contact import GivenContact

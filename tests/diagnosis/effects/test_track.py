@@ -13,8 +13,8 @@ import pytest
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.compete import Ring
-from permway.diagnosis.evidence import gather
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation
 from permway.diagnosis.locate import scan
 from permway.diagnosis.recalibrate import recalibrate

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from permway.diagnosis.compete import Quick, Ring
-from permway.diagnosis.evidence import gather
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.recordings.campaign import Campaign

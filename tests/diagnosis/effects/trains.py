@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from permway.diagnosis.evidence import gather
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.laws.toml import to_toml

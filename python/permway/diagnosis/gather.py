@@ -1,0 +1,109 @@
+"""A campaign's records, read and made ready to be held against models."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from permway.diagnosis.blocks import Block
+from permway.diagnosis.blocks_frf import FrfBlock, thinned
+from permway.diagnosis.blocks_noise import NoiseBlock
+from permway.diagnosis.blocks_spectra import SpectraBlock, noise_of
+from permway.diagnosis.blocks_tabular import TableBlock
+from permway.diagnosis.evidence import Evidence
+from permway.errors import InputError
+from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_load import Dataset
+from permway.recordings.predict import predict, why_not
+
+
+def predictable(campaign: Campaign) -> tuple[list[Dataset], dict[str, str]]:
+    """Read a campaign's records: those that can be predicted, and of the others by name why not.
+
+    Raises
+    ------
+    InputError
+        If none can be predicted, or a file cannot be read.
+    """
+    datasets = campaign.load()
+    reasons = {dataset.record.name: why_not(campaign, dataset) for dataset in datasets}
+    left_out = {name: str(why) for name, why in reasons.items() if why is not None}
+    kept = [dataset for dataset in datasets if reasons[dataset.record.name] is None]
+    if not kept:
+        name, why = next(iter(left_out.items()))
+        raise InputError("no record can be predicted", where=f"records.{name}", remedy=why)
+    return kept, left_out
+
+
+def gather(
+    campaign: Campaign, datasets: Sequence[Dataset] | None = None, *, threads: int | None = None
+) -> Evidence:
+    """Read a campaign's records and make them ready to be held against models.
+
+    Raises
+    ------
+    InputError
+        From reading, or for a record that cannot be predicted.
+    """
+    evidence = _blocked(campaign, campaign.load() if datasets is None else datasets, threads)
+    names = [origin.name for origin in evidence.columns.origins]
+    fixed = {origin.name for origin in evidence.columns.origins if origin.fixed}
+    return evidence.with_sizes({n: 1.0 if n in fixed else _first_size(campaign, n) for n in names})
+
+
+def evidence_of(campaign: Campaign, datasets: Sequence[Dataset], like: Evidence) -> Evidence:
+    """Datasets that need not be of the campaign's files, with the sizes of smooth errors that another has."""
+    evidence = _blocked(campaign, datasets, like.threads)
+    usual = float(np.median(list(like.sizes.values()))) if like.sizes else _first_size(campaign, "")
+    sizes = {o.name: 1.0 if o.fixed else like.sizes.get(o.name, usual) for o in evidence.columns.origins}
+    return evidence.with_sizes(sizes, like.length)
+
+
+def _blocked(campaign: Campaign, datasets: Sequence[Dataset], threads: int | None) -> Evidence:
+    """Evidence whose smooth errors have no sizes yet."""
+    loaded = [thinned(dataset) for dataset in datasets]
+    predicted = predict(campaign, loaded, threads=threads)
+    spans = _spans(loaded)
+    blocks = [
+        _block(campaign, dataset, prediction, spans) for dataset, prediction in zip(loaded, predicted, strict=True)
+    ]
+    blocks += [NoiseBlock(dataset) for dataset in loaded if NoiseBlock.tells(dataset)]
+    return Evidence(campaign, tuple(blocks), {}, threads=threads)
+
+
+def _spans(datasets: Sequence[Dataset]) -> dict[str, tuple[float, float]]:
+    """Lowest and highest frequency of all records of a kind, which share their chains."""
+    spans: dict[str, tuple[float, float]] = {}
+    for dataset in datasets:
+        name = next((n for n in ("frequency", "band") if n in dataset.data.dims), None)
+        if name is not None and dataset.data[name].size:
+            frequency, kind = np.asarray(dataset.data[name].values, dtype=np.float64), _kind(dataset)
+            low, high = spans.get(kind, (np.inf, -np.inf))
+            spans[kind] = min(low, float(frequency.min())), max(high, float(frequency.max()))
+    return spans
+
+
+def _kind(dataset: Dataset) -> str:
+    return "spectra" if dataset.record.statistic in ("csd", "psd") else dataset.record.statistic
+
+
+def _first_size(campaign: Campaign, origin: str) -> float:
+    known = campaign.said.irregularity
+    if origin == "irregularity":
+        # Two standard deviations, of a power.
+        return {"known": 0.01, "unknown": 1.0}.get(known.knowledge, 0.5 * (known.within_dB or 2.0) / 4.343)
+    return 0.02
+
+
+def _block(
+    campaign: Campaign, dataset: Dataset, predicted: xr.Dataset, spans: Mapping[str, tuple[float, float]]
+) -> Block:
+    match dataset.record.statistic:
+        case "frf":
+            return FrfBlock(dataset, reference=predicted, span=spans["frf"])
+        case "csd" | "psd":
+            return SpectraBlock(dataset, predicted, noise=noise_of(campaign, dataset), span=spans["spectra"])
+        case _:
+            return TableBlock(dataset, span=spans.get(_kind(dataset)))
