@@ -57,7 +57,7 @@ def blocks_of(evidence: Evidence) -> list[NoiseBlock]:
 def test_a_noisy_sensor_is_told_and_by_how_much(tmp_path: Path, seed: int) -> None:
     evidence = gather(campaign(tmp_path, seed, 200.0))
     (block,) = blocks_of(evidence)
-    assert str(block.names[int(np.argmax(block.own()))]) == NOISY
+    assert str(block.names[int(np.argmax(block.own))]) == NOISY
     fit = recalibrate(evidence)
     ring = Ring(fit)
     found = [ring.quick(h) for h in noise_floor.hypotheses(Situation(fit, ()))]

@@ -23,8 +23,9 @@ SCATTER = 0.7
 NORMAL = 1.4826
 """Standard deviations of a normal variable in its median absolute deviation."""
 
-BAND_SCATTER = 0.2
-"""Of that logarithm from band to band, at least."""
+QUIETEST = 0.1
+"""Quantile over pairs and lines that tells a sensor's noise: where it hears little. Elsewhere the force cell's
+noise, or the decimals that coherence is written with, come to more."""
 
 ANY = 20.0
 """Of what all sensors have in common, hammer and ground: unknown."""
@@ -34,21 +35,21 @@ UNKNOWN = 1e3
 
 
 @dataclass(frozen=True)
-class Levels:
-    """Independent coefficients, one for each level."""
+class Level:
+    """One coefficient, over no frequency."""
 
-    count: int
+    count: int = 1
 
     def root(self, length: float | None) -> Reals:
-        """No length binds them."""
-        return np.eye(self.count)
+        """No length binds it."""
+        return np.eye(1)
 
 
 class NoiseBlock:
-    """Logarithms of noise by sensor and octave, in power of the response.
+    """Logarithms of noise by sensor, in power of the response.
 
-    What hammer and ground do, all sensors of a test have in common; what is left is each one's own, alike in all
-    bands. How far these may differ is told by the middle of the sensors, so that one that is far off stands out.
+    What hammer and ground do, all sensors of a test have in common; what is left is each one's own. How far these
+    may differ is told by the middle of the sensors, so that one that is far off stands out.
 
     Parameters
     ----------
@@ -61,39 +62,25 @@ class NoiseBlock:
     def __init__(self, dataset: Dataset) -> None:
         self.dataset = dataset
         data = dataset.data
-        sensors = data["sensor"].values.astype(str)
+        self.names = data["sensor"].values.astype(str)
         frequency = np.asarray(data["frequency"].values, dtype=np.float64)
-        octave = np.floor(np.log2(frequency / frequency[0]) + 1e-9).astype(int)
         with np.errstate(divide="ignore", invalid="ignore"):
             noise = np.log(data["log_variance"].values * np.abs(data["frf"].values) ** 2)
-        noise = np.where(np.isfinite(noise), noise, np.nan)
-        self._octave = octave
-        self.bands = np.array([np.exp(np.log(frequency[octave == o]).mean()) for o in np.unique(octave)])
-        # By sensor and band.
-        level = np.array([[_mean(one[:, octave == o]) for o in np.unique(octave)] for one in noise])
-        common = np.nanmedian(level, axis=0)
-        own = np.nanmedian(level - common, axis=1)
-        self.scatter = max(SCATTER, NORMAL * float(np.median(np.abs(own - np.median(own)))))
-        left = level - common - own[:, None]
-        self.sigma = max(BAND_SCATTER, NORMAL * float(np.nanmedian(np.abs(left))))
-        known = np.isfinite(level)
-        self._sensor, self._band = np.nonzero(known)
-        self._level = (level - common)[known]
-        self.names = sensors
-        mine = sensors[self._sensor]
+        level = np.array([np.quantile(one[np.isfinite(one)], QUIETEST) for one in noise])
+        self.own: Reals = level - np.median(level)
+        self.scatter = max(SCATTER, NORMAL * float(np.median(np.abs(self.own))))
+        count = self.names.size
         self.rows = Rows(
-            np.char.add("noise of ", mine),
-            mine,
-            np.full(mine.size, ""),
-            self.bands[self._band],
-            np.full(mine.size, UNKNOWN),
+            np.char.add("noise of ", self.names),
+            self.names,
+            np.full(count, ""),
+            np.full(count, np.exp(np.log(frequency).mean())),
+            np.full(count, UNKNOWN),
         )
 
     def held(self, lines: np.ndarray) -> np.ndarray:
         """Rows most of whose lines are marked, (n,), from marks of (sensors, points, F)."""
-        bands = np.unique(self._octave)
-        share = np.array([[one[:, self._octave == o].mean() for o in bands] for one in lines])
-        return np.asarray(share[self._sensor, self._band] > 0.5)
+        return np.asarray(lines.mean(axis=(1, 2)) > 0.5)
 
     @staticmethod
     def tells(dataset: Dataset) -> bool:
@@ -104,15 +91,9 @@ class NoiseBlock:
         variance = data["log_variance"].values
         return bool((np.isfinite(variance) & (variance > 0.0)).any(axis=(1, 2)).all())
 
-    def own(self) -> Reals:
-        """How much noisier each sensor is than the middle one, logarithm of power, (sensors,)."""
-        each = np.array([self._level[self._sensor == s].mean() for s in range(self.names.size)])
-        return np.asarray(each - np.median(each))
-
     def deviations(self, predicted: xr.Dataset) -> Reals:
-        """Measured less predicted over the scatter from band to band."""
-        expected = np.log(predicted["noise_factor"].values)
-        return np.asarray((self._level - expected[self._sensor]) / self.sigma)
+        """Measured less predicted over how far sensors differ."""
+        return np.asarray((self.own - np.log(predicted["noise_factor"].values)) / self.scatter)
 
     def of(self, dataset: Dataset) -> NoiseBlock:
         """See :class:`permway.diagnosis.blocks.Block`; how far sensors may differ, each test tells itself."""
@@ -120,17 +101,7 @@ class NoiseBlock:
 
     @cached_property
     def smooth(self) -> Smooth:
-        """One level of each sensor, in all tests the same, and what all have in common, band by band."""
-        count, bands = self.names.size, self.bands.size
-        row = np.arange(self._sensor.size)
-        shape = (row.size, count + bands)
-        each = sparse.coo_array((np.full(row.size, self.scatter / self.sigma), (row, self._sensor)), shape=shape)
-        common = sparse.coo_array((np.full(row.size, ANY / self.sigma), (row, count + self._band)), shape=shape)
-        origins = [Origin(f"noise {name}", Levels(1), 1, fixed=True) for name in self.names]
-        origins.append(Origin(f"unrest {self.dataset.record.name}", Levels(bands), 1, fixed=True))
-        return Smooth(tuple(origins), SparseColumns(sparse.csr_array(each + common)))
-
-
-def _mean(values: Reals) -> float:
-    there = values[np.isfinite(values)]
-    return float(there.mean()) if there.size else float("nan")
+        """What all sensors of the test have in common."""
+        column = sparse.csr_array(np.full((self.names.size, 1), ANY / self.scatter))
+        origin = Origin(f"unrest {self.dataset.record.name}", Level(), 1, fixed=True)
+        return Smooth((origin,), SparseColumns(column))

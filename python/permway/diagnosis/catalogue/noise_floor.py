@@ -48,7 +48,7 @@ def _of_hammer_tests(situation: Situation) -> Iterator[Hypothesis]:
     own: dict[str, float] = {}
     for block in situation.fit.evidence.blocks:
         if isinstance(block, NoiseBlock):
-            for name, value in zip(block.names, block.own(), strict=True):
+            for name, value in zip(block.names, block.own, strict=True):
                 own[str(name)] = max(own.get(str(name), -np.inf), float(value))
     for name in sorted(own, key=lambda n: -own[n])[:NOISIEST]:
 
