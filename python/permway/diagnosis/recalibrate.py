@@ -24,6 +24,9 @@ from permway.errors import InputError
 USUAL, SEEN = 0.02, 4.0
 """Size of smooth errors that is expected beforehand, neper or rad, and how many coefficients it counts for."""
 
+APART, FEWEST_ALIKE = 3.0, 4
+"""Times the median of its kind that the size of an origin may be, and of how many that is told."""
+
 LARGEST = {"irregularity": 1.5, "decay": 0.5}
 """Of origins by their first word, nepers of a power, where it is not that of a chain."""
 
@@ -297,12 +300,30 @@ def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
             new = float(np.sqrt((power + SEEN * USUAL**2) / (told[mine].sum() + SEEN)))
             highest = LARGEST.get(origin.name.split()[0], LARGEST_SMOOTH)
             sizes[origin.name] = float(np.clip(new, SMALLEST_SMOOTH, highest))
+        sizes = _alike(sizes)
+        for origin in whitener.columns.origins:
+            old = evidence.sizes[origin.name]
             change = max(change, abs(np.log(sizes[origin.name] / old)))
         clean = deviations - whitener.smooth(coefficients, deviations.size)
         evidence = evidence.with_sizes(sizes).learnt_scatter(solved.datasets, clean)
         if change < 0.1:
             break
     return evidence, max((abs(np.log(evidence.sizes[o] / size)) for o, size in before.items()), default=0.0)
+
+
+def _alike(sizes: dict[str, float]) -> dict[str, float]:
+    """Without one that is far larger than most of its kind: chains of a kind wander alike.
+
+    What one channel is missed by beyond that is a fault of its own, or physics, and is sought.
+    """
+    kinds: dict[str, list[float]] = {}
+    for name, size in sizes.items():
+        kinds.setdefault(name.split()[0], []).append(size)
+    most = {
+        kind: max(APART * float(np.median(found)), USUAL) if len(found) >= FEWEST_ALIKE else np.inf
+        for kind, found in kinds.items()
+    }
+    return {name: min(size, most[name.split()[0]]) for name, size in sizes.items()}
 
 
 def _of_best_length(evidence: Evidence, deviations: Reals) -> Evidence:

@@ -201,6 +201,9 @@ def _looked(
         progress("screen", index, len(offered))
         asked = len(hypothesis.free) * np.log(lines(ring.fit))
         old = known.get(_key(hypothesis))
+        if hypothesis.domain != "path" and len(hypothesis.starts) > 1:
+            # Another of its starts may be the better one now, and what leaves the line alone is soon tried.
+            old = None
         if old is not None and (promise := ring.promise(old)) < asked / PROMISE:
             screened.append(replace(old, hypothesis=hypothesis, base_z=ring.fit.z, gain=promise))
             continue
