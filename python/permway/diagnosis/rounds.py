@@ -16,7 +16,7 @@ from permway.diagnosis.locate import Found, scanned
 from permway.diagnosis.nulls import threshold
 from permway.diagnosis.recalibrate import UNFIT, recalibrate
 from permway.diagnosis.search import Finalist, Round, lines, search
-from permway.errors import InputError
+from permway.errors import InputError, SolveError
 
 MOST_EFFECTS = 3
 
@@ -115,10 +115,10 @@ def _without_needless(base: Fit, accepted: list[Finalist], least: float, clock: 
         start = np.array([at[f.name] for f in free])
         try:
             build({f.name: f.value(float(z)) for f, z in zip(free, start, strict=True)})
-        except (InputError, KeyError):
+            without = recalibrate(whole.evidence, build=build, free=free, start=start, learn=False)
+        except (InputError, KeyError, SolveError):
             # A later effect stands on this one.
             continue
-        without = recalibrate(whole.evidence, build=build, free=free, start=start, learn=False)
         asked = len(one.hypothesis.free) * float(np.log(lines(base)))
         needed = max(least + asked, SECOND * max(f.gain for f in accepted))
         if without.objective - whole.objective < needed:

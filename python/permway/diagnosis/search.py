@@ -178,7 +178,11 @@ def search(
         if fit.objective - rough.objective < close * (fit.objective - fitted[0][1].objective):
             continue
         progress("learn", index, len(fitted))
-        amended = relearnt(rough, learnt_base.evidence)
+        try:
+            amended = relearnt(rough, learnt_base.evidence)
+        except (InputError, SolveError):
+            # It ends where the model ends: two changes of one place have met, say.
+            continue
         gain = gained(learnt_base, amended)
         # A fault of a sensor may show in phases, or in noise, alone.
         felt = one.hypothesis.domain == "measurement" or moved(learnt_base, amended) > FELT
