@@ -15,6 +15,7 @@ from permway.diagnosis.locate import Found
 from permway.diagnosis.search import Finalist, Round, lines, penalty
 from permway.diagnosis.verdict import NOVEL
 from permway.diagnosis.verdict_parts import ClassMember, Smallest
+from permway.errors import InputError, SolveError
 
 E_VALUE = 20.0
 STANDARD_ERRORS = 2.0
@@ -189,8 +190,12 @@ def detectable(ring: Ring, screened: Sequence[Quick], threshold: float) -> dict[
             continue
         needed = float(np.sqrt((threshold + penalty(quick, ring)) / deviance))
         if hypothesis.domain != "measurement":
-            # However sure, what nobody would feel is not called.
-            needed = max(needed, FELT / max(ring.felt(hypothesis, quick.start), 1e-12))
+            try:
+                # However sure, what nobody would feel is not called.
+                needed = max(needed, FELT / max(ring.felt(hypothesis, quick.start), 1e-12))
+            except (InputError, SolveError):
+                # It was screened about an earlier base, and cannot stand beside what was found since.
+                continue
         size = _size(hypothesis.free[index], float(quick.start[index]), hypothesis.none, needed)
         if size is not None and needed < shown.get(hypothesis.entry, MOST_TIMES):
             shown[hypothesis.entry], found[hypothesis.entry] = needed, size
