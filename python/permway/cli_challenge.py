@@ -65,7 +65,7 @@ def challenge_rivals(
     """What simpler methods say, scored on the same campaigns.
 
     Of campaigns that were run: recalibration alone, the smallest residual, BIC with independent errors, random
-    answers.
+    answers, and a Gaussian process for what the model lacks.
     """
     from permway.challenge.rivals import answered
     from permway.challenge.score import score, summary

@@ -13,6 +13,7 @@ from permway.diagnosis.catalogue import noise_floor
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather
+from permway.diagnosis.heldout import at_fault
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.laws.toml import to_toml
@@ -87,6 +88,24 @@ def test_noise_moves_no_response_and_is_no_record_of_its_own(tmp_path: Path) -> 
     assert {fit.evidence.sizes[name] for name in fixed} == {1.0}
     mine = fit.evidence.block_of == fit.evidence.blocks.index(fit.evidence.blocks[-1])
     assert not fit.jacobian[mine].any()
+
+
+def test_noise_of_a_sensor_at_fault_is_left_out_by_itself(tmp_path: Path) -> None:
+    evidence = gather(campaign(tmp_path, 6, 200.0))
+    band, noise = at_fault(evidence, (NOISY,))
+    assert evidence.rows.channel[noise.rows].tolist() == [f"noise of {NOISY}"]
+    assert not (band.rows & noise.rows).any()
+    (block,) = blocks_of(evidence)
+    lines = np.zeros(block.dataset.data["frf"].shape, dtype=bool)
+    lines[list(block.names).index(NOISY)] = True
+    assert block.names[block.held(lines)].tolist() == [NOISY]
+
+
+def test_a_sensor_that_reads_nothing_has_no_noise_to_compare(tmp_path: Path) -> None:
+    (dataset,) = campaign(tmp_path, 7, 1.0).load()
+    silent = dataset.data.copy(deep=True)
+    silent["frf"][{"sensor": 0}] = 0.0
+    assert not NoiseBlock.tells(type(dataset)(dataset.record, dataset.condition, silent))
 
 
 def test_few_sensors_tell_nothing_of_each_other(tmp_path: Path) -> None:

@@ -20,7 +20,6 @@ FLOOR = 0.003
 MOST_PAIR_STEPS, PAIR_CLOSE = 50, 1e-3
 """Of the fixed point for the size of pairs' errors, and the change of its logarithm that is none."""
 
-
 LINES_PER_FREQUENCY = 40.0
 """Lines of a frequency response within its own frequency, at most."""
 

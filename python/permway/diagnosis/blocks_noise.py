@@ -64,9 +64,7 @@ class NoiseBlock:
         data = dataset.data
         self.names = data["sensor"].values.astype(str)
         frequency = np.asarray(data["frequency"].values, dtype=np.float64)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            noise = np.log(data["log_variance"].values * np.abs(data["frf"].values) ** 2)
-        level = np.array([np.quantile(one[np.isfinite(one)], QUIETEST) for one in noise])
+        level = np.array([np.quantile(one[np.isfinite(one)], QUIETEST) for one in _noise(data)])
         self.own: Reals = level - np.median(level)
         self.scatter = max(SCATTER, NORMAL * float(np.median(np.abs(self.own))))
         count = self.names.size
@@ -85,11 +83,9 @@ class NoiseBlock:
     @staticmethod
     def tells(dataset: Dataset) -> bool:
         """Whether a dataset has enough sensors, and their coherence."""
-        data = dataset.data
-        if dataset.record.statistic != "frf" or data.sizes["sensor"] < FEWEST:
+        if dataset.record.statistic != "frf" or dataset.data.sizes["sensor"] < FEWEST:
             return False
-        variance = data["log_variance"].values
-        return bool((np.isfinite(variance) & (variance > 0.0)).any(axis=(1, 2)).all())
+        return bool(np.isfinite(_noise(dataset.data)).any(axis=(1, 2)).all())
 
     def deviations(self, predicted: xr.Dataset) -> Reals:
         """Measured less predicted over how far sensors differ."""
@@ -105,3 +101,9 @@ class NoiseBlock:
         column = sparse.csr_array(np.full((self.names.size, 1), ANY / self.scatter))
         origin = Origin(f"unrest {self.dataset.record.name}", Level(), 1, fixed=True)
         return Smooth((origin,), SparseColumns(column))
+
+
+def _noise(data: xr.Dataset) -> Reals:
+    """Logarithm of the noise's power, (sensors, points, F); not finite where there is none, or nothing is read."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.log(data["log_variance"].values * np.abs(data["frf"].values) ** 2))

@@ -48,15 +48,15 @@ def gather(
         From reading, or for a record that cannot be predicted.
     """
     evidence = _blocked(campaign, campaign.load() if datasets is None else datasets, threads)
-    names = [origin.name for origin in evidence.columns.origins]
-    fixed = {origin.name for origin in evidence.columns.origins if origin.fixed}
-    return evidence.with_sizes({n: 1.0 if n in fixed else _first_size(campaign, n) for n in names})
+    origins = evidence.columns.origins
+    return evidence.with_sizes({o.name: 1.0 if o.fixed else _first_size(campaign, o.name) for o in origins})
 
 
 def evidence_of(campaign: Campaign, datasets: Sequence[Dataset], like: Evidence) -> Evidence:
     """Datasets that need not be of the campaign's files, with the sizes of smooth errors that another has."""
     evidence = _blocked(campaign, datasets, like.threads)
-    usual = float(np.median(list(like.sizes.values()))) if like.sizes else _first_size(campaign, "")
+    learnt = [like.sizes[o.name] for o in like.columns.origins if not o.fixed]
+    usual = float(np.median(learnt)) if learnt else _first_size(campaign, "")
     sizes = {o.name: 1.0 if o.fixed else like.sizes.get(o.name, usual) for o in evidence.columns.origins}
     return evidence.with_sizes(sizes, like.length)
 

@@ -209,7 +209,7 @@ def _looked(
             # Another of its starts may be the better one now, and what leaves the line alone is soon tried.
             old = None
         if old is not None and (promise := ring.promise(old)) < asked / PROMISE:
-            screened.append(replace(old, hypothesis=hypothesis, base_z=ring.fit.z, gain=promise))
+            screened.append(replace(old, hypothesis=hypothesis, base_z=ring.fit.z, gain=promise, promise=promise))
             continue
         found = ring.screen(hypothesis, least=max(asked / PROMISE, WORTH * best / PROMISE))
         if np.isfinite(found.gain):
@@ -221,8 +221,12 @@ def _looked(
     for index, one in enumerate(chosen):
         progress("follow", index, len(chosen))
         followed.append(ring.quick(one.hypothesis, after=one))
-    best = max([1.0, *(q.gain for q in followed)])
-    unkept = [q for q in screened if q.hypothesis.domain == "path" and q.gain <= 0.0 and q.promise > best]
+    best = max((q.gain for q in followed), default=0.0)
+    unkept = [
+        q
+        for q in screened
+        if q.hypothesis.domain == "path" and q.gain <= 0.0 and q.promise > max(best, penalty(q, ring))
+    ]
     unkept.sort(key=lambda q: -q.promise)
     for one in unkept[:TOGETHER]:
         # The base is bent so far that moving it in a straight line leads nowhere.
