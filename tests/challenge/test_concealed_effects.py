@@ -66,7 +66,7 @@ def test_vehicle_effect_is_felt_on_board(kind: type[Effect]) -> None:
 @pytest.mark.parametrize("kind", EVERY, ids=lambda kind: kind.KIND)
 def test_truth_of_an_effect_says_what_where_and_how_much(kind: type[Effect]) -> None:
     truth = json.loads(json.dumps(drawn(kind).truth()))
-    assert {"id", "kind", "family", "domain", "place", "parameters", "mechanical", "twins"} == set(truth)
+    assert {"id", "kind", "family", "domain", "place", "parameters", "mechanical", "twins", "words"} == set(truth)
     assert (truth["id"] is None) == (kind not in CATALOGUE)
     assert truth["place"]
     assert truth["mechanical"]

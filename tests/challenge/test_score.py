@@ -100,6 +100,38 @@ def test_places_are_read_as_the_generator_writes_them(tmp_path: Path) -> None:
     assert [s.placed for s in score(folder(tmp_path, cases), FAMILIES)] == [True, False]
 
 
+GAIN = {"id": "sensor_gain", "family": "level", "domain": "path", "place": {"x_m": [30.0, 30.0]}, "parameters": {}}
+
+
+def test_of_several_effects_each_is_looked_for_and_the_strongest_counts(tmp_path: Path) -> None:
+    lost, gain = (effect(n, n, x=x) for n, x in (("fastener_loss", (10.0, 12.0)), ("sensor_gain", (29.0, 31.0))))
+    cases = {
+        "multiple-1": (truth(LOST, GAIN), verdict("named", lost, gain)),
+        "multiple-2": (truth(LOST, GAIN), verdict("named", lost)),
+        "multiple-3": (truth(LOST, GAIN), verdict("named", lost)),
+    }
+    place = folder(tmp_path, cases)
+    (place / "weights").mkdir()
+    (place / "weights" / "multiple-3.json").write_text('{"deviance": 900.0, "each": [100.0, 800.0]}')
+    scored = [(s.all_found, s.family, s.truth[0]) for s in score(place, FAMILIES)]
+    assert scored == [
+        (True, True, "fastener_loss"),
+        (False, True, "fastener_loss"),
+        # By what each does alone, the gain is the stronger one, and it was not found.
+        (False, False, "sensor_gain"),
+    ]
+
+
+def test_words_of_what_no_catalogue_holds(tmp_path: Path) -> None:
+    hidden = {**LOST, "id": None, "family": "inertia", "words": ["inertance"]}
+    said = effect(None, "novel")
+    cases = {
+        f"outside-{i}": (truth(hidden), verdict("described", {**said, "law": {"words": words}}))
+        for i, words in enumerate(("an inertance of 3 kg beside one joint", "a dashpot of 1 N s/m on the body"))
+    }
+    assert [s.mechanics for s in score(folder(tmp_path, cases), FAMILIES)] == [True, False]
+
+
 def test_intervals_of_shares() -> None:
     # Clopper and Pearson (1934): none of 20 leaves up to 13.9 % at 90 %, two-sided.
     assert interval(0, 20) == (0.0, pytest.approx(1.0 - 0.05 ** (1.0 / 20.0)))

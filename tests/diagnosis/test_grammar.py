@@ -2,9 +2,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
-from permway.diagnosis.grammar import ELEMENTS
+from permway.diagnosis.bases import bases
+from permway.diagnosis.catalogue._change import fixed_mass, with_joints
+from permway.diagnosis.clock import Clock
+from permway.diagnosis.elements import ELEMENTS
+from permway.diagnosis.gather import gather
+from permway.diagnosis.grammar import hypotheses
+from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.locate import scanned
+from permway.diagnosis.search import search
+from permway.model.joints import Joints
+from permway.recordings.campaign import Campaign
+from simulated import simulate
 
 ROD = next(e for e in ELEMENTS if e.name == "rod")
 
@@ -18,3 +31,29 @@ def test_a_rod_is_its_wave_equation(first_Hz: float) -> None:
     angle = 0.5 * np.pi * frequency / first_Hz / np.sqrt(1.0 + 1j * eta)
     exact = -mass * (2.0 * np.pi * frequency) ** 2 * np.tan(angle) / angle
     np.testing.assert_allclose(law.complex(frequency, None), exact, rtol=0.02, atol=0.01 * np.abs(exact).max())
+
+
+def beside_four_pads(campaign: Campaign) -> Campaign:
+    joints = Joints(between=("rail", "deck"), law="inertia", at=(6.6, 7.2, 7.8, 8.4))
+    return with_joints(campaign, joints, laws={"inertia": fixed_mass(6.0)})
+
+
+def test_inertances_beside_some_pads_are_described_as_such(tmp_path: Path) -> None:
+    """No effect of the catalogue; a stretch of elements, with its ends and its size."""
+    case = simulate(tmp_path / "c", 8, amend=beside_four_pads)
+    base, searched = bases(gather(case.campaign, threads=1), Clock(None))
+    found = scanned(searched)
+    result = search(
+        searched,
+        hypotheses(Situation(searched, found)),
+        learnt_base=base,
+        prefix="1.",
+        threshold=lambda _ring, _screened: 10.0,
+        progress=lambda *_: None,
+    )
+    best = result.finalists[0]
+    assert best.hypothesis.family == "inerter beside each joint of a stretch"
+    assert best.values["inertance_kg"] == pytest.approx(6.0, rel=0.1)
+    start, stop = best.hypothesis.locate(best.values).x_m or (0.0, 0.0)
+    assert start == pytest.approx(6.6, abs=0.4)
+    assert stop == pytest.approx(8.4, abs=0.4)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import beta
 
-from permway.challenge.weigh import weights
+from permway.challenge.weigh import weights, weights_of_each
 from permway.errors import InputError
 
 FOUND = ("named", "ambiguous", "described", "located", "measurement")
@@ -37,6 +37,10 @@ class Scored:
         Names of the effects, or their classes.
     found, placed, family, in_class, false_name : bool or None
         Of the strongest concealed effect; None where that does not apply.
+    all_found : bool or None
+        Whether each of several effects is found: at its place, and named or classed.
+    mechanics : bool or None
+        Whether the words that describe an effect of no catalogue say its mechanics.
     covered : tuple of bool
         Of each parameter that truth and verdict both name, whether the 90 % interval holds it.
     harmed : bool
@@ -60,6 +64,8 @@ class Scored:
     harmed: bool
     seconds: float
     deviance: float | None = None
+    all_found: bool | None = None
+    mechanics: bool | None = None
 
     @property
     def group(self) -> str:
@@ -86,18 +92,26 @@ def score(folder: Path, families: Mapping[str, str], verdicts: Path | None = Non
     InputError
         If there is no verdict.
     """
-    found, weighed = [], weights(folder)
+    found, weighed, each = [], weights(folder), weights_of_each(folder)
     for path in sorted((Path(folder) / "truth").glob("*.json")):
         verdict = (verdicts or Path(folder) / "verdicts") / path.stem / "verdict.json"
         if verdict.is_file():
             seconds = verdict.with_name("seconds.json")
             took = sum(json.loads(seconds.read_text()).values()) if seconds.is_file() else float("nan")
             true, said = json.loads(path.read_text()), json.loads(verdict.read_text())
-            scored = _scored(path.stem, true, said, families, took)
+            scored = _scored(path.stem, _strongest_first(true, each.get(path.stem)), said, families, took)
             found.append(replace(scored, deviance=weighed.get(path.stem)))
     if not found:
         raise InputError("holds no verdict", where=str(folder), remedy="permway challenge run")
     return found
+
+
+def _strongest_first(truth: Mapping[str, Any], each: Sequence[float] | None) -> dict[str, Any]:
+    """A truth with its effects in the order of what each does alone; as drawn, if that was not weighed."""
+    effects = list(truth["effects"])
+    if each is not None and len(each) == len(effects):
+        effects = [effects[i] for i in np.argsort(-np.asarray(each))]
+    return {**truth, "effects": effects}
 
 
 def _scored(
@@ -140,7 +154,24 @@ def _scored(
         covered=tuple(_covered(concealed, effects)),
         harmed=harmed,
         seconds=float(seconds),
+        all_found=all(any(_same(one, e, families) for e in effects) for one in concealed)
+        if len(concealed) > 1
+        else None,
+        mechanics=_described(concealed[0], effects) if concealed and concealed[0].get("words") else None,
     )
+
+
+def _same(true: Mapping[str, Any], said: Mapping[str, Any], families: Mapping[str, str]) -> bool:
+    """Whether an effect of the verdict is the concealed one: its place, and its name, its family or its class."""
+    names = {said["name"], *(member["name"] for member in said["class"])}
+    alike = true["id"] in names or families.get(said["name"] or "", "") == families.get(true["id"], true["id"])
+    return alike and _there(true["place"], said["place"], true.get("domain"), said["domain"])
+
+
+def _described(true: Mapping[str, Any], effects: Iterable[Mapping[str, Any]]) -> bool:
+    """Whether what is said at the place of an effect without a name uses one of its words."""
+    there = [e for e in effects if _there(true["place"], e["place"], true.get("domain"), e["domain"])]
+    return any(word in e["law"]["words"] for e in there if not e["name"] for word in true["words"])
 
 
 def _there(true: Mapping[str, Any], said: Mapping[str, Any], domain: str | None, said_domain: str) -> bool:
@@ -187,7 +218,7 @@ def summary(scored: Iterable[Scored]) -> list[dict[str, Any]]:
         row: dict[str, Any] = {"tier": mine[0].tier, "group": group, "cases": len(mine)}
         alarms = [s.status in FOUND for s in mine]
         row["called"] = _share(alarms)
-        for key in ("found", "placed", "family", "in_class"):
+        for key in ("found", "placed", "family", "in_class", "all_found", "mechanics"):
             values = [v for s in mine if (v := getattr(s, key)) is not None]
             if values:
                 row[key] = _share(values)

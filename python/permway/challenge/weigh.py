@@ -60,14 +60,15 @@ def weigh(
     todo = {name: truth for name, truth in concealed.items() if truth["effects"] and name not in known}
     (folder / WEIGHTS).mkdir(exist_ok=True)
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        jobs: dict[Future[float], str] = {
+        jobs: dict[Future[list[float]], str] = {
             pool.submit(_weighed, folder / name, truth["seed"], truth["tier"], deviance): name
             for name, truth in todo.items()
         }
         for done, job in enumerate(as_completed(jobs), start=1):
             name = jobs[job]
-            known[name] = job.result()
-            whole(folder / WEIGHTS / f"{name}.json", json.dumps({"deviance": known[name]}) + "\n")
+            known[name], *each = job.result()
+            kept = {"deviance": known[name], "each": each}
+            whole(folder / WEIGHTS / f"{name}.json", json.dumps(kept) + "\n")
             if progress is not None:
                 progress(done, len(todo))
     return known
@@ -88,9 +89,21 @@ def weights(folder: Path) -> dict[str, float]:
     }
 
 
-def _weighed(folder: Path, seed: int, tier: str, deviance: Deviance) -> float:
+def weights_of_each(folder: Path) -> dict[str, list[float]]:
+    """What each effect weighs alone, in the order of the truth, of the campaigns that conceal several."""
+    found = {path.stem: json.loads(path.read_text()) for path in (Path(folder) / WEIGHTS).glob("*.json")}
+    return {name: kept["each"] for name, kept in found.items() if kept.get("each")}
+
+
+def _weighed(folder: Path, seed: int, tier: str, deviance: Deviance) -> list[float]:
+    """All effects together, and each alone where there are several."""
     case = draw(seed, tier)  # type: ignore[arg-type]  # draw refuses what is no tier
     with TemporaryDirectory() as place:
         twin = Path(place) / "twin"
         write(twin_of(case), twin)
-        return deviance(folder, twin)
+        found = [deviance(folder, twin)]
+        for index, effect in enumerate(case.effects if len(case.effects) > 1 else ()):
+            alone = Path(place) / f"alone-{index}"
+            write(replace(case, effects=(effect,)), alone)
+            found.append(deviance(alone, twin))
+        return found

@@ -133,11 +133,11 @@ def members(found: Round, *, explained: float) -> list[ClassMember]:
         is large.
     """
     best = found.finalists[0]
-    weight = {}
+    weight: dict[str, float] = {}
     for finalist in found.finalists:
-        # While none fits, the records say less than they would.
+        # While none fits, the records say less than they would. The best form of an effect comes first.
         less = (finalist.fit.log_evidence - best.fit.log_evidence) / best.fit.heat
-        weight[finalist.hypothesis.entry] = float(np.exp(min(less, 0.0)))
+        weight.setdefault(finalist.hypothesis.entry, float(np.exp(min(less, 0.0))))
     for quick in _twins(found, best):
         behind = 0.5 * (quick.gain - best.quick.gain) - 0.5 * (
             penalty(quick, found.ring) - penalty(best.quick, found.ring)

@@ -173,8 +173,9 @@ def _twice(accepted: Sequence[Finalist]) -> Finalist | None:
 def _advice(rounds: Sequence[Round], clock: Clock) -> tuple[NextMeasurement, ...]:
     """What to measure next where two effects rival each other."""
     for found in rounds:
-        if len(found.finalists) > 1:
-            best, rival = found.finalists[:2]
+        rivals = [f for f in found.finalists if f.hypothesis.entry != found.finalists[0].hypothesis.entry]
+        if rivals:
+            best, rival = found.finalists[0], rivals[0]
             if rival.fit.objective - best.fit.objective < CLASS_DEVIANCE * best.fit.heat:
                 return advise(best.fit, rival.fit, (best.hypothesis.entry, rival.hypothesis.entry), progress=clock)
     return ()

@@ -1,29 +1,29 @@
 """Mechanics outside the catalogue: small elements put where something acts that no named effect explains.
 
-An element of up to three constants (spring, dashpot, springpot, Maxwell's pair, mass on a spring, standing rod; of
-either sign where the sign is free) is added to one joint, to every joint of a layer, or to a place of a body. What
-fits best is a description, not a name.
+An element of up to three constants (spring, dashpot, springpot, Maxwell's pair, inertance, mass on a spring,
+standing rod; of either sign where the sign is free) is added to one joint, to the joints of a stretch, to every
+joint of a layer, or to a place or a stretch of a body. What fits best is a description, not a name.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
-from permway.diagnosis.catalogue._change import fixed_mass, fresh, hung_mass, with_joints, with_law
+from permway.arrays import Reals
+from permway.diagnosis.catalogue._change import fresh, with_joints, with_law
+from permway.diagnosis.catalogue._interval import shares, spacing_of, stations_of
+from permway.diagnosis.elements import ELEMENTS, Element
 from permway.diagnosis.fit import Free
-from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation, Where, between_free, linear_free, log_free
+from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation, Where, linear_free, log_free
 from permway.diagnosis.locate import Found
 from permway.diagnosis.verdict import NOVEL
-from permway.laws import Hysteretic, Maxwell, Parallel, Scaled, Springpot
-from permway.laws.base import Law
+from permway.laws import Parallel
+from permway.model.changes import Change
 from permway.model.joints import GROUND, Joints
 from permway.recordings.campaign import Campaign
-
-ROD_MODES = 4
-"""Of a rod that are modelled; those above count as mass."""
 
 RESONANCES_HZ = np.geomspace(4.0, 150.0, 12)
 """Where resonances are looked for, beside where the free stiffness is best known."""
@@ -31,133 +31,16 @@ RESONANCES_HZ = np.geomspace(4.0, 150.0, 12)
 BESIDE_M = 2.0
 """How far from the most telling place of a scan something may stand."""
 
-AT_HZ = 100.0
-"""Where the stiffness of a springpot is counted."""
+SPACING_M = 1.0
+"""Between the points of a stretch of a body at which an element acts."""
+
+STRETCHES = (3.0, 9.0)
+"""Usual lengths, in spacings, that a stretch is looked for with."""
+
+LONGEST = 24.0
+"""Of a stretch, in spacings."""
 
 Values = Mapping[str, float]
-
-
-@dataclass(frozen=True)
-class Element:
-    """A kind of element.
-
-    Attributes
-    ----------
-    name : str
-    free : callable
-        From a typical stiffness in N/m and the frequency where it acts to the constants.
-    law : callable
-        From the constants to the law that is added.
-    words : callable
-    ground : bool
-        Whether it hangs on one body; else it ties what a joint ties.
-    """
-
-    name: str
-    free: Callable[[float, float], tuple[Free, ...]]
-    law: Callable[[Values], Law]
-    words: Callable[[Values], str]
-    ground: bool = False
-
-
-def _spring(v: Values) -> Law:
-    return Scaled(law=Hysteretic(stiffness=1.0, loss_factor=v["loss_factor"]), factor=v["stiffness_N_per_m"])
-
-
-def _dashpot(v: Values) -> Law:
-    return Scaled(law=Springpot(coefficient=1.0, order=1.0), factor=v["damping_Ns_per_m"])
-
-
-def _springpot(v: Values) -> Law:
-    at = float((2.0 * np.pi * AT_HZ) ** v["order"])
-    return Scaled(law=Springpot(coefficient=1.0, order=v["order"]), factor=v["stiffness_N_per_m"] / at)
-
-
-def _maxwell(v: Values) -> Law:
-    stiffness = v["stiffness_N_per_m"]
-    return Maxwell(stiffness=stiffness, damping=stiffness / (2.0 * np.pi * v["frequency_Hz"]))
-
-
-def _resonator(v: Values) -> Law:
-    return hung_mass(v["mass_kg"], v["frequency_Hz"], v["loss_factor"])
-
-
-def _rod(v: Values) -> Law:
-    """A rod that is held below and free above: of its modes, 1, 3, 5 ... quarter waves long, each carries less."""
-    law: Law = fixed_mass(0.0)
-    left = v["mass_kg"]
-    for odd in range(1, 2 * ROD_MODES, 2):
-        mass = 8.0 / (np.pi * odd) ** 2 * v["mass_kg"]
-        law = Parallel(first=law, second=hung_mass(mass, odd * v["frequency_Hz"], v["loss_factor"]))
-        left -= mass
-    # The modes above move with the body.
-    return Parallel(first=law, second=fixed_mass(left))
-
-
-def _signed(name: str, unit: str, size: float) -> Free:
-    return linear_free(name, unit, 0.0, size, -8.0 * size, 8.0 * size)
-
-
-ELEMENTS = (
-    Element(
-        "spring",
-        lambda k, f: (_signed("stiffness_N_per_m", "N/m", k), between_free("loss_factor", "1", 0.0, 2.0)),
-        _spring,
-        lambda v: f"a spring of {v['stiffness_N_per_m']:.3g} N/m, loss factor {v['loss_factor']:.2g}",
-    ),
-    Element(
-        "dashpot",
-        lambda k, f: (_signed("damping_Ns_per_m", "N s/m", k / (2.0 * np.pi * f)),),
-        _dashpot,
-        lambda v: f"a dashpot of {v['damping_Ns_per_m']:.3g} N s/m",
-    ),
-    Element(
-        "springpot",
-        lambda k, f: (
-            _signed("stiffness_N_per_m", "N/m", k),
-            between_free("order", "1", 0.02, 0.98),
-        ),
-        _springpot,
-        lambda v: f"a springpot of order {v['order']:.2f}, {v['stiffness_N_per_m']:.3g} N/m at {AT_HZ:g} Hz",
-    ),
-    Element(
-        "maxwell",
-        lambda k, f: (log_free("stiffness_N_per_m", "N/m", k, 3.0), log_free("frequency_Hz", "Hz", f, 3.0)),
-        _maxwell,
-        lambda v: (
-            f"a spring of {v['stiffness_N_per_m']:.3g} N/m in series with a dashpot, relaxing at "
-            f"{v['frequency_Hz']:.3g} Hz"
-        ),
-    ),
-    Element(
-        "resonator",
-        lambda k, f: (
-            log_free("mass_kg", "kg", k / (2.0 * np.pi * f) ** 2, 5.0),
-            log_free("frequency_Hz", "Hz", f, 2.0),
-            log_free("loss_factor", "1", 0.1, 2.5),
-        ),
-        _resonator,
-        lambda v: (
-            f"a resonator of {v['mass_kg']:.3g} kg at {v['frequency_Hz']:.3g} Hz, loss factor "
-            f"{v['loss_factor']:.2g}"
-        ),
-        ground=True,
-    ),
-    Element(
-        "rod",
-        lambda k, f: (
-            log_free("mass_kg", "kg", k / (2.0 * np.pi * f) ** 2, 5.0),
-            log_free("frequency_Hz", "Hz", f, 2.0),
-            log_free("loss_factor", "1", 0.1, 2.5),
-        ),
-        _rod,
-        lambda v: (
-            f"a standing rod of {v['mass_kg']:.3g} kg, a quarter wave long at {v['frequency_Hz']:.3g} Hz, loss "
-            f"factor {v['loss_factor']:.2g}"
-        ),
-        ground=True,
-    ),
-)
 
 
 def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hypothesis]:
@@ -174,9 +57,11 @@ def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hyp
     for element in ELEMENTS:
         if not element.ground and joint is not None:
             yield _at_joint(situation, element, joint)
+            yield _over_joints(situation, element, joint)
             yield _in_layer(element, joint)
         if body is not None:
             yield _on_body(element, body, like)
+            yield _over_body(situation, element, body)
 
 
 def _typical(found: Found) -> tuple[float, float]:
@@ -259,3 +144,56 @@ def _on_body(element: Element, found: Found, like: Values | None = None) -> Hypo
 
     made = _made(element, "on the body", free, Where(found.spot.name, (x, x)), amend)
     return replace(made, locate=lambda v: Where(found.spot.name, (v.get("x_m", x), v.get("x_m", x))))
+
+
+def _over_joints(situation: Situation, element: Element, found: Found) -> Hypothesis:
+    """At each joint of a stretch of its layer, as it fades out at either end."""
+    line = situation.campaign.model.line
+    layer = line.joints[int(line.joint_table().layer[found.spot.joints[0]])]
+    x, step = stations_of(line, found.spot.name), spacing_of(line, found.spot.name)
+    return _stretch(element, found, layer.between, x, step, "beside each joint of a stretch")
+
+
+def _over_body(situation: Situation, element: Element, found: Found) -> Hypothesis:
+    """At points of a stretch of a body, a metre apart."""
+    same = [f.spot.x_m[0] for f in situation.found if f.spot.kind == "body" and f.spot.name == found.spot.name]
+    x = np.arange(min(same), max(same) + 1e-6, SPACING_M)
+    between = (found.spot.name, GROUND)
+    return _stretch(element, found, between, x, SPACING_M, f"every {SPACING_M:g} m of a stretch of the body")
+
+
+def _stretch(
+    element: Element, found: Found, between: tuple[str, str], x: Reals, step: float, place: str
+) -> Hypothesis:
+    """An element at each of some stations about the most telling place."""
+    stiffness, frequency = _typical(found)
+    centre = found.spot.x_m[0]
+    own = element.free(stiffness / STRETCHES[0], frequency)
+    free = (
+        *own,
+        linear_free("centre_m", "m", centre, 2.0 * step, centre - 6.0 * step, centre + 6.0 * step),
+        linear_free("length_m", "m", STRETCHES[0] * step, 3.0 * step, 0.0, LONGEST * step),
+    )
+
+    def amend(campaign: Campaign, values: Values) -> Campaign:
+        name = fresh(NOVEL, campaign.model.line.laws)
+        share = shares(x, values["centre_m"], values["length_m"], step)
+        kept = np.flatnonzero(share > 0.0)
+        changes = tuple(
+            Change(from_m=float(x[i]) - 1e-6, to_m=float(x[i]) + 1e-6, factor=float(share[i]))
+            for i in kept
+            if share[i] < 1.0
+        )
+        joints = Joints(between=between, law=name, at=tuple(x[kept].tolist()), changes=changes)
+        return with_joints(campaign, joints, laws={name: element.law(values)})
+
+    def locate(values: Values) -> Where:
+        half = 0.5 * values["length_m"]
+        return Where(found.spot.name, (values["centre_m"] - half, values["centre_m"] + half))
+
+    made = _made(element, place, free, locate({"centre_m": centre, "length_m": STRETCHES[0] * step}), amend)
+    lengths = [(length - STRETCHES[0]) / 3.0 for length in STRETCHES]
+    starts = [
+        (*start[: len(own)], 0.0, z) for start in made.starts[:: 3 if element.ground else 1] for z in lengths
+    ]
+    return replace(made, locate=locate, starts=tuple(starts))

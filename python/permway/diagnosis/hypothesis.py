@@ -113,6 +113,11 @@ class Hypothesis:
     size: str = ""
     none: float = 0.0
 
+    @property
+    def form(self) -> tuple[str, ...]:
+        """Effect and names of parameters: joints that are cut and joints that bend are two forms of one effect."""
+        return self.entry, self.family, *(f.name for f in self.free)
+
 
 class Entry(Protocol):
     """An effect of the catalogue: a module with these names.

@@ -18,14 +18,14 @@ from permway.diagnosis.recalibrate import relearnt
 from permway.diagnosis.result import Candidate
 from permway.errors import InputError, SolveError
 
-FOLLOWED, PER_ENTRY = 10, 2
-"""Hypotheses that are followed after screening, in all and of one effect."""
+FOLLOWED, PER_FORM = 10, 2
+"""Hypotheses that are followed after screening, in all and of one form of an effect."""
 
 TOGETHER = 2
 """Hypotheses that promise more than all others gain, and gain nothing while the base moves linearly."""
 
 FINALISTS = 3
-"""Hypotheses that are fitted in full, each of another effect."""
+"""Effects of which hypotheses are fitted in full."""
 
 WORTH = 0.05
 """Share of the best gain below which a hypothesis is not followed."""
@@ -240,33 +240,37 @@ def _looked(
 def _key(hypothesis: Hypothesis) -> tuple[str, ...]:
     """What makes a hypothesis the same as one of an earlier round: effect, place, and what is free."""
     values = {f.name: f.value(float(z)) for f, z in zip(hypothesis.free, hypothesis.starts[0], strict=True)}
-    return hypothesis.entry, hypothesis.locate(values).label, *(f.name for f in hypothesis.free)
+    return *hypothesis.form, hypothesis.locate(values).label
 
 
 def _chosen(screened: Sequence[Quick], ring: Ring) -> list[Quick]:
-    """The best, not too many of one effect."""
+    """The best, not too many of one form of an effect."""
     if not screened:
         return []
     best = max(q.gain for q in screened)
     found: list[Quick] = []
     for quick in screened:
-        taken = sum(q.hypothesis.entry == quick.hypothesis.entry for q in found)
+        taken = sum(q.hypothesis.form == quick.hypothesis.form for q in found)
         # A step that has not arrived may still double its gain.
         promising = 3.0 * quick.gain > penalty(quick, ring) and quick.gain > WORTH * best
-        if promising and taken < PER_ENTRY and len(found) < FOLLOWED:
+        if promising and taken < PER_FORM and len(found) < FOLLOWED:
             found.append(quick)
     return found
 
 
 def _finalists(followed: Sequence[Quick], ring: Ring, threshold: float) -> list[Quick]:
-    """The best of each effect that passes the threshold."""
-    found: list[Quick] = []
+    """The best of each effect that passes the threshold, and of its other forms that do nearly as well."""
+    found: dict[tuple[str, ...], Quick] = {}
+    leading: dict[str, float] = {}
     for quick in followed:
-        best = found[0].gain if found else quick.gain
+        form, entry = quick.hypothesis.form, quick.hypothesis.entry
+        best = max(leading.values(), default=quick.gain)
         passes = quick.gain - penalty(quick, ring) > threshold and quick.gain > RIVAL * best
-        if passes and quick.hypothesis.entry not in {q.hypothesis.entry for q in found}:
-            found.append(quick)
-    return found[:FINALISTS]
+        nearly = entry in leading and quick.gain > CLOSE * leading[entry]
+        if passes and form not in found and (nearly or (entry not in leading and len(leading) < FINALISTS)):
+            found[form] = quick
+            leading.setdefault(entry, quick.gain)
+    return list(found.values())
 
 
 def candidates(found: Round) -> list[Candidate]:

@@ -39,6 +39,8 @@ class Effect(ABC):
         Entries that the data may hardly tell from it.
     TEMPERATURES : int
         Hammer tests at different temperatures that it needs.
+    WORDS : tuple of str
+        Of an effect of no catalogue, words of which a right description of its mechanics uses one.
     """
 
     KIND: ClassVar[str]
@@ -47,6 +49,7 @@ class Effect(ABC):
     DOMAIN: ClassVar[Domain] = "path"
     TWINS: ClassVar[tuple[str, ...]] = ()
     TEMPERATURES: ClassVar[int] = 1
+    WORDS: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
     @abstractmethod
@@ -78,6 +81,7 @@ class Effect(ABC):
             "parameters": {item.name: getattr(self, item.name) for item in fields(self)},
             "mechanical": self.mechanical,
             "twins": list(self.TWINS),
+            "words": list(self.WORDS),
         }
 
 

@@ -19,6 +19,7 @@ class Inerter(Effect):
 
     KIND = "inerter"
     FAMILY = "inertia between bodies"
+    WORDS = ("inertance",)
 
     x_m: float
     inertance_kg: float
@@ -52,6 +53,7 @@ class RailInerter(Effect):
 
     KIND = "rail_inerter"
     FAMILY = "inertia between bodies"
+    WORDS = ("inertance",)
 
     stretch_m: tuple[float, float]
     inertance_kg: float
@@ -88,6 +90,7 @@ class NegativeStrip(Effect):
 
     KIND = "negative_strip"
     FAMILY = "negative stiffness to ground"
+    WORDS = ("spring of -",)
 
     stretch_m: tuple[float, float]
     total_N_per_m: float
@@ -123,6 +126,11 @@ class Cable(Effect):
 
     KIND = "cable"
     FAMILY = "second beam"
+    WORDS = (
+        "resonator",
+        "rod",
+        "beam",
+    )
 
     stretch_m: tuple[float, float]
     mass_kg_per_m: float
@@ -180,6 +188,10 @@ class MortarDelay(Effect):
 
     KIND = "mortar_delay"
     FAMILY = "delay"
+    WORDS = (
+        "rod",
+        "delay",
+    )
 
     stretch_m: tuple[float, float]
     delay_s: float
@@ -227,6 +239,7 @@ class FractionalGround(Effect):
 
     KIND = "fractional_ground"
     FAMILY = "damping to ground"
+    WORDS = ("springpot",)
 
     x_m: float
     order: float

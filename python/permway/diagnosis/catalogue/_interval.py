@@ -33,12 +33,19 @@ def weakened(campaign: Campaign, law: str, centre_m: float, length_m: float, fac
     the model follows the ends from one such stretch to the next.
     """
     step = spacing_of(campaign.model.line, law)
-    half = 0.5 * length_m
+    return with_factors(campaign, law, lambda x: 1.0 - (1.0 - factor) * shares(x, centre_m, length_m, step))
 
-    def factors(x: Reals) -> Reals:
-        away = (np.abs(x - centre_m) - half) / step
-        # A place on the border counts as within, whatever its last digit.
-        share = np.clip((OUTSIDE - away) / (OUTSIDE - WHOLE), 0.0, 1.0).round(12)
-        return np.asarray(1.0 - (1.0 - factor) * share)
 
-    return with_factors(campaign, law, factors)
+def shares(x: Reals, centre_m: float, length_m: float, step_m: float) -> Reals:
+    """How much of a change each joint has: 1 in the stretch, 0 outside, fading linearly between.
+
+    Parameters
+    ----------
+    x : ndarray, shape (J,)
+        Places, m.
+    centre_m, length_m, step_m : float
+        Of the stretch, and spacing of the joints.
+    """
+    away = (np.abs(x - centre_m) - 0.5 * length_m) / step_m
+    # A place on the border counts as within, whatever its last digit.
+    return np.asarray(np.clip((OUTSIDE - away) / (OUTSIDE - WHOLE), 0.0, 1.0).round(12))
