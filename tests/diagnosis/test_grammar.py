@@ -9,7 +9,7 @@ import pytest
 from permway.diagnosis.bases import bases
 from permway.diagnosis.catalogue._change import fixed_mass, with_joints
 from permway.diagnosis.clock import Clock
-from permway.diagnosis.elements import ELEMENTS
+from permway.diagnosis.elements import ELEMENTS, Element
 from permway.diagnosis.gather import gather
 from permway.diagnosis.grammar import hypotheses
 from permway.diagnosis.hypothesis import Situation
@@ -31,6 +31,16 @@ def test_a_rod_is_its_wave_equation(first_Hz: float) -> None:
     angle = 0.5 * np.pi * frequency / first_Hz / np.sqrt(1.0 + 1j * eta)
     exact = -mass * (2.0 * np.pi * frequency) ** 2 * np.tan(angle) / angle
     np.testing.assert_allclose(law.complex(frequency, None), exact, rtol=0.02, atol=0.01 * np.abs(exact).max())
+
+
+@pytest.mark.parametrize("element", ELEMENTS, ids=lambda e: e.name)
+@pytest.mark.parametrize("far", [-4.0, 0.0, 4.0])
+def test_no_element_gives_energy(element: Element, far: float) -> None:
+    free = element.free(1e8, 20.0)
+    for sign in (1.0, -1.0):
+        values = {f.name: f.value(float(np.clip(sign * far, *f.limits))) for f in free}
+        stiffness = element.law(values).complex(np.geomspace(1.0, 1000.0, 50), None)
+        assert (stiffness.imag >= -1e-9 * np.abs(stiffness)).all()
 
 
 def beside_four_pads(campaign: Campaign) -> Campaign:

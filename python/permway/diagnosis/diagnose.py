@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from permway.arrays import Complexes
-from permway.diagnosis import decide, grammar
 from permway.diagnosis.advise import advise
 from permway.diagnosis.bases import bases
 from permway.diagnosis.clock import Clock
@@ -15,29 +12,22 @@ from permway.diagnosis.compare import assemble
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.constancy import constancy
 from permway.diagnosis.decide import CLASS_DEVIANCE
+from permway.diagnosis.describe import Description
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather, predictable
-from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.labels import mislabelled
 from permway.diagnosis.locate import Found, scanned
 from permway.diagnosis.prove import prove
 from permway.diagnosis.recovered import law_stiffness, same_place
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.rounds import effects
-from permway.diagnosis.search import Finalist, Progress, Round, candidates, lines, penalty, search
+from permway.diagnosis.search import Finalist, Progress, Round, candidates
 from permway.diagnosis.speak import Proof, mixed_up, verdict_of
 from permway.diagnosis.verdict_parts import NextMeasurement
 from permway.recordings.campaign import Campaign
 
 SHOWN_INCONSTANT = 8
 """Parameters that would not stay constant, at most."""
-
-
-RESONATOR = ("mass_kg", "frequency_Hz", "loss_factor")
-"""What a mass on a spring is known by."""
-
-ONE_PLACE_M = 0.5
-"""Between two effects that are at one place."""
 
 
 def diagnose(
@@ -69,9 +59,10 @@ def diagnose(
     clock("locate")
     found = scanned(searched)
     mixed = mislabelled(base)
-    rounds, accepted = ([], []) if mixed is not None else effects(searched, base, found, seed, clock)
+    description = Description(searched, base, found, clock)
+    rounds, accepted = ([], []) if mixed is not None else effects(searched, base, found, seed, clock, description)
     left = _left(base, found, accepted, clock)
-    described = None if mixed is not None else _described(searched, base, found, rounds, accepted, left, clock)
+    described = None if mixed is not None else description.of(rounds, accepted, left)
     catalogued = rounds
     if described is not None:
         rounds, accepted = [described], [described.finalists[0]]
@@ -112,62 +103,6 @@ def _left(base: Fit, found: Sequence[Found], accepted: Sequence[Finalist], clock
     fit = accepted[-1].fit
     before, after = base.campaign.model.line, fit.campaign.model.line
     return scanned(fit, lambda spot: bool(found) and same_place(before, found[0].spot, after, spot))
-
-
-def _described(
-    searched: Fit,
-    base: Fit,
-    found: tuple[Found, ...],
-    rounds: Sequence[Round],
-    accepted: Sequence[Finalist],
-    left: Sequence[Found],
-    clock: Clock,
-) -> Round | None:
-    """Small elements, where no named effect explains what a free stiffness does; None unless they do it better.
-
-    Or where one effect was found twice at one place: that is one thing that the catalogue has no name for.
-    """
-    least, twice = rounds[0].threshold, _twice(accepted)
-    if accepted:
-        best = accepted[-1].fit
-        open_ = decide.explained(base, best, left) < decide.EXPLAINED
-        if accepted[0].hypothesis.domain != "path" or not (open_ or twice is not None):
-            return None
-    else:
-        best = base
-        if not found or found[0].gain - found[0].degrees * np.log(lines(base)) <= least:
-            return None
-    like = None
-    if twice is not None:
-        at, like = twice.hypothesis.locate(twice.values), twice.values
-        there = (at.x_m or (0.0,))[0]
-        found = tuple(sorted(found, key=lambda f: (f.spot.name != at.what, abs(f.spot.x_m[0] - there))))
-    offered = grammar.hypotheses(Situation(searched, found), like)
-    result = search(
-        searched, offered, learnt_base=base, prefix="1.", threshold=lambda _ring, _screened: least, progress=clock
-    )
-    if not result.finalists:
-        return None
-    one = result.finalists[0]
-    better = best.objective - one.fit.objective - penalty(one.quick, result.ring)
-    if twice is not None:
-        # What stands for two effects has to do no better than both, with fewer constants.
-        better += sum(penalty(two.quick, result.ring) for two in accepted)
-    return result if better > 0.0 else None
-
-
-def _twice(accepted: Sequence[Finalist]) -> Finalist | None:
-    """The stronger of two masses on springs that hang at one place."""
-    for index, one in enumerate(accepted):
-        for other in accepted[:index]:
-            places = [f.hypothesis.locate(f.values) for f in (other, one)]
-            first, second = (place.x_m for place in places)
-            alike = other.hypothesis.entry == one.hypothesis.entry and places[0].what == places[1].what
-            if not alike or first is None or second is None or not {*RESONATOR} <= other.values.keys():
-                continue
-            if abs(first[0] - second[0]) < ONE_PLACE_M:
-                return max(other, one, key=lambda f: f.values["mass_kg"])
-    return None
 
 
 def _advice(rounds: Sequence[Round], clock: Clock) -> tuple[NextMeasurement, ...]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from permway.diagnosis.catalogue._change import fixed_mass, hung_mass
+from permway.diagnosis.catalogue._change import constant_loss, fixed_mass, hung_mass
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import between_free, linear_free, log_free
 from permway.laws import Hysteretic, Maxwell, Parallel, Scaled, Springpot
@@ -46,7 +46,10 @@ class Element:
 
 
 def _spring(v: Values) -> Law:
-    return Scaled(law=Hysteretic(stiffness=1.0, loss_factor=v["loss_factor"]), factor=v["stiffness_N_per_m"])
+    """One that pushes away loses as much as one that pulls back: none gives energy."""
+    stiffness = v["stiffness_N_per_m"]
+    spring = Scaled(law=Hysteretic(stiffness=1.0), factor=stiffness)
+    return Parallel(first=spring, second=constant_loss(abs(stiffness) * v["loss_factor"]))
 
 
 def _dashpot(v: Values) -> Law:
@@ -97,14 +100,14 @@ ELEMENTS = (
     ),
     Element(
         "dashpot",
-        lambda k, f: (_signed("damping_Ns_per_m", "N s/m", k / (2.0 * np.pi * f)),),
+        lambda k, f: (log_free("damping_Ns_per_m", "N s/m", k / (2.0 * np.pi * f), 3.0),),
         _dashpot,
         lambda v: f"a dashpot of {v['damping_Ns_per_m']:.3g} N s/m",
     ),
     Element(
         "springpot",
         lambda k, f: (
-            _signed("stiffness_N_per_m", "N/m", k),
+            log_free("stiffness_N_per_m", "N/m", k * float(np.sqrt(AT_HZ / f)), 3.0),
             between_free("order", "1", 0.02, 0.98),
         ),
         _springpot,

@@ -133,17 +133,16 @@ def _on_body(element: Element, found: Found, like: Values | None = None) -> Hypo
             log_free("frequency_Hz", "Hz", frequency, 1.5),
             log_free("loss_factor", "1", loss, 2.0),
         )
-    if element.ground:
-        # The scan looks at places a metre apart.
-        free = (*free, linear_free("x_m", "m", x, 0.5, x - BESIDE_M, x + BESIDE_M))
+    # The scan looks at places a metre apart.
+    free = (*free, linear_free("x_m", "m", x, 0.5, x - BESIDE_M, x + BESIDE_M))
 
     def amend(campaign: Campaign, values: Values) -> Campaign:
         name = fresh(NOVEL, campaign.model.line.laws)
-        joints = Joints(between=(found.spot.name, GROUND), law=name, at=(values.get("x_m", x),))
+        joints = Joints(between=(found.spot.name, GROUND), law=name, at=(values["x_m"],))
         return with_joints(campaign, joints, laws={name: element.law(values)})
 
     made = _made(element, "on the body", free, Where(found.spot.name, (x, x)), amend)
-    return replace(made, locate=lambda v: Where(found.spot.name, (v.get("x_m", x), v.get("x_m", x))))
+    return replace(made, locate=lambda v: Where(found.spot.name, (v["x_m"], v["x_m"])))
 
 
 def _over_joints(situation: Situation, element: Element, found: Found) -> Hypothesis:

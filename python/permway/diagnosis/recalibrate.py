@@ -39,6 +39,9 @@ FORETOLD = 0.95
 MOST_LEARNT, LEARNING_STEPS = 2, 5
 """Times that the sizes of smooth errors are learnt, and steps each time."""
 
+HOPELESS = 3.0
+"""Times the gain of the last learning by which a fit may lie behind a rival and yet come near."""
+
 MOST_RELEARNT, RELEARNT = 6, 2.0
 """Times that sizes are learnt of a model that is fitted, and what the objective must then gain."""
 
@@ -226,16 +229,24 @@ def _solvable(problem: Problem, z: Reals) -> State:
     return state
 
 
-def relearnt(fit: Fit, sharp: Evidence) -> Fit:
+def relearnt(fit: Fit, sharp: Evidence, *, best: float = np.inf) -> Fit:
     """On the records as they are, the sizes of smooth errors learnt anew, now that less is left to explain.
 
     As often as the fit gains by it: sizes that are too large hide where to go on.
+
+    Parameters
+    ----------
+    fit : Fit
+    sharp : Evidence
+        Of the records as they are.
+    best : float
+        Objective of a rival: what lies behind it by more than a few times its last gain will not come near.
     """
     value = np.inf
     for _ in range(MOST_RELEARNT):
         evidence, _ = learnt(sharp, sharp.predicted(fit.campaign))
         fit = recalibrate(evidence, build=fit.build, free=fit.free, start=fit.z, learn=False)
-        if fit.objective > value - RELEARNT:
+        if fit.objective > value - RELEARNT or fit.objective - best > HOPELESS * (value - fit.objective):
             break
         sharp, value = evidence, fit.objective
     return fit

@@ -10,6 +10,7 @@ import numpy as np
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.compete import Quick, Ring, stacked
+from permway.diagnosis.describe import Description
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.locate import Found, scanned
@@ -28,13 +29,15 @@ MOST_OF_IT = 0.5
 
 
 def effects(
-    rough: Fit, base: Fit, found: tuple[Found, ...], seed: int, clock: Clock
+    rough: Fit, base: Fit, found: tuple[Found, ...], seed: int, clock: Clock, description: Description
 ) -> tuple[list[Round], list[Finalist]]:
     """Add effects while one passes; take out those that a later one made needless.
 
     Where smooth errors of usual size do not explain what is left, the search begins from a base that has learnt no
     larger ones, for these would hide what is sought, and that takes responses less seriously, for what is missing
     would bend it; what it finds has to be better than the base that has learnt, on responses as they are.
+
+    Where small elements do better than the first effect and leave next to nothing, no further one is sought.
     """
 
     def least(ring: Ring, screened: Sequence[Quick]) -> float:
@@ -68,6 +71,8 @@ def effects(
         if accepted and _mends(accepted, result.finalists[0]):
             break
         accepted.append(result.finalists[0])
+        if order == 0 and description.instead(result):
+            break
         if len(accepted) > 1:
             accepted = _without_needless(base, accepted, result.threshold, clock)
         # Once a model nearly fits, nothing is gained from blunting.

@@ -128,6 +128,7 @@ def search(
     prefix: str,
     threshold: Threshold,
     before: Sequence[Quick] = (),
+    most: int = FOLLOWED,
     progress: Progress,
 ) -> Round:
     """Hold hypotheses against the records.
@@ -144,6 +145,8 @@ def search(
     before : sequence of Quick
         What was screened against an earlier base: what still promises little by its slopes of then is not tried
         again.
+    most : int
+        Hypotheses that are followed.
     threshold : callable
         From the base and what was screened to the gain of BIC below which nothing is a finalist.
     progress : callable
@@ -153,7 +156,7 @@ def search(
     journal = current()
     kept = None if journal is None else journal.recall("search", [_key(h) for h in offered], fit.z)
     if kept is None:
-        screened, followed = _looked(ring, offered, before, progress)
+        screened, followed = _looked(ring, offered, before, most, progress)
         if journal is not None:
             journal.keep({**noted(screened, offered, "screened"), **noted(followed, offered, "followed")})
     else:
@@ -173,16 +176,17 @@ def search(
         with contextlib.suppress(InputError, SolveError):
             fitted.append((one, ring.full(one, prefix=prefix)))
     fitted.sort(key=lambda pair: pair[1].objective + penalty(pair[0], ring))
-    finalists = []
+    finalists, best = [], np.inf
     for index, (one, rough) in enumerate(fitted):
         if fit.objective - rough.objective < close * (fit.objective - fitted[0][1].objective):
             continue
         progress("learn", index, len(fitted))
         try:
-            amended = relearnt(rough, learnt_base.evidence)
+            amended = relearnt(rough, learnt_base.evidence, best=best)
         except (InputError, SolveError):
             # It ends where the model ends: two changes of one place have met, say.
             continue
+        best = min(best, amended.objective)
         gain = gained(learnt_base, amended)
         # A fault of a sensor may show in phases, or in noise, alone.
         felt = one.hypothesis.domain == "measurement" or moved(learnt_base, amended) > FELT
@@ -195,7 +199,7 @@ def search(
 
 
 def _looked(
-    ring: Ring, offered: Sequence[Hypothesis], before: Sequence[Quick], progress: Progress
+    ring: Ring, offered: Sequence[Hypothesis], before: Sequence[Quick], most: int, progress: Progress
 ) -> tuple[list[Quick], list[Quick]]:
     """All that could be solved after a step, and the most promising as far as they go, the best first."""
     screened: list[Quick] = []
@@ -216,7 +220,7 @@ def _looked(
             screened.append(found)
             best = max(best, found.gain)
     screened.sort(key=lambda q: penalty(q, ring) - q.gain)
-    chosen = _chosen(screened, ring)
+    chosen = _chosen(screened, ring, most)
     followed: list[Quick] = []
     for index, one in enumerate(chosen):
         progress("follow", index, len(chosen))
@@ -243,7 +247,7 @@ def _key(hypothesis: Hypothesis) -> tuple[str, ...]:
     return *hypothesis.form, hypothesis.locate(values).label
 
 
-def _chosen(screened: Sequence[Quick], ring: Ring) -> list[Quick]:
+def _chosen(screened: Sequence[Quick], ring: Ring, most: int) -> list[Quick]:
     """The best, not too many of one form of an effect."""
     if not screened:
         return []
@@ -253,7 +257,7 @@ def _chosen(screened: Sequence[Quick], ring: Ring) -> list[Quick]:
         taken = sum(q.hypothesis.form == quick.hypothesis.form for q in found)
         # A step that has not arrived may still double its gain.
         promising = 3.0 * quick.gain > penalty(quick, ring) and quick.gain > WORTH * best
-        if promising and taken < PER_FORM and len(found) < FOLLOWED:
+        if promising and taken < PER_FORM and len(found) < most:
             found.append(quick)
     return found
 
@@ -270,7 +274,7 @@ def _finalists(followed: Sequence[Quick], ring: Ring, threshold: float) -> list[
         if passes and form not in found and (nearly or (entry not in leading and len(leading) < FINALISTS)):
             found[form] = quick
             leading.setdefault(entry, quick.gain)
-    return list(found.values())
+    return list(found.values())[: FINALISTS + 1]
 
 
 def candidates(found: Round) -> list[Candidate]:

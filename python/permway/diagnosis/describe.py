@@ -1,0 +1,129 @@
+"""Whether small elements describe what acts better than any named effect does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from permway.diagnosis import decide, grammar
+from permway.diagnosis.clock import Clock
+from permway.diagnosis.fit import Fit
+from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.locate import Found, scanned
+from permway.diagnosis.search import Finalist, Round, lines, penalty, search
+
+RESONATOR = ("mass_kg", "frequency_Hz", "loss_factor")
+"""What a mass on a spring is known by."""
+
+ONE_PLACE_M = 0.5
+"""Between two effects that are at one place."""
+
+FOLLOWED = 16
+"""Elements that are followed after screening: one step tells little of a law's frequency."""
+
+OPEN = 0.05
+"""Share of the gap to a free stiffness that a named effect may leave before small elements are tried."""
+
+
+class Description:
+    """What elements make of one campaign.
+
+    Parameters
+    ----------
+    searched, base : Fit
+        What a search begins from, and the recalibrated base.
+    found : tuple of Found
+        The scan.
+    clock : Clock
+    """
+
+    def __init__(self, searched: Fit, base: Fit, found: tuple[Found, ...], clock: Clock) -> None:
+        self.searched, self.base, self.found, self.clock = searched, base, found, clock
+        self._plain: Round | None = None
+
+    def instead(self, first: Round) -> bool:
+        """Whether elements explain most of what the first named effect leaves: then no further is sought."""
+        named = first.finalists[0]
+        if named.hypothesis.domain != "path":
+            return False
+        left = scanned(named.fit)
+        described = self.of([first], [named], left)
+        return described is not None and self._closes(described, named.fit, left)
+
+    def of(self, rounds: Sequence[Round], accepted: Sequence[Finalist], left: Sequence[Found]) -> Round | None:
+        """Small elements, where no named effect explains what a free stiffness does, if they do it better.
+
+        Or where one effect was found twice at one place: that is one thing that the catalogue has no name for.
+
+        Parameters
+        ----------
+        rounds : sequence of Round
+        accepted : sequence of Finalist
+        left : sequence of Found
+            Scan of the model with what was accepted.
+        """
+        least, twice, explained = rounds[0].threshold, _twice(accepted), 0.0
+        if accepted:
+            best = accepted[-1].fit
+            explained = decide.explained(self.base, best, left)
+            if accepted[0].hypothesis.domain != "path" or not (explained < 1.0 - OPEN or twice is not None):
+                return None
+        else:
+            best = self.base
+            if not self.found or self.found[0].gain - self.found[0].degrees * np.log(lines(best)) <= least:
+                return None
+        result = self._searched(least, twice)
+        if not result.finalists:
+            return None
+        one = result.finalists[0]
+        better = best.objective - one.fit.objective - penalty(one.quick, result.ring)
+        if twice is not None:
+            # What stands for two effects has to do no better than both, with fewer constants.
+            better += sum(penalty(two.quick, result.ring) for two in accepted)
+        elif explained > decide.EXPLAINED and not self._closes(result, best, left):
+            return None
+        return result if better > 0.0 else None
+
+    def _closes(self, described: Round, named: Fit, left: Sequence[Found]) -> bool:
+        """Whether a description closes most of the gap to a free stiffness, and half of what a name leaves."""
+        fit = described.finalists[0].fit
+        explained = decide.explained(self.base, fit, scanned(fit))
+        gap = 1.0 - decide.explained(self.base, named, left)
+        return explained > decide.EXPLAINED and 1.0 - explained < decide.HALF * gap
+
+    def _searched(self, least: float, twice: Finalist | None) -> Round:
+        """Elements at the most telling place, or where one effect was found twice."""
+        if twice is None and self._plain is not None:
+            return self._plain
+        found, like = self.found, None
+        if twice is not None:
+            at, like = twice.hypothesis.locate(twice.values), twice.values
+            there = (at.x_m or (0.0,))[0]
+            found = tuple(sorted(found, key=lambda f: (f.spot.name != at.what, abs(f.spot.x_m[0] - there))))
+        result = search(
+            self.searched,
+            grammar.hypotheses(Situation(self.searched, found), like),
+            learnt_base=self.base,
+            prefix="1.",
+            threshold=lambda _ring, _screened: least,
+            most=FOLLOWED,
+            progress=self.clock,
+        )
+        if twice is None:
+            self._plain = result
+        return result
+
+
+def _twice(accepted: Sequence[Finalist]) -> Finalist | None:
+    """The stronger of two masses on springs that hang at one place."""
+    for index, one in enumerate(accepted):
+        for other in accepted[:index]:
+            places = [f.hypothesis.locate(f.values) for f in (other, one)]
+            first, second = (place.x_m for place in places)
+            alike = other.hypothesis.entry == one.hypothesis.entry and places[0].what == places[1].what
+            if not alike or first is None or second is None or not {*RESONATOR} <= other.values.keys():
+                continue
+            if abs(first[0] - second[0]) < ONE_PLACE_M:
+                return max(other, one, key=lambda f: f.values["mass_kg"])
+    return None
