@@ -1,0 +1,50 @@
+"""Which hypotheses are fitted in full: of several effects, and of several forms of one."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+from permway.diagnosis.compete import Quick
+from permway.diagnosis.hypothesis import Hypothesis, Where, linear_free
+from permway.diagnosis.search import _finalists
+
+RING = cast(Any, SimpleNamespace(fit=SimpleNamespace(deviations=np.zeros(2000))))
+
+
+def quick(entry: str, gain: float, *names: str) -> Quick:
+    free = tuple(linear_free(name, "1", 0.0, 1.0, -5.0, 5.0) for name in names)
+    hypothesis = Hypothesis(
+        entry=entry,
+        domain="path",
+        family=f"family of {entry}",
+        free=free,
+        amend=lambda campaign, _: campaign,
+        locate=lambda _: Where(),
+        starts=((0.0,) * len(free),),
+    )
+    return Quick(hypothesis, np.zeros(len(free)), np.zeros(0), gain)
+
+
+def said(*followed: Quick) -> list[tuple[str, float]]:
+    return [(q.hypothesis.entry, q.gain) for q in _finalists(followed, RING, 10.0)]
+
+
+def test_of_one_form_the_best_and_of_a_second_form_what_does_nearly_as_well() -> None:
+    bend, cut = ("pitch_m", "stiffness"), ("pitch_m",)
+    found = said(quick("joints", 900.0, *bend), quick("joints", 880.0, *bend), quick("joints", 800.0, *cut))
+    assert found == [("joints", 900.0), ("joints", 800.0)]
+    # A form that does much worse at once will hardly do better in the end.
+    assert said(quick("joints", 900.0, *bend), quick("joints", 500.0, *cut)) == [("joints", 900.0)]
+
+
+def test_three_effects_at_most_and_none_far_behind_or_below_the_threshold() -> None:
+    names = ["a", "b", "c", "d"]
+    assert said(*(quick(n, 900.0 - i, "size") for i, n in enumerate(names))) == [
+        ("a", 900.0),
+        ("b", 899.0),
+        ("c", 898.0),
+    ]
+    assert said(quick("a", 900.0, "size"), quick("b", 200.0, "size")) == [("a", 900.0)]
+    assert said(quick("a", 15.0, "size")) == []
