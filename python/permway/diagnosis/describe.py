@@ -10,7 +10,8 @@ from permway.diagnosis import decide, grammar
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Situation
-from permway.diagnosis.locate import Found, scanned
+from permway.diagnosis.locate import Found, Spot, scanned
+from permway.diagnosis.recovered import same_place
 from permway.diagnosis.search import Finalist, Round, lines, penalty, search
 
 RESONATOR = ("mass_kg", "frequency_Hz", "loss_factor")
@@ -41,17 +42,30 @@ class Description:
     def __init__(self, searched: Fit, base: Fit, found: tuple[Found, ...], clock: Clock) -> None:
         self.searched, self.base, self.found, self.clock = searched, base, found, clock
         self._plain: Round | None = None
+        self._left: dict[int, tuple[Fit, tuple[Found, ...]]] = {}
+
+    def left(self, fit: Fit) -> tuple[Found, ...]:
+        """Scan of an amended model, the place among it that told most of the base; made once."""
+        if id(fit) not in self._left:
+            self.clock("scan what is left")
+            before, after = self.base.campaign.model.line, fit.campaign.model.line
+            told = self.found[0].spot if self.found else None
+
+            def also(spot: Spot) -> bool:
+                return told is not None and same_place(before, told, after, spot)
+
+            self._left[id(fit)] = fit, scanned(fit, also)
+        return self._left[id(fit)][1]
 
     def instead(self, first: Round) -> bool:
         """Whether elements explain most of what the first named effect leaves: then no further is sought."""
         named = first.finalists[0]
         if named.hypothesis.domain != "path":
             return False
-        left = scanned(named.fit)
-        described = self.of([first], [named], left)
-        return described is not None and self._closes(described, named.fit, left)
+        described = self.of([first], [named])
+        return described is not None and self._closes(described, named.fit)
 
-    def of(self, rounds: Sequence[Round], accepted: Sequence[Finalist], left: Sequence[Found]) -> Round | None:
+    def of(self, rounds: Sequence[Round], accepted: Sequence[Finalist]) -> Round | None:
         """Small elements, where no named effect explains what a free stiffness does, if they do it better.
 
         Or where one effect was found twice at one place: that is one thing that the catalogue has no name for.
@@ -60,13 +74,11 @@ class Description:
         ----------
         rounds : sequence of Round
         accepted : sequence of Finalist
-        left : sequence of Found
-            Scan of the model with what was accepted.
         """
         least, twice, explained = rounds[0].threshold, _twice(accepted), 0.0
         if accepted:
             best = accepted[-1].fit
-            explained = decide.explained(self.base, best, left)
+            explained = decide.explained(self.base, best, self.left(best))
             if accepted[0].hypothesis.domain != "path" or not (explained < 1.0 - OPEN or twice is not None):
                 return None
         else:
@@ -81,15 +93,15 @@ class Description:
         if twice is not None:
             # What stands for two effects has to do no better than both, with fewer constants.
             better += sum(penalty(two.quick, result.ring) for two in accepted)
-        elif explained > decide.EXPLAINED and not self._closes(result, best, left):
+        elif explained > decide.EXPLAINED and not self._closes(result, best):
             return None
         return result if better > 0.0 else None
 
-    def _closes(self, described: Round, named: Fit, left: Sequence[Found]) -> bool:
+    def _closes(self, described: Round, named: Fit) -> bool:
         """Whether a description closes most of the gap to a free stiffness, and half of what a name leaves."""
         fit = described.finalists[0].fit
-        explained = decide.explained(self.base, fit, scanned(fit))
-        gap = 1.0 - decide.explained(self.base, named, left)
+        explained = decide.explained(self.base, fit, self.left(fit))
+        gap = 1.0 - decide.explained(self.base, named, self.left(named))
         return explained > decide.EXPLAINED and 1.0 - explained < decide.HALF * gap
 
     def _searched(self, least: float, twice: Finalist | None) -> Round:

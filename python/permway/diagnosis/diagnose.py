@@ -61,12 +61,11 @@ def diagnose(
     mixed = mislabelled(base)
     description = Description(searched, base, found, clock)
     rounds, accepted = ([], []) if mixed is not None else effects(searched, base, found, seed, clock, description)
-    left = _left(base, found, accepted, clock)
-    described = None if mixed is not None else description.of(rounds, accepted, left)
+    described = None if mixed is not None else description.of(rounds, accepted)
     catalogued = rounds
     if described is not None:
         rounds, accepted = [described], [described.finalists[0]]
-        left = _left(base, found, accepted, clock)
+    left = description.left(accepted[-1].fit) if accepted else ()
     amended = accepted[-1].fit if accepted else None
     proof: Proof | None = None
     advice: tuple[NextMeasurement, ...] = ()
@@ -93,16 +92,6 @@ def diagnose(
         seconds=clock.seconds(),
         inconstant=inconstant,
     )
-
-
-def _left(base: Fit, found: Sequence[Found], accepted: Sequence[Finalist], clock: Clock) -> tuple[Found, ...]:
-    """Scan of the amended model, the place among it that told most of the base."""
-    clock("scan what is left")
-    if not accepted:
-        return ()
-    fit = accepted[-1].fit
-    before, after = base.campaign.model.line, fit.campaign.model.line
-    return scanned(fit, lambda spot: bool(found) and same_place(before, found[0].spot, after, spot))
 
 
 def _advice(rounds: Sequence[Round], clock: Clock) -> tuple[NextMeasurement, ...]:

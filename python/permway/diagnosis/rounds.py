@@ -13,7 +13,7 @@ from permway.diagnosis.compete import Quick, Ring, stacked
 from permway.diagnosis.describe import Description
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Hypothesis, Situation
-from permway.diagnosis.locate import Found, scanned
+from permway.diagnosis.locate import Found
 from permway.diagnosis.nulls import threshold
 from permway.diagnosis.recalibrate import UNFIT, recalibrate
 from permway.diagnosis.search import Finalist, Round, lines, search
@@ -80,7 +80,7 @@ def effects(
         rough = fit if fit.heat < UNFIT else accepted[-1].rough
         if order + 1 < MOST_EFFECTS:
             clock("locate")
-            found = scanned(rough)
+            found = description.left(rough)
     return rounds, accepted
 
 
