@@ -26,13 +26,15 @@ def bases(evidence: Evidence, clock: Clock) -> tuple[Fit, Fit]:
     Where learnt smooth errors do not explain what is left, or do so only with parameters far from what their
     owner said, responses are taken less seriously, so that what is missing in one place bends the base less.
     """
-    rough = recalibrate(evidence, learn=False, reweigh=True, progress=lambda _: clock.tick())
+    rough = recalibrate(evidence, learn=False, reweigh=True, settle=False, progress=lambda _: clock.tick())
     # What hides in noise, and what spectra weigh, is told by a prediction: by a better one each time.
     sharp = rough.evidence.reweighed(rough.evidence.predicted(rough.campaign))
     base = recalibrate(sharp, start=rough.z, reweigh=False, progress=lambda _: clock.tick())
     if base.heat < NEARLY and base.prior < BENT * len(base.free):
         again = base.evidence.reweighed(base.evidence.predicted(base.campaign))
-        base = recalibrate(again, start=base.z, reweigh=False, progress=lambda _: clock.tick())
+        base = recalibrate(
+            again, start=base.z, slopes=base.jacobian, reweigh=False, progress=lambda _: clock.tick()
+        )
         # What an amended model gains by being learnt to its end is no gain.
         base = relearnt(base, base.evidence)
         return base, base

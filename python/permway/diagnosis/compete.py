@@ -224,7 +224,7 @@ class Ring:
 
     def together(self, found: Quick) -> Quick:
         """Some steps of base and effect together, for what the base has to move far for."""
-        fit = self.full(replace(found, columns=None), most_steps=STEPS_TOGETHER)
+        fit = self.full(replace(found, columns=None), most_steps=STEPS_TOGETHER, settle=False)
         own = len(self.fit.free)
         objective = self.whitener.square(fit.deviations) / self.fit.heat + fit.prior
         gain = self.start - objective
@@ -302,9 +302,13 @@ class Ring:
         *,
         prefix: str = "",
         most_steps: int = 15,
+        settle: bool = True,
         progress: Progress | None = None,
     ) -> Fit:
-        """Fit base and effect together, from where the quick look ended."""
+        """Fit base and effect together, from where the quick look ended.
+
+        See :func:`permway.diagnosis.recalibrate.recalibrate`.
+        """
         build, free = stacked(self.fit.build, quick.hypothesis, prefix)
         return recalibrate(
             self.evidence,
@@ -314,5 +318,6 @@ class Ring:
             learn=False,
             slopes=None if quick.columns is None else np.hstack([self.fit.jacobian, quick.columns]),
             most_steps=most_steps,
+            settle=settle,
             progress=progress,
         )

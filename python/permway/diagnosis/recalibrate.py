@@ -61,6 +61,7 @@ def recalibrate(
     reweigh: bool | None = None,
     slopes: Reals | None = None,
     most_steps: int = 30,
+    settle: bool = True,
     progress: Progress | None = None,
 ) -> Fit:
     """Find the most probable values of the free parameters.
@@ -82,6 +83,8 @@ def recalibrate(
     slopes : ndarray, shape (n, p), optional
         Derivatives of the deviations near the start, to begin with.
     most_steps : int
+    settle : bool
+        Whether slopes are taken anew where it ends; else they, and the covariance, may be of a place near by.
     progress : callable, optional
         Told in words how far it is.
 
@@ -104,13 +107,14 @@ def recalibrate(
         learn,
         reweigh,
         most_steps,
+        settle,
         evidence.length,
         sorted(evidence.sizes.items()),
     )
     kept = None if journal is None else journal.recall("recalibrate", *given)
     if kept is None:
         z = begin(evidence, problem) if own else np.zeros(len(free)) if start is None else start.copy()
-        state, tangent, changes = _descended(problem, z, learn, reweigh, slopes, most_steps, progress)
+        state, tangent, changes = _descended(problem, z, learn, reweigh, slopes, most_steps, settle, progress)
         if journal is not None:
             journal.keep(_noted(state, changes, problem.evaluations))
     else:
@@ -145,6 +149,7 @@ def _descended(
     reweigh: bool,
     slopes: Reals | None,
     most_steps: int,
+    settle: bool,
     progress: Progress | None,
 ) -> tuple[State, Tangent, Changes]:
     """The most probable state, its tangent, and where on the way to it the evidence was changed."""
@@ -189,7 +194,7 @@ def _descended(
             damping = 1e-3
         else:
             break
-    if tangent.at is not state or not exact:
+    if settle and (tangent.at is not state or not exact):
         tangent = problem.tangent(state)
     return state, tangent, changes
 
@@ -242,14 +247,29 @@ def relearnt(fit: Fit, sharp: Evidence, *, best: float = np.inf) -> Fit:
     best : float
         Objective of a rival: what lies behind it by more than a few times its last gain will not come near.
     """
-    value = np.inf
+    value, slopes = np.inf, None
     for _ in range(MOST_RELEARNT):
         evidence, _ = learnt(sharp, sharp.predicted(fit.campaign))
-        fit = recalibrate(evidence, build=fit.build, free=fit.free, start=fit.z, learn=False)
+        fit = recalibrate(evidence, build=fit.build, free=fit.free, start=fit.z, learn=False, slopes=slopes)
+        slopes = fit.jacobian
         if fit.objective > value - RELEARNT or fit.objective - best > HOPELESS * (value - fit.objective):
             break
         sharp, value = evidence, fit.objective
     return fit
+
+
+def settled(fit: Fit) -> Fit:
+    """The same with slopes and covariance of where it ended."""
+    return recalibrate(
+        fit.evidence,
+        build=fit.build,
+        free=fit.free,
+        start=fit.z,
+        slopes=fit.jacobian,
+        learn=False,
+        reweigh=False,
+        most_steps=0,
+    )
 
 
 def untouched(evidence: Evidence) -> Fit:

@@ -15,7 +15,7 @@ from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.locate import Found
 from permway.diagnosis.nulls import threshold
-from permway.diagnosis.recalibrate import UNFIT, recalibrate
+from permway.diagnosis.recalibrate import UNFIT, recalibrate, settled
 from permway.diagnosis.search import Finalist, Round, lines, search
 from permway.errors import InputError, SolveError
 
@@ -77,7 +77,7 @@ def effects(
             accepted = _without_needless(base, accepted, result.threshold, clock)
         # Once a model nearly fits, nothing is gained from blunting.
         fit = accepted[-1].fit
-        rough = fit if fit.heat < UNFIT else accepted[-1].rough
+        rough = fit if fit.heat < UNFIT else settled(accepted[-1].rough)
         if order + 1 < MOST_EFFECTS:
             clock("locate")
             found = description.left(rough)

@@ -174,7 +174,7 @@ def search(
                 continue
         # What cannot be solved all around is no finalist.
         with contextlib.suppress(InputError, SolveError):
-            fitted.append((one, ring.full(one, prefix=prefix)))
+            fitted.append((one, ring.full(one, prefix=prefix, settle=False)))
     fitted.sort(key=lambda pair: pair[1].objective + penalty(pair[0], ring))
     finalists, best = [], np.inf
     for index, (one, rough) in enumerate(fitted):
