@@ -138,15 +138,32 @@ def test_a_pair_that_was_not_measured_stays_empty(tmp_path: Path) -> None:
         references=("a", "b", "b"),
         frequency_Hz=np.array([10.0, 20.0]),
         values=np.ones((3, 2), dtype=complex),
-        coherence=None,
-        averages=None,
+        coherence=np.full((3, 2), 0.9),
+        averages=8,
     )
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "read_frf", lambda *_, **__: three)
         data = load_record(campaign, campaign.said.records[0]).data
     assert np.isnan(data["frf"].sel(sensor="deck@6", force="hit").values).all()
     assert np.isfinite(data["frf"].sel(sensor="deck@6", force="hit far").values).all()
-    assert np.isnan(data["log_variance"].values).all()
+    assert np.isnan(data["log_variance"].sel(sensor="deck@6", force="hit").values).all()
+    assert np.isfinite(data["log_variance"].sel(sensor="deck@6", force="hit far").values).all()
+
+
+def test_responses_without_coherence_or_averages_are_refused_for_nothing_says_how_sure_they_are(
+    tmp_path: Path,
+) -> None:
+    campaign = campaign_with(tmp_path)
+    record = campaign.said.records[0]
+    with np.load(tmp_path / "frf.npz") as file:
+        arrays = dict(file)
+    bare = {name: array for name, array in arrays.items() if name != "coh"}
+    np.savez(tmp_path / "frf.npz", **bare)
+    with pytest.raises(InputError, match=r"records\..*: frf.npz: has no coherence.*named coherence"):
+        load_record(campaign, record)
+    np.savez(tmp_path / "frf.npz", **arrays)
+    with pytest.raises(InputError, match=r"averages: missing.*averages = 8"):
+        load_record(campaign, record.model_copy(update={"averages": None}))
 
 
 TABLE = "test,rail,temp,100,125,160\n1,left,3.5,2.0,3.0,4.0\n2,left,3.5,5.0,6.0,7.0\n3,right,9.0,1.0,-1.0,x\n"

@@ -386,7 +386,7 @@ def test_arguments(tmp_path: Path) -> None:
         (lambda: read_time(path, format="wav"), "the caller says wav, the content is text"),
         (lambda: read_time(path, max_bytes=40), "above the limit"),
         (lambda: list(time_blocks(path, block_samples=0)), "whole number above 0"),
-        (lambda: read_frf(path), "not read from this format .*'text'"),
+        (lambda: read_frf(path), "no column of frequencies .*a row for each frequency"),
         (lambda: read_table(path, texts=["z"]), "no such column"),
     ]
     for call, said in calls:

@@ -156,9 +156,13 @@ def _frf(campaign: Campaign, record: Record) -> xr.Dataset:
         [1e3 if campaign.point(name).unit == "kN" else 1.0 for name in forces]
     )
     averages = record.averages or file.averages
-    coherence = np.full((*at.shape, int(used.sum())), np.nan)
-    if file.coherence is not None:
-        coherence = spread(file.coherence)
+    if averages is None:
+        remedy = "give the number of blows of each point, as in averages = 8"
+        raise InputError("missing, and the file does not say", where="averages", remedy=remedy)
+    if file.coherence is None:
+        remedy = "export it beside the responses, as an array or column named coherence, 0 to 1"
+        raise InputError("has no coherence, which says how sure each line is", where=record.file, remedy=remedy)
+    coherence = spread(file.coherence)
     data = xr.Dataset(
         {
             "frf": (DIMENSIONS, spread(file.values) * scale[:, :, None]),
@@ -170,19 +174,16 @@ def _frf(campaign: Campaign, record: Record) -> xr.Dataset:
     data["frf"].attrs = {"long_name": "frequency response, read over read", "units": "SI/N"}
     data["coherence"].attrs = {"long_name": "coherence", "units": "1"}
     data["log_variance"].attrs = {"long_name": "variance of log magnitude and of phase", "units": "1"}
-    if averages is not None:
-        data.attrs["averages"] = float(averages)
+    data.attrs["averages"] = float(averages)
     return data
 
 
-def log_variance(coherence: Reals, averages: float | None) -> Reals:
+def log_variance(coherence: Reals, averages: float) -> Reals:
     """Variance of the log magnitude (nepers) and of the phase (rad) of an H1 estimate, shape of the coherence.
 
-    (1 - g2) / (2 K g2), Bendat and Piersol, Random Data (2010), section 9.2; NaN if the averages are not known.
-    The coherence is itself an estimate, biased up by about (1 - g2)^2 / K.
+    (1 - g2) / (2 K g2), Bendat and Piersol, Random Data (2010), section 9.2. The coherence is itself an estimate,
+    biased up by about (1 - g2)^2 / K.
     """
-    if averages is None:
-        return np.full(coherence.shape, np.nan)
     squared = np.clip(coherence, LEAST_COHERENCE, MOST_COHERENCE)
     return np.asarray((1.0 - squared) / (2.0 * averages * squared))
 

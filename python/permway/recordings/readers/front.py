@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager
 from pathlib import Path
 
 from permway.errors import InputError
-from permway.recordings.readers import hdf5, mat, netcdf3, npz, table, tdms, text, uff55, uff58, wav
+from permway.recordings.readers import hdf5, mat, netcdf3, npz, table, tdms, text, text_frf, uff55, uff58, wav
 from permway.recordings.readers.formats import Format, recognise
 from permway.recordings.readers.limits import MOST_BYTES, check_size, existing_file, foreign
 from permway.recordings.readers.store import Store, as_time
@@ -129,7 +129,8 @@ def read_frf(
     Parameters
     ----------
     path : path
-        UFF 58, 58b or 55, MAT, NPZ, HDF5 or NetCDF.
+        UFF 58, 58b or 55, MAT, NPZ, HDF5 or NetCDF; or a table of text with a row for each frequency, sensor and
+        point.
     format : str, optional
         As of :func:`read_time`.
     part : str, optional
@@ -151,8 +152,10 @@ def read_frf(
         elif kind in _STORES:
             with _store(source, kind, part, max_bytes) as (store, array):
                 record = as_frf(store, array, max_bytes=max_bytes)
+        elif kind == "text":
+            record = text_frf.read_frf(source, max_bytes=max_bytes)
         else:
-            remedy = "give UFF, MAT, NPZ, HDF5 or NetCDF; a table of text is read by read_table"
+            remedy = "give UFF, MAT, NPZ, HDF5, NetCDF, or a table of text"
             raise InputError(
                 "frequency responses are not read from this format", where=str(source), value=kind, remedy=remedy
             )
