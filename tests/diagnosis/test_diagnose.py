@@ -10,6 +10,7 @@ from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.result import Diagnosis
+from permway.errors import InputError
 from permway.model.file import read_model
 from permway.recordings.campaign import Campaign, read_campaign
 from permway.report.diagnosis import write_diagnosis
@@ -118,6 +119,26 @@ def test_shuffled_labels_are_a_fault_of_the_measurement(tmp_path: Path) -> None:
     assert verdict.status == "measurement"
     assert verdict.effects[0].name == "sensor_labels"
     assert set(verdict.effects[0].place.channels) == {"rail@6", "deck@3"}
+
+
+def test_phases_that_run_backwards_are_a_fault_of_the_measurement(tmp_path: Path) -> None:
+    """Also where physics is missing, which is then not looked for."""
+    case = simulate(tmp_path / "c", 3, amend=lost)
+    verdict = diagnose(_changed(case.path, np.conj), threads=1).verdict
+    assert verdict.status == "measurement"
+    assert verdict.effects[0].name == "sensor_labels"
+    assert "conjugate the responses" in verdict.effects[0].law.words
+    assert not verdict.detectable
+
+
+def test_responses_that_no_line_can_be_used_of_are_refused(tmp_path: Path) -> None:
+    case = simulate(tmp_path / "c", 3)
+    file = case.path.parent / "frf.npz"
+    data = dict(np.load(file))
+    data["frf"] = np.zeros_like(data["frf"])
+    np.savez(file, **data)
+    with pytest.raises(InputError, match=r"records\..*: no line of it can be used"):
+        diagnose(read_campaign(case.path), threads=1)
 
 
 def test_noise_that_claims_to_be_coherent_names_nothing(tmp_path: Path) -> None:

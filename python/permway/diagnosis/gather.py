@@ -69,6 +69,14 @@ def _blocked(campaign: Campaign, datasets: Sequence[Dataset], threads: int | Non
     blocks = [
         _block(campaign, dataset, prediction, spans) for dataset, prediction in zip(loaded, predicted, strict=True)
     ]
+    for block in blocks:
+        if isinstance(block, FrfBlock) and not (block.weight > 0.0).any():
+            raise InputError(
+                "no line of it can be used",
+                where=f"records.{block.dataset.record.name}",
+                value=f"coherence at most {float(np.nanmax(block.dataset.data['coherence'].values)):.3g}",
+                remedy="look at its coherence, its units and its band",
+            )
     blocks += [NoiseBlock(dataset) for dataset in loaded if NoiseBlock.tells(dataset)]
     return Evidence(campaign, tuple(blocks), {}, threads=threads)
 

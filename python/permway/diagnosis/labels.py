@@ -1,4 +1,8 @@
-"""Whether channels are what their labels say: which sensor's prediction each measured row is most like."""
+"""Whether records are what their labels say: whose prediction each row is most like, which way phases run.
+
+Rows may carry another sensor's label; sensors and points may have changed places in a file whose axes carry no
+names; and some programs write phases for exp(-i omega t), which reverses them.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from permway.arrays import Reals
+from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.fit import Fit
 
@@ -19,29 +23,29 @@ LEAST_DB = 3.0
 """Root mean square deviation, with the labels given, below which labels are not doubted."""
 
 
+REVERSED = 0.6
+"""Share of the phases' mean square error that reversed ones must come below."""
+
+LEAST_RAD = 0.7
+"""Root mean square error of phases below which they are not doubted."""
+
+
 @dataclass(frozen=True)
 class Mislabelled:
-    """Rows that carry another sensor's label.
+    """A record that is not what its labels say.
 
     Attributes
     ----------
     record : str
-    pairs : tuple of (label, sensor)
-        The label of a row, and the sensor that it is like.
-    error_dB, relabelled_dB : float
-        Root mean square deviation with the labels given, and with the better ones.
+    words : str
+        What is wrong, for people.
+    channels : tuple of str
+        Labels of the rows that are.
     """
 
     record: str
-    pairs: tuple[tuple[str, str], ...]
-    error_dB: float
-    relabelled_dB: float
-
-    @property
-    def words(self) -> str:
-        """For people."""
-        said = ", ".join(f"{label} is {sensor}" for label, sensor in self.pairs)
-        return f"labels of channels are mixed up: {said}"
+    words: str
+    channels: tuple[str, ...]
 
 
 def mislabelled(fit: Fit) -> Mislabelled | None:
@@ -54,17 +58,48 @@ def mislabelled(fit: Fit) -> Mislabelled | None:
     """
     predicted = fit.evidence.predicted(fit.evidence.campaign).datasets
     for block, prediction in zip(fit.evidence.blocks, predicted, strict=True):
-        if not isinstance(block, FrfBlock) or block.measured.shape[0] < 2:
-            continue
-        names = [str(s) for s in block.dataset.data["sensor"].values]
-        cost = _costs(np.log(np.abs(block.measured)), np.log(np.abs(prediction["frf"].values)), block.weight > 0.0)
-        rows, columns = linear_sum_assignment(cost)
-        given, best = float(np.trace(cost)), float(cost[rows, columns].sum())
-        decibels = 8.686 * np.sqrt(np.array([given, best]) / len(names))
-        if best < BETTER * given and decibels[0] > LEAST_DB:
-            pairs = tuple((names[i], names[j]) for i, j in zip(rows, columns, strict=True) if i != j)
-            return Mislabelled(block.dataset.record.name, pairs, float(decibels[0]), float(decibels[1]))
+        if isinstance(block, FrfBlock):
+            found = _exchanged(block, prediction["frf"].values) or _reversed(block, prediction["frf"].values)
+            if found is not None:
+                return found
     return None
+
+
+def _exchanged(block: FrfBlock, predicted: Complexes) -> Mislabelled | None:
+    """Labels of rows, or sensors and points, that have changed places."""
+    names = [str(s) for s in block.dataset.data["sensor"].values]
+    measured, expected, used = np.log(np.abs(block.measured)), np.log(np.abs(predicted)), block.weight > 0.0
+    record = block.dataset.record.name
+    cost = _costs(measured, expected, used)
+    given = float(np.trace(cost))
+    if 8.686 * np.sqrt(given / len(names)) < LEAST_DB:
+        return None
+    if measured.shape[0] == measured.shape[1] > 1:
+        turned = _costs(measured.swapaxes(0, 1), expected, used.swapaxes(0, 1))
+        if float(np.trace(turned)) < BETTER * given:
+            words = "sensors and points have changed places: write the axes in the order frequency, sensor, point"
+            return Mislabelled(record, words, tuple(names))
+    rows, columns = linear_sum_assignment(cost)
+    if len(names) > 1 and float(cost[rows, columns].sum()) < BETTER * given:
+        pairs = [(names[i], names[j]) for i, j in zip(rows, columns, strict=True) if i != j]
+        said = ", ".join(f"{label} is {sensor}" for label, sensor in pairs)
+        return Mislabelled(record, f"labels of channels are mixed up: {said}", tuple(label for label, _ in pairs))
+    return None
+
+
+def _reversed(block: FrfBlock, predicted: Complexes) -> Mislabelled | None:
+    """Phases that run the other way."""
+    used = (block.weight > 0.0) & np.isfinite(predicted)
+    measured, expected = block.measured[used], predicted[used]
+    if not measured.size:
+        return None
+    given, other = (float(np.mean(np.angle(m / expected) ** 2)) for m in (measured, measured.conj()))
+    if np.sqrt(given) < LEAST_RAD or other > REVERSED * given:
+        return None
+    words = "phases run backwards: they are of exp(-i omega t); conjugate the responses"
+    return Mislabelled(
+        block.dataset.record.name, words, tuple(str(s) for s in block.dataset.data["sensor"].values)
+    )
 
 
 def _costs(measured: Reals, predicted: Reals, used: np.ndarray) -> Reals:

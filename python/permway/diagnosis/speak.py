@@ -74,7 +74,10 @@ def verdict_of(
 ) -> Verdict:
     """Put the verdict together."""
     first = rounds[0]
-    sizes = decide.detectable(rounds[-1].ring, rounds[-1].screened, rounds[-1].threshold)
+    # Where no model fits, nobody knows what would have been seen.
+    fits = (accepted[-1].fit if accepted else base).heat < UNFIT
+    last = rounds[-1]
+    sizes = decide.detectable(last.ring, last.screened, last.threshold) if fits else {}
     weight = Weight(false_alarm_threshold=first.threshold)
     recalibrated = Recalibrated(before=_moved(base))
     if not accepted or proof is None:
@@ -111,7 +114,7 @@ def mixed_up(base: Fit, mixed: Mislabelled) -> Verdict:
     """Of records whose labels are wrong: nothing else can be said of them."""
     effect = Effect(
         domain="measurement",
-        place=Place(channels=tuple(label for label, _ in mixed.pairs)),
+        place=Place(channels=mixed.channels),
         name=LABELS,
         law=Mechanics(words=mixed.words),
     )
