@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
@@ -15,6 +17,9 @@ BENT = 2.0
 
 BLUNT = 0.2
 """Relative error of frequency responses with which the search then begins."""
+
+MOST_REFINED, STAYS = 4, 0.5
+"""Times that a base is weighed by what it predicts, and standard deviations that its parameters may then move."""
 
 FEW = 0.4
 """Share of pairs that may be missed by far if the others are to hold the base without them."""
@@ -30,13 +35,8 @@ def bases(evidence: Evidence, clock: Clock) -> tuple[Fit, Fit]:
     # What hides in noise, and what spectra weigh, is told by a prediction: by a better one each time.
     sharp = rough.evidence.reweighed(rough.evidence.predicted(rough.campaign))
     base = recalibrate(sharp, start=rough.z, reweigh=False, progress=lambda _: clock.tick())
-    if base.heat < NEARLY and base.prior < BENT * len(base.free):
-        again = base.evidence.reweighed(base.evidence.predicted(base.campaign))
-        base = recalibrate(
-            again, start=base.z, slopes=base.jacobian, reweigh=False, progress=lambda _: clock.tick()
-        )
-        # What an amended model gains by being learnt to its end is no gain.
-        base = relearnt(base, base.evidence)
+    if _fits(base):
+        base = _refined(base, clock)
         return base, base
     searched = recalibrate(
         sharp.blunted(BLUNT), start=rough.z, learn=False, reweigh=False, progress=lambda _: clock.tick()
@@ -52,4 +52,25 @@ def bases(evidence: Evidence, clock: Clock) -> tuple[Fit, Fit]:
             progress=lambda _: clock.tick(),
         )
     other = recalibrate(sharp, start=searched.z, reweigh=False, progress=lambda _: clock.tick())
+    if _fits(other) and other.objective < base.objective:
+        # The first had only gone astray.
+        base = _refined(other, clock)
+        return base, base
     return min((base, other), key=lambda fit: fit.objective), searched
+
+
+def _fits(base: Fit) -> bool:
+    """Whether learnt smooth errors explain what is left, by parameters near what their owner said."""
+    return base.heat < NEARLY and base.prior < BENT * len(base.free)
+
+
+def _refined(base: Fit, clock: Clock) -> Fit:
+    """A base that fits, weighed by what it predicts itself, sizes of errors learnt to the end."""
+    for _ in range(MOST_REFINED):
+        again = base.evidence.reweighed(base.evidence.predicted(base.campaign))
+        before = base.z
+        base = recalibrate(again, start=before, reweigh=False, progress=lambda _: clock.tick())
+        if np.all(np.abs(base.z - before) < STAYS * np.sqrt(np.diag(base.covariance))):
+            break
+    # What an amended model gains by being learnt to its end is no gain.
+    return relearnt(base, base.evidence)

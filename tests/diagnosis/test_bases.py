@@ -1,0 +1,48 @@
+"""The base that a search begins from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from permway.diagnosis import bases as module
+from permway.diagnosis.bases import bases
+from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.clock import Clock
+from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather
+from permway.diagnosis.recalibrate import recalibrate
+from simulated import simulate
+
+
+def stale(fit: Fit) -> float:
+    """How far what stands for the hidden lines is from what the fit predicts itself."""
+    (prediction,) = fit.evidence.selected(fit.evidence.records[:1]).predicted(fit.campaign).datasets
+    block = fit.evidence.blocks[0]
+    assert isinstance(block, FrfBlock)
+    return float(np.median(np.abs(block._reference["frf"].values / prediction["frf"].values - 1.0)))
+
+
+@pytest.mark.parametrize("astray", [False, True])
+def test_a_base_that_fits_is_searched_itself_and_weighed_by_its_own_predictions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, astray: bool
+) -> None:
+    """Also if the first fit goes astray, and another start finds the way."""
+    evidence = gather(simulate(tmp_path / "c", 4).campaign, threads=1)
+    calls = 0
+
+    def lost_at_first(*args: object, **options: object) -> Fit:
+        nonlocal calls
+        calls += 1
+        if calls == 2:
+            # Far off, and no step to come back.
+            options |= {"start": np.full(5, 3.0), "most_steps": 0, "learn": False}
+        return recalibrate(*args, **options)  # type: ignore[arg-type]
+
+    if astray:
+        monkeypatch.setattr(module, "recalibrate", lost_at_first)
+    base, searched = bases(evidence, Clock(None))
+    assert base is searched
+    assert base.heat < 1.2
+    assert stale(base) < 0.01
