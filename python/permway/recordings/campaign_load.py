@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -142,8 +143,12 @@ def _frf(campaign: Campaign, record: Record) -> xr.Dataset:
     ):
         if missing.any():
             label = names[int(np.flatnonzero(missing)[0])]
-            known = sorted(set(getattr(file, key)))[:12]
-            raise InputError("the file has no such label", where=f"{key}.{label}", remedy=f"it has {known}, ...")
+            known = sorted(set(getattr(file, key)))
+            near = get_close_matches(label, known, 1)
+            remedy = f"it has {known[:12]}{', ...' if len(known) > 12 else ''}"
+            if near:
+                remedy = f"did you mean {near[0]!r}? {remedy}"
+            raise InputError("the file has no such label", where=f"{key}.{label}", remedy=remedy)
     there = (at >= 0)[:, :, None]
 
     def spread(values: np.ndarray) -> np.ndarray:

@@ -144,7 +144,12 @@ def _child(record: object, step: str | int, before: Steps) -> object:
         index = _index(record, step)
         if index is not None:
             return record[index]  # type: ignore[index]
-    raise KeyError(f"{written(before) or 'the file'} has no {step!r}")
+    if isinstance(record, BaseModel):
+        known = [field.alias or key for key, field in type(record).model_fields.items()]
+    else:
+        known = [str(key) for key in record] if isinstance(record, Mapping) else []
+    said = f": it has {', '.join(known[:12])}{', ...' if len(known) > 12 else ''}" if known else ""
+    raise KeyError(f"{written(before) or 'the file'} has no {step!r}{said}")
 
 
 def _field(record: BaseModel, step: str | int) -> str | None:

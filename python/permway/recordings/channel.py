@@ -135,6 +135,8 @@ class Sensor(FrozenModel):
             raise fault("x_m goes with body" if self.body is None else "missing: where on the body", "x_m")
         if self.unit not in UNITS[self.quantity]:
             what = f"is no unit of {self.quantity} here: use one of {sorted(UNITS[self.quantity])}"
+            if "/N" in self.unit or "/kN" in self.unit:
+                what += "; the unit of the force is the point's"
             raise fault(what, "unit", value=self.unit)
         return self
 
