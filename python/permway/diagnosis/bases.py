@@ -51,12 +51,23 @@ def bases(evidence: Evidence, clock: Clock) -> tuple[Fit, Fit]:
             reweigh=False,
             progress=lambda _: clock.tick(),
         )
+    # A fit that went astray is no measure of what noise hides.
+    sharp = sharp.reweighed(searched.evidence.predicted(searched.campaign))
     other = recalibrate(sharp, start=searched.z, reweigh=False, progress=lambda _: clock.tick())
-    if _fits(other) and other.objective < base.objective:
-        # The first had only gone astray.
+    if _objective(sharp, base) < other.objective:
+        other = recalibrate(sharp, start=base.z, reweigh=False, progress=lambda _: clock.tick())
+    if _fits(other):
         base = _refined(other, clock)
         return base, base
-    return min((base, other), key=lambda fit: fit.objective), searched
+    return other, searched
+
+
+def _objective(evidence: Evidence, fit: Fit) -> float:
+    """Of a fit's values and sizes of errors, in records that weigh otherwise."""
+    evidence = evidence.with_sizes(fit.evidence.sizes, fit.evidence.length)
+    whitener = evidence.whitener
+    square = whitener.square(evidence.deviations(evidence.predicted(fit.campaign).datasets))
+    return square + evidence.log_determinant + whitener.log_determinant + fit.prior
 
 
 def _fits(base: Fit) -> bool:
