@@ -21,6 +21,11 @@ def _ascending(pair: tuple[float, float]) -> tuple[float, float]:
     return pair
 
 
+def _rounded(pair: tuple[float, float] | None) -> tuple[float, float] | None:
+    """To a micrometre: digits beyond are of the arithmetic."""
+    return None if pair is None else (round(pair[0], 6), round(pair[1], 6))
+
+
 Span = Annotated[tuple[Number, Number], AfterValidator(_ascending)]
 Share = Annotated[float, Field(ge=0.0, le=1.0, strict=True)]
 Positive = Annotated[float, Field(ge=0.0, strict=True)]
@@ -56,8 +61,8 @@ class Place(VerdictPart):
         return cls(
             body=None if joint or not where.what else where.what,
             joint=where.what if joint else None,
-            x=where.x_m,
-            within=within,
+            x=_rounded(where.x_m),
+            within=_rounded(within),
             channels=where.channels,
         )
 
