@@ -9,6 +9,7 @@ import pytest
 from permway.diagnosis.bases import bases
 from permway.diagnosis.catalogue._change import fixed_mass, with_joints
 from permway.diagnosis.clock import Clock
+from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.elements import ELEMENTS, Element
 from permway.diagnosis.gather import gather
 from permway.diagnosis.grammar import hypotheses
@@ -67,3 +68,15 @@ def test_inertances_beside_some_pads_are_described_as_such(tmp_path: Path) -> No
     start, stop = best.hypothesis.locate(best.values).x_m or (0.0, 0.0)
     assert start == pytest.approx(6.6, abs=0.4)
     assert stop == pytest.approx(8.4, abs=0.4)
+
+
+def test_what_no_name_explains_is_described_and_no_further_names_are_sought(tmp_path: Path) -> None:
+    case = simulate(tmp_path / "c", 8, amend=beside_four_pads)
+    stages: list[str] = []
+    verdict = diagnose(case.campaign, threads=1, progress=lambda stage, *_: stages.append(stage)).verdict
+    (effect,) = verdict.effects
+    assert (verdict.status, effect.name, effect.place.joint) == ("described", None, "pad")
+    assert "an inertance of 6" in effect.law.words
+    assert effect.place.x is not None
+    assert effect.place.x == pytest.approx((6.6, 8.4), abs=0.4)
+    assert "drop" not in stages
