@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +10,12 @@ import pytest
 from permway.diagnosis import bases as module
 from permway.diagnosis.bases import bases
 from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.catalogue import sensor_gain
 from permway.diagnosis.clock import Clock
+from permway.diagnosis.compete import Ring
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
+from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from simulated import simulate
 
@@ -46,3 +50,15 @@ def test_a_base_that_fits_is_searched_itself_and_weighed_by_its_own_predictions(
     assert base is searched
     assert base.heat < 1.2
     assert stale(base) < 0.01
+
+
+def test_what_was_screened_about_a_base_of_other_lines_is_screened_again(tmp_path: Path) -> None:
+    """A base that did not fit may have weighed other lines of the spectra than the one that follows."""
+    fit = recalibrate(gather(simulate(tmp_path / "c", 4).campaign, threads=1))
+    ring = Ring(fit)
+    (hypothesis, *_) = sensor_gain.hypotheses(Situation(fit, ()))
+    quick = ring.screen(hypothesis)
+    assert quick.direction is not None
+    assert np.isfinite(ring.promise(quick))
+    other = replace(quick, columns=None, direction=quick.direction[:-3])
+    assert ring.promise(other) == np.inf

@@ -198,7 +198,8 @@ class Ring:
     def promise(self, old: Quick) -> float:
         """Linear gain of a hypothesis by what it did to the deviations about an earlier base."""
         columns = old.columns if old.columns is not None else old.direction
-        if columns is None:
+        if columns is None or columns.shape[0] != self.fit.deviations.size:
+            # That base weighed other lines.
             return float("inf")
         slopes = np.asarray(columns, dtype=np.float64).reshape(self.fit.deviations.size, -1)
         normal, slope = self._projected(slopes, self.fit.deviations)
