@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated
 
@@ -123,7 +124,8 @@ def challenge_score(folder: Folder, as_json: Json = False) -> None:
             "in_class": s.in_class,
             "false_name": s.false_name,
             "harmed": s.harmed,
-            "seconds": s.seconds,
+            # A verdict that was not made by `run` has no time.
+            "seconds": s.seconds if math.isfinite(s.seconds) else None,
         }
         for s in scored
     ]

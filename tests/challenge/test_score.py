@@ -12,7 +12,9 @@ from permway.challenge.effects import Site
 from permway.challenge.effects.bridge import DeckAttachment
 from permway.challenge.layout import draw_layout, draw_tests
 from permway.challenge.score import interval, score, summary
+from permway.cli import app
 from permway.errors import InputError
+from typer.testing import CliRunner
 
 FAMILIES = {"fastener_loss": "local loss", "mortar_void": "local loss", "sensor_gain": "level"}
 
@@ -142,3 +144,14 @@ def test_intervals_of_shares() -> None:
 def test_a_folder_without_verdicts_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="holds no verdict"):
         score(tmp_path, FAMILIES)
+
+
+def test_scores_of_verdicts_without_times_are_json(tmp_path: Path) -> None:
+    """Such as were made by `permway diagnose`, one by one."""
+    place = folder(
+        tmp_path, {"single-1": (truth(LOST), verdict("named", effect("fastener_loss", "fastener_loss")))}
+    )
+    ended = CliRunner().invoke(app, ["challenge", "score", str(place), "--json"])
+    assert ended.exit_code == 0
+    (case,) = json.loads(ended.stdout)["cases"]
+    assert (case["found"], case["seconds"]) == (True, None)
