@@ -145,10 +145,12 @@ class FrfBlock:
 
     def deviations(self, predicted: xr.Dataset) -> Reals:
         """Real parts, then imaginary parts."""
-        if self._last is None or self._last[0] is not predicted:
+        last = self._last
+        if last is None or last[0] is not predicted:
             d = self.white(self.off(predicted) * self.weight).reshape(-1)
-            self._last = predicted, np.concatenate([d.real, d.imag])
-        return self._last[1]
+            # Another thread may keep its own meanwhile.
+            self._last = last = predicted, np.concatenate([d.real, d.imag])
+        return last[1]
 
     def off(self, predicted: xr.Dataset) -> Complexes:
         """Measured less predicted, in the response's unit, as errors that multiply have it."""

@@ -91,6 +91,15 @@ def _signed(name: str, unit: str, size: float) -> Free:
     return linear_free(name, unit, 0.0, size, -8.0 * size, 8.0 * size)
 
 
+def _hung(k: float, f: float) -> tuple[Free, ...]:
+    """Of what hangs on a body."""
+    return (
+        log_free("mass_kg", "kg", k / (2.0 * np.pi * f) ** 2, 5.0),
+        log_free("frequency_Hz", "Hz", f, 2.0),
+        log_free("loss_factor", "1", 0.1, 2.5),
+    )
+
+
 ELEMENTS = (
     Element(
         "spring",
@@ -130,11 +139,7 @@ ELEMENTS = (
     ),
     Element(
         "resonator",
-        lambda k, f: (
-            log_free("mass_kg", "kg", k / (2.0 * np.pi * f) ** 2, 5.0),
-            log_free("frequency_Hz", "Hz", f, 2.0),
-            log_free("loss_factor", "1", 0.1, 2.5),
-        ),
+        _hung,
         _resonator,
         lambda v: (
             f"a resonator of {v['mass_kg']:.3g} kg at {v['frequency_Hz']:.3g} Hz, loss factor "
@@ -144,11 +149,7 @@ ELEMENTS = (
     ),
     Element(
         "rod",
-        lambda k, f: (
-            log_free("mass_kg", "kg", k / (2.0 * np.pi * f) ** 2, 5.0),
-            log_free("frequency_Hz", "Hz", f, 2.0),
-            log_free("loss_factor", "1", 0.1, 2.5),
-        ),
+        _hung,
         _rod,
         lambda v: (
             f"a standing rod of {v['mass_kg']:.3g} kg, a quarter wave long at {v['frequency_Hz']:.3g} Hz, loss "

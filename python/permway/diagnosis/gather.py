@@ -74,7 +74,6 @@ def _blocked(campaign: Campaign, datasets: Sequence[Dataset], threads: int | Non
             raise InputError(
                 "no line of it can be used",
                 where=f"records.{block.dataset.record.name}",
-                value=f"coherence at most {float(np.nanmax(block.dataset.data['coherence'].values)):.3g}",
                 remedy="look at its coherence, its units and its band",
             )
     blocks += [NoiseBlock(dataset) for dataset in loaded if NoiseBlock.tells(dataset)]

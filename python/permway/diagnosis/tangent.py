@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,9 +16,6 @@ from permway.recordings.campaign import Campaign
 
 STEP = 1e-3
 """Of finite differences, in standard deviations of the prior."""
-
-MOST_THREADS = 4
-"""Slopes that are found at the same time: each holds a prediction of all records."""
 
 
 @dataclass(frozen=True)
@@ -113,24 +108,14 @@ class Problem:
 
     def jacobian(self, state: State) -> Reals:
         """Derivative of the deviations by z: forward differences, solves spared where derivatives do."""
-        nearby = Nearby(self.evidence, state.solved)
-
-        def column(index: int) -> Reals:
-            forward = state.z[index] + STEP <= self.free[index].limits[1]
+        nearby, columns = Nearby(self.evidence, state.solved), []
+        for index, f in enumerate(self.free):
+            forward = state.z[index] + STEP <= f.limits[1]
             try:
-                return self._slope(state, index, STEP if forward else -STEP, nearby)
+                columns.append(self._slope(state, index, STEP if forward else -STEP, nearby))
             except (SolveError, InputError):
                 # A number may stand at the edge of what there can be: then from its other side.
-                return self._slope(state, index, -STEP if forward else STEP, nearby)
-
-        threads = min(self.evidence.threads or os.cpu_count() or 1, MOST_THREADS)
-        if threads == 1 or len(self.free) < 2:
-            columns = [column(index) for index in range(len(self.free))]
-        else:
-            # The first finds the derivatives that all share.
-            columns = [column(0)]
-            with ThreadPoolExecutor(threads) as pool:
-                columns.extend(pool.map(column, range(1, len(self.free))))
+                columns.append(self._slope(state, index, -STEP if forward else STEP, nearby))
         return np.column_stack(columns) if columns else np.zeros((state.deviations.size, 0))
 
     def _slope(self, state: State, index: int, step: float, nearby: Nearby) -> Reals:
