@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue import sensor_gain
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.compete import Ring
@@ -69,6 +71,23 @@ def test_the_right_model_gains_and_the_same_model_does_not(evidence: Evidence) -
     # What was chosen among many has to foretell as much more.
     assert log_e_value(before, after, 100) == pytest.approx(log_e_value(before, after, 1) - np.log(100.0))
     assert log_e_value(before, before, 1) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_levels_are_as_measured_however_large_the_errors_of_pairs(evidence: Evidence) -> None:
+    """What a pair's smooth error explains is taken out of deviations, and not of levels that an engineer reads."""
+    predicted = evidence.predicted(evidence.campaign).datasets
+    sizes, levels = [], []
+    for pair in (1e-4, 1.0):
+        blocks = tuple(b.with_pair(pair) if isinstance(b, FrfBlock) else b for b in evidence.blocks)
+        other = replace(evidence, blocks=blocks)
+        sizes.append(float(np.sqrt(np.mean(other.deviations(predicted) ** 2))))
+        levels.append(other.levels_dB(predicted))
+    assert sizes[1] < 0.5 * sizes[0]
+    np.testing.assert_array_equal(levels[0], levels[1])
+    measured, said = evidence.datasets[0].data["frf"].values, predicted[0]["frf"].values
+    expected = 20.0 * np.log10(np.abs(measured) / np.abs(said)).reshape(-1)
+    np.testing.assert_allclose(levels[0][: expected.size], expected, atol=1e-9)
+    assert np.isnan(levels[0][expected.size : 2 * expected.size]).all()
 
 
 def test_with_nothing_missing_the_e_value_passes_20_once_in_twenty_times_at_most(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from permway.arrays import Reals
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
@@ -28,38 +29,34 @@ FEW = 0.4
 def bases(evidence: Evidence, clock: Clock) -> tuple[Fit, Fit]:
     """The recalibrated base, and the one that the search begins from.
 
-    Where learnt smooth errors do not explain what is left, or do so only with parameters far from what their
-    owner said, responses are taken less seriously, so that what is missing in one place bends the base less.
+    Responses are first taken less seriously: far from the records sharp ones lead astray, and what is missing in
+    one place bends such a base less. The search begins from it where learnt smooth errors do not explain what is
+    left, or do so only with parameters far from what their owner said.
     """
-    rough = recalibrate(evidence, learn=False, reweigh=True, settle=False, progress=lambda _: clock.tick())
+
+    def fitted(to: Evidence, start: Reals | None, *, reweigh: bool = False, learn: bool = False) -> Fit:
+        return recalibrate(
+            to, start=start, learn=learn, reweigh=reweigh, settle=not reweigh, progress=lambda _: clock.tick()
+        )
+
+    searched = fitted(evidence.blunted(BLUNT), None, reweigh=True)
     # What hides in noise, and what spectra weigh, is told by a prediction: by a better one each time.
-    sharp = rough.evidence.reweighed(rough.evidence.predicted(rough.campaign))
-    base = recalibrate(sharp, start=rough.z, reweigh=False, progress=lambda _: clock.tick())
+    about = evidence.predicted(searched.campaign)
+    sharp = evidence.reweighed(about)
+    if searched.heat > NEARLY and sharp.missed(2.0 * BLUNT, about) < FEW:
+        # A few pairs are missed by more than all are blunted by: they are blunted by as much, and lead no longer.
+        searched = fitted(sharp.blunted(BLUNT, about), searched.z)
+        sharp = evidence.reweighed(evidence.predicted(searched.campaign))
+    else:
+        searched = fitted(sharp.blunted(BLUNT), searched.z)
+    base = fitted(sharp, searched.z, learn=True)
+    if not _fits(base) and searched.heat > NEARLY:
+        # Where blunt ones lead nowhere either, the owner's own values may.
+        base = min(base, fitted(sharp, None, learn=True), key=lambda fit: fit.objective)
     if _fits(base):
         base = _refined(base, clock)
         return base, base
-    searched = recalibrate(
-        sharp.blunted(BLUNT), start=rough.z, learn=False, reweigh=False, progress=lambda _: clock.tick()
-    )
-    about = searched.evidence.predicted(searched.campaign)
-    if searched.heat > NEARLY and sharp.missed(2.0 * BLUNT, about) < FEW:
-        # A few pairs are missed by more than all are blunted by: they are blunted by as much, and lead no longer.
-        searched = recalibrate(
-            sharp.blunted(BLUNT, about),
-            start=searched.z,
-            learn=False,
-            reweigh=False,
-            progress=lambda _: clock.tick(),
-        )
-    # A fit that went astray is no measure of what noise hides.
-    sharp = sharp.reweighed(searched.evidence.predicted(searched.campaign))
-    other = recalibrate(sharp, start=searched.z, reweigh=False, progress=lambda _: clock.tick())
-    if _objective(sharp, base) < other.objective:
-        other = recalibrate(sharp, start=base.z, reweigh=False, progress=lambda _: clock.tick())
-    if _fits(other):
-        base = _refined(other, clock)
-        return base, base
-    return other, searched
+    return base, searched
 
 
 def _objective(evidence: Evidence, fit: Fit) -> float:

@@ -56,6 +56,9 @@ class Block(Protocol):
     def deviations(self, predicted: xr.Dataset) -> Reals:
         """Standardised, shape (n,)."""
 
+    def levels_dB(self, predicted: xr.Dataset) -> Reals:
+        """Measured over predicted, no error taken out, shape (n,); NaN where a row is no level, but a phase."""
+
     def of(self, dataset: Dataset) -> Block:
         """Another record of the same channels and lines, with the same errors."""
 

@@ -152,6 +152,12 @@ class FrfBlock:
             self._last = last = predicted, np.concatenate([d.real, d.imag])
         return last[1]
 
+    def levels_dB(self, predicted: xr.Dataset) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`; imaginary parts are phases."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            levels = 20.0 * np.log10(np.abs(self._measured / predicted["frf"].values)).reshape(-1)
+        return np.concatenate([levels, np.full(levels.size, np.nan)])
+
     def off(self, predicted: xr.Dataset) -> Complexes:
         """Measured less predicted, in the response's unit, as errors that multiply have it."""
         model = predicted["frf"].values

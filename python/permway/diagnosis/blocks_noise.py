@@ -91,6 +91,10 @@ class NoiseBlock:
         """Measured less predicted over how far sensors differ."""
         return np.asarray((self.own - np.log(predicted["noise_factor"].values)) / self.scatter)
 
+    def levels_dB(self, predicted: xr.Dataset) -> Reals:
+        """None: noise tells no level."""
+        return np.full(self.own.size, np.nan)
+
     def of(self, dataset: Dataset) -> NoiseBlock:
         """See :class:`permway.diagnosis.blocks.Block`; how far sensors may differ, each test tells itself."""
         return NoiseBlock(dataset)

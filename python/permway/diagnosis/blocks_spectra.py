@@ -128,6 +128,15 @@ class SpectraBlock:
                 found.append(np.log(np.maximum(rest, 1e-12)) / sigma)
         return np.concatenate(found)
 
+    def levels_dB(self, predicted: xr.Dataset) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`; imaginary parts of transfers are phases."""
+        parts = []
+        for what, _, _, at, _ in self._parts:
+            parts.append(np.ones(at.size))
+            if what == "transfer":
+                parts.append(np.full(at.size, np.nan))
+        return np.asarray(self.deviations(predicted) * self.rows.scale_dB * np.concatenate(parts))
+
     def scattered(self, predicted: xr.Dataset) -> SpectraBlock:
         """The same with the scatter of each part learnt from how its lines differ from their neighbours."""
         plain = self.expecting(self._expected, self._noise)

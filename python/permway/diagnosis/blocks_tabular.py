@@ -60,6 +60,13 @@ class TableBlock:
         ratio = np.log((self.measured / predicted[self.name].values).reshape(-1)) / self.sigma
         return np.concatenate([ratio.real, ratio.imag]) if self.complex else np.asarray(ratio)
 
+    def levels_dB(self, predicted: xr.Dataset) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        found = self.deviations(predicted) * self.rows.scale_dB
+        if self.complex:
+            found[found.size // 2 :] = np.nan
+        return np.asarray(found)
+
     def of(self, dataset: Dataset) -> TableBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
         return TableBlock(dataset, scatter_dB=self._scatter, span=self._span)

@@ -138,6 +138,10 @@ class Evidence:
         """Standardised deviations of all rows."""
         return np.concatenate([b.deviations(p) for b, p in zip(self.blocks, predicted, strict=True)])
 
+    def levels_dB(self, predicted: Sequence[xr.Dataset]) -> Reals:
+        """Measured over predicted of all rows, no error taken out; NaN where a row is no level."""
+        return np.concatenate([b.levels_dB(p) for b, p in zip(self.blocks, predicted, strict=True)])
+
     @cached_property
     def columns(self) -> AllColumns:
         """What smooth errors of unit size do to the deviations."""

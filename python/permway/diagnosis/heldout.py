@@ -64,7 +64,7 @@ class Scored:
     log_density : float
         Of the part given the rest, parameters and smooth errors integrated out, nats.
     error_dB : float
-        Root mean square of levels, smooth errors not taken out, where the record knows them to 1 dB.
+        Root mean square of levels as measured, no error of chains taken out, where the record knows them to 1 dB.
     """
 
     log_density: float
@@ -166,17 +166,18 @@ class Rest:
         evidence = self.fit.evidence
         return Whitener.of(evidence.columns.masked(rows), evidence.sizes, evidence.length)
 
-    def _deviations(self, z: Reals) -> Reals | None:
+    def _predicted(self, z: Reals) -> tuple[Reals, list[xr.Dataset]] | None:
+        """Deviations, and the predictions that they are of; None if the model cannot be solved."""
         values = {f.name: f.value(float(v)) for f, v in zip(self.fit.free, z, strict=True)}
         try:
-            predicted = self.fit.evidence.predicted(self.fit.build(values))
+            predicted = self.fit.evidence.predicted(self.fit.build(values)).datasets
         except (InputError, SolveError):
             return None
-        found = self.fit.evidence.deviations(predicted.datasets)
-        return found if np.isfinite(found).all() else None
+        found = self.fit.evidence.deviations(predicted)
+        return (found, predicted) if np.isfinite(found).all() else None
 
-    def fitted(self, rows: np.ndarray) -> tuple[Reals, Reals]:
-        """Values z and all deviations of a fit to some rows."""
+    def fitted(self, rows: np.ndarray) -> tuple[Reals, Reals, Reals]:
+        """Values z, all deviations and all levels in dB of a fit to some rows."""
         fit, whitener = self.fit, self._of(rows)
         jacobian = np.where(rows[:, None], fit.jacobian, 0.0)
         reduced = whitener.reduce(jacobian)
@@ -185,6 +186,7 @@ class Rest:
         known = ~(self._recording & (np.diag(jacobian.T @ jacobian) < OWN * (fit.jacobian**2).sum(axis=0)))
         low, high = np.array([f.limits for f in fit.free]).T
         z, deviations = fit.z, fit.deviations
+        datasets: list[xr.Dataset] | None = None
         value = whitener.square(deviations * rows) / fit.heat + float(z @ z)
         for _ in range(STEPS):
             left = whitener.reduce(deviations * rows)
@@ -193,16 +195,18 @@ class Rest:
             shift[known] = -linalg.solve(normal[np.ix_(known, known)], slope[known], assume_a="pos")
             for share in (1.0, 0.3):
                 tried = np.clip(z + share * shift, low, high)
-                new = self._deviations(tried)
+                new = self._predicted(tried)
                 if new is not None:
-                    objective = whitener.square(new * rows) / fit.heat + float(tried @ tried)
+                    objective = whitener.square(new[0] * rows) / fit.heat + float(tried @ tried)
                     if objective < value:
                         gained, moved = value - objective, True
-                        z, deviations, value = tried, new, objective
+                        z, value, (deviations, datasets) = tried, objective, new
                         break
             if not moved or gained < 0.5:
                 break
-        return z, deviations
+        if datasets is None:
+            datasets = fit.evidence.predicted(fit.campaign).datasets
+        return z, deviations, fit.evidence.levels_dB(datasets)
 
     def scored(self, part: np.ndarray) -> Scored:
         """How well the fit to all else predicts a part.
@@ -211,15 +215,14 @@ class Rest:
         ----------
         part : ndarray of bool, shape (n,)
         """
-        z, deviations = self.fitted(~part)
+        z, deviations, levels = self.fitted(~part)
         rest, fit = self._of(~part), self.fit
         square = self._evidence(self._whole, fit.deviations, fit.z)
         square -= self._evidence(rest, deviations * ~part, z, ~part)
         volume = self._whole.log_determinant - rest.log_determinant + float(self._volume[part].sum())
-        size = fit.evidence.rows.scale_dB[part]
-        sure = size < SURE_DB
-        level = (deviations[part] * size)[sure]
-        error = float(np.sqrt(np.mean(level**2))) if sure.any() else float("nan")
+        level = levels[part][fit.evidence.rows.scale_dB[part] < SURE_DB]
+        level = level[np.isfinite(level)]
+        error = float(np.sqrt(np.mean(level**2))) if level.size else float("nan")
         # A model that does not fit knows so: its deviations are as much larger on what it has not seen.
         spread = float(np.log(fit.heat))
         log_density = -0.5 * (square + volume + spread * float(part.sum()))
