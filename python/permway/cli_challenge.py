@@ -69,19 +69,11 @@ def challenge_rivals(
     answers, and a Gaussian process for what the model lacks.
     """
     from permway.challenge.rivals import answered
-    from permway.challenge.score import score, summary
-    from permway.diagnosis.catalogue import entries
-    from permway.diagnosis.rivals import RIVALS, of_file
+    from permway.diagnosis.rivals import of_file
 
     with progress_bar("rivals", as_json) as progress:
         answered(folder, of_file, workers=workers, progress=progress)
-    families = {name: entry.FAMILY for name, entry in entries().items()}
-    rows = [
-        {"rival": name, **row}
-        for name in RIVALS
-        for row in summary(score(folder, families, folder / "rivals" / name))
-    ]
-    say({"rivals": rows}, as_json)
+    say({"rivals": _rivals(folder)}, as_json)
 
 
 @challenges.command("weigh", epilog=examples("permway challenge weigh cases --workers 2"))
@@ -107,6 +99,56 @@ def challenge_weigh(
 @challenges.command("score", epilog=examples("permway challenge score cases --json"))
 def challenge_score(folder: Folder, as_json: Json = False) -> None:
     """Hold the verdicts against the truths."""
+    say(_scores(folder), as_json)
+
+
+@challenges.command(
+    "suite", epilog=examples("permway challenge suite -o suite --seed 600000 --cases 20 --workers 2")
+)
+def challenge_suite(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for all of it.")],
+    seed: Annotated[int, typer.Option(min=0, help="Of the first campaign; tiers begin a thousand apart.")],
+    cases: Annotated[
+        int | None, typer.Option(min=1, help="How many, tiers mixed by their share; by default all.")
+    ] = None,
+    workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
+    rivals: Annotated[bool, typer.Option("--rivals", help="Let simpler methods answer, too.")] = False,
+    as_json: Json = False,
+) -> None:
+    """All tiers made, diagnosed, weighed and scored.
+
+    175 campaigns, some minutes each. Stopped and called again, it goes on where it was; called with more cases, it
+    adds them. Writes score.json, from which docs/make_challenge.py makes the page of results.
+    """
+    import json
+
+    from permway import __version__
+    from permway.challenge.suite import run_suite
+    from permway.challenge.weigh import whole
+    from permway.diagnosis.deviance import of_folders
+    from permway.diagnosis.rivals import of_file
+
+    with progress_bar("suite", as_json) as progress:
+        result = run_suite(
+            output,
+            seed,
+            of_folders,
+            cases=cases,
+            ask=of_file if rivals else None,
+            workers=workers,
+            progress=progress,
+        )
+    count = "" if cases is None else f" --cases {cases}"
+    command = f"permway challenge suite -o suite --seed {seed}{count}{' --rivals' if rivals else ''}"
+    scores = {"version": __version__, "seed": seed, "commands": [command], **_scores(output)}
+    if rivals:
+        scores["rivals"] = _rivals(output)
+    whole(output / "score.json", json.dumps(scores, indent=1) + "\n")
+    say({**result, "scores": str(output / "score.json")}, as_json)
+
+
+def _scores(folder: Path) -> dict[str, object]:
+    """By tier, and case by case."""
     from permway.challenge.score import score, summary
     from permway.diagnosis.catalogue import entries
 
@@ -129,4 +171,18 @@ def challenge_score(folder: Folder, as_json: Json = False) -> None:
         }
         for s in scored
     ]
-    say({"tiers": summary(scored), "cases": cases}, as_json)
+    return {"tiers": summary(scored), "cases": cases}
+
+
+def _rivals(folder: Path) -> list[dict[str, object]]:
+    """Scores of the rivals, by tier."""
+    from permway.challenge.score import score, summary
+    from permway.diagnosis.catalogue import entries
+    from permway.diagnosis.rivals import RIVALS
+
+    families = {name: entry.FAMILY for name, entry in entries().items()}
+    return [
+        {"rival": name, **row}
+        for name in RIVALS
+        for row in summary(score(folder, families, folder / "rivals" / name))
+    ]

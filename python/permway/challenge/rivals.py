@@ -46,15 +46,25 @@ def answered(folder: Path, ask: Ask, *, workers: int = 1, progress: Progress | N
     campaigns = {p.parent.parent.name: p for p in sorted(folder.glob("verdicts/*/campaign/campaign.toml"))}
     if not campaigns:
         raise InputError("holds no campaign that was run", where=str(folder), remedy="permway challenge run")
-    there = {p.parent.name for p in folder.glob(f"{ANSWERS}/*/*/verdict.json")}
-    todo = {name: path for name, path in campaigns.items() if name not in there}
+    todo = [name for name in campaigns if not _there(folder, name)]
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        jobs = {pool.submit(ask, path): name for name, path in todo.items()}
+        jobs = [pool.submit(answer, folder, name, ask) for name in todo]
         for done, job in enumerate(as_completed(jobs), start=1):
-            for rival, answer in job.result().items():
-                target = folder / ANSWERS / rival / jobs[job]
-                target.mkdir(parents=True, exist_ok=True)
-                whole(target / "verdict.json", json.dumps(answer, indent=1) + "\n")
+            job.result()
             if progress is not None:
                 progress(done, len(todo))
     return len(campaigns)
+
+
+def answer(folder: Path, name: str, ask: Ask) -> None:
+    """Let rivals answer on one campaign that was run, unless they have."""
+    if _there(folder, name):
+        return
+    for rival, said in ask(folder / "verdicts" / name / "campaign" / "campaign.toml").items():
+        target = folder / ANSWERS / rival / name
+        target.mkdir(parents=True, exist_ok=True)
+        whole(target / "verdict.json", json.dumps(said, indent=1) + "\n")
+
+
+def _there(folder: Path, name: str) -> bool:
+    return any(folder.glob(f"{ANSWERS}/*/{name}/verdict.json"))

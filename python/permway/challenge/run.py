@@ -50,13 +50,13 @@ def run(
         raise InputError("holds no campaign", where=str(folder), remedy="permway challenge make")
     results = folder / "verdicts"
     results.mkdir(exist_ok=True)
-    threads = max(1, (os.cpu_count() or 1) // workers)
+    threads = threads_of(workers)
     done = 0
 
     def one(case: Path) -> bool:
         nonlocal done
         out = results / case.name
-        fine = (out / VERDICT).is_file() or _diagnosed(case, out, threads, report)
+        fine = (out / VERDICT).is_file() or diagnosed(case, out, threads, report=report)
         done += 1
         if progress is not None:
             progress(done, len(cases))
@@ -67,9 +67,14 @@ def run(
     return {"verdicts": sum(fine), "failed": len(fine) - sum(fine)}
 
 
-def _diagnosed(case: Path, out: Path, threads: int, report: bool) -> bool:
+def threads_of(workers: int) -> int:
+    """Each worker's share of the processors."""
+    return max(1, (os.cpu_count() or 1) // workers)
+
+
+def diagnosed(case: Path, out: Path, threads: int, *, report: bool = False) -> bool:
     """Import and diagnose one campaign; what went wrong is kept beside where the verdict would be."""
-    out.mkdir(exist_ok=True)
+    out.mkdir(parents=True, exist_ok=True)
     campaign = out / "campaign"
     commands = []
     if not (campaign / "campaign.toml").is_file():

@@ -56,22 +56,28 @@ def weigh(
     if not truths:
         raise InputError("holds no truth", where=str(folder), remedy="permway challenge make")
     known = weights(folder)
-    concealed = {path.stem: json.loads(path.read_text()) for path in truths}
-    todo = {name: truth for name, truth in concealed.items() if truth["effects"] and name not in known}
-    (folder / WEIGHTS).mkdir(exist_ok=True)
+    todo = [path.stem for path in truths if path.stem not in known and json.loads(path.read_text())["effects"]]
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        jobs: dict[Future[list[float]], str] = {
-            pool.submit(_weighed, folder / name, truth["seed"], truth["tier"], deviance): name
-            for name, truth in todo.items()
-        }
+        jobs: list[Future[float | None]] = [pool.submit(weigh_one, folder, name, deviance) for name in todo]
         for done, job in enumerate(as_completed(jobs), start=1):
-            name = jobs[job]
-            known[name], *each = job.result()
-            kept = {"deviance": known[name], "each": each}
-            whole(folder / WEIGHTS / f"{name}.json", json.dumps(kept) + "\n")
+            job.result()
             if progress is not None:
                 progress(done, len(todo))
-    return known
+    return weights(folder)
+
+
+def weigh_one(folder: Path, name: str, deviance: Deviance) -> float | None:
+    """Weigh one campaign, if it conceals anything and has not been weighed: its deviance."""
+    kept = folder / WEIGHTS / f"{name}.json"
+    if kept.is_file():
+        return float(json.loads(kept.read_text())["deviance"])
+    truth = json.loads((folder / "truth" / f"{name}.json").read_text())
+    if not truth["effects"]:
+        return None
+    found, *each = _weighed(folder / name, truth["seed"], truth["tier"], deviance)
+    kept.parent.mkdir(exist_ok=True)
+    whole(kept, json.dumps({"deviance": found, "each": each}) + "\n")
+    return found
 
 
 def whole(path: Path, text: str) -> None:

@@ -1,0 +1,121 @@
+"""The whole proof: campaigns of all tiers made, diagnosed, weighed, answered by rivals and scored."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+
+from permway.challenge.case import Tier
+from permway.challenge.make import make
+from permway.challenge.rivals import Ask, answer
+from permway.challenge.run import FAILED, VERDICT, diagnosed, threads_of
+from permway.challenge.weigh import Deviance, weigh_one, whole
+from permway.errors import InputError, SolveError
+
+CASES: dict[Tier, int] = {
+    "null": 40,
+    "single": 60,
+    "twin": 20,
+    "multiple": 20,
+    "outside": 20,
+    "nonlinear": 15,
+}
+"""Campaigns of the whole suite, by tier."""
+
+APART = 1000
+"""Between the first seeds of two tiers."""
+
+Progress = Callable[[int, int], object]
+
+
+@dataclass(frozen=True)
+class Numbered:
+    """A campaign that is yet to be drawn."""
+
+    tier: Tier
+    seed: int
+
+    @property
+    def name(self) -> str:
+        """Of its folder."""
+        return f"{self.tier}-{self.seed}"
+
+
+def suite_of(seed: int) -> list[Numbered]:
+    """All campaigns of a suite, tiers so mixed that every beginning has of each its share.
+
+    Parameters
+    ----------
+    seed : int
+        Of the first tier; each further tier begins a thousand later.
+    """
+    placed = [
+        ((index + 0.5) / count, Numbered(tier, seed + APART * order + index))
+        for order, (tier, count) in enumerate(CASES.items())
+        for index in range(count)
+    ]
+    return [one for _, one in sorted(placed, key=lambda pair: pair[0])]
+
+
+def run_suite(
+    folder: Path,
+    seed: int,
+    deviance: Deviance,
+    *,
+    cases: int | None = None,
+    ask: Ask | None = None,
+    workers: int = 1,
+    progress: Progress | None = None,
+) -> dict[str, int]:
+    """Bring campaigns of a suite to their scores, those first that come first; what is there is left as it is.
+
+    Parameters
+    ----------
+    folder : Path
+        Gets campaigns, truths, verdicts, weights and answers.
+    seed : int
+    deviance : callable
+        See :func:`permway.challenge.weigh.weigh`.
+    cases : int, optional
+        How many of them; by default all.
+    ask : callable, optional
+        See :func:`permway.challenge.rivals.answered`; without it no rival answers.
+    workers : int
+        Campaigns at the same time.
+    progress : callable, optional
+        Called with campaigns done and how many there are.
+
+    Returns
+    -------
+    dict
+        How many have a verdict, and how many failed.
+    """
+    chosen = suite_of(seed)[:cases]
+    fine = 0
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        jobs = [pool.submit(_one, Path(folder), one, threads_of(workers), deviance, ask) for one in chosen]
+        for done, job in enumerate(as_completed(jobs), start=1):
+            fine += job.result()
+            if progress is not None:
+                progress(done, len(chosen))
+    return {"verdicts": fine, "failed": len(chosen) - fine}
+
+
+def _one(folder: Path, one: Numbered, threads: int, deviance: Deviance, ask: Ask | None) -> bool:
+    """Make, diagnose, weigh and let rivals answer."""
+    if not (folder / "truth" / f"{one.name}.json").is_file():
+        make(one.seed, 1, one.tier, folder)
+    verdict = folder / "verdicts" / one.name / VERDICT
+    if not verdict.is_file() and not diagnosed(folder / one.name, verdict.parent, threads):
+        return False
+    try:
+        weigh_one(folder, one.name, deviance)
+        if ask is not None:
+            answer(folder, one.name, ask)
+    except (InputError, SolveError) as error:
+        whole(verdict.with_name(FAILED), f"weighing, or a rival: {error}\n")
+        return False
+    return True

@@ -1,0 +1,67 @@
+"""A suite: its order, what it leaves alone, and what it writes."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from permway.challenge import suite as module
+from permway.challenge.rivals import ANSWERS
+from permway.challenge.run import FAILED, VERDICT
+from permway.challenge.suite import CASES, run_suite, suite_of
+from permway.errors import SolveError
+
+
+def test_every_beginning_has_of_each_tier_its_share() -> None:
+    everything = suite_of(700000)
+    assert Counter(one.tier for one in everything) == CASES
+    assert len({one.name for one in everything}) == sum(CASES.values())
+    assert len({one.seed for one in everything}) == sum(CASES.values())
+    for count in (12, 35, 100):
+        begun = Counter(one.tier for one in everything[:count])
+        for tier, whole in CASES.items():
+            assert abs(begun[tier] - count * whole / sum(CASES.values())) <= 1.0
+
+
+def always(_: Path, __: Path) -> float:
+    return 77.0
+
+
+def never(_: Path, __: Path) -> float:
+    raise SolveError("no such model")
+
+
+def same(_: Path) -> dict[str, Any]:
+    return {"always": {"status": "named", "effects": [], "held_out": {}}}
+
+
+def finished(folder: Path, count: int) -> None:
+    """Campaigns of a suite that were made and diagnosed before."""
+    for one in suite_of(1)[:count]:
+        verdict = folder / "verdicts" / one.name
+        (verdict / "campaign").mkdir(parents=True)
+        (verdict / VERDICT).write_text('{"status": "recalibrated", "effects": [], "held_out": {}}')
+        (folder / "truth").mkdir(exist_ok=True)
+        truth = {"effects": [], "seed": one.seed, "tier": one.tier}
+        (folder / "truth" / f"{one.name}.json").write_text(json.dumps(truth))
+
+
+def test_what_is_there_is_left_alone_and_only_what_was_asked_for_is_done(tmp_path: Path) -> None:
+    finished(tmp_path, 3)
+    seen: list[tuple[int, int]] = []
+    done = run_suite(tmp_path, 1, always, cases=3, ask=same, progress=lambda *at: seen.append(at))
+    assert done == {"verdicts": 3, "failed": 0}
+    assert seen == [(1, 3), (2, 3), (3, 3)]
+    assert len(list(tmp_path.glob(f"{ANSWERS}/always/*/verdict.json"))) == 3
+    assert not list(tmp_path.glob("*/sheet.json"))
+
+
+def test_what_cannot_be_weighed_is_kept_with_its_reason(tmp_path: Path) -> None:
+    finished(tmp_path, 1)
+    one = suite_of(1)[0]
+    truth = tmp_path / "truth" / f"{one.name}.json"
+    truth.write_text(json.dumps({"effects": [{"id": "x"}], "seed": 3, "tier": "single"}))
+    assert not module._one(tmp_path, one, 1, never, None)
+    assert "no such model" in (tmp_path / "verdicts" / one.name / FAILED).read_text()
