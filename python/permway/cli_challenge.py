@@ -66,7 +66,7 @@ def challenge_rivals(
     """What simpler methods say, scored on the same campaigns.
 
     Of campaigns that were run: recalibration alone, the smallest residual, BIC with independent errors, random
-    answers, and a Gaussian process for what the model lacks.
+    answers, a Gaussian process for what the model lacks, and a classifier trained on simulations.
     """
     from permway.challenge.rivals import answered
     from permway.diagnosis.rivals import of_file

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import json
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from permway.challenge.rivals import answered
 from permway.challenge.score import score
+from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.catalogue._interval import weakened
+from permway.diagnosis.classifier import Classifier
+from permway.diagnosis.compete import Ring
 from permway.diagnosis.discrepancy import discrepancy
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
+from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.locate import scanned
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.rivals import NONE, RIVALS, independent, rivals
 from permway.errors import InputError
@@ -81,3 +88,28 @@ def test_answers_are_kept_once_and_scored(tmp_path: Path) -> None:
     assert scored.status == "named"
     with pytest.raises(InputError, match="no campaign that was run"):
         answered(tmp_path / "truth", same)
+
+
+def test_a_classifier_knows_again_what_it_was_trained_on(tmp_path: Path) -> None:
+    """Of simulations that it has not seen, and thirty effects or none to choose from."""
+    fit = independent_fit(simulate(tmp_path / "c", 3).campaign)
+    ring = Ring(fit)
+    screened = [ring.screen(h) for h in hypotheses(Situation(fit, scanned(fit)))]
+    trained = Classifier(ring, [quick for quick in screened if np.isfinite(quick.gain)])
+    random = np.random.default_rng(77)
+    drawn = ["", *trained.known] * 3
+    right = [trained.says(trained.simulate(name, random)) == name for name in drawn]
+    assert len(trained.known) > 15
+    # Half of the sizes are too small to be seen beside smooth errors.
+    assert np.mean(right) > 5.0 / len(set(drawn))
+    answer = trained.answer(trained.simulate("fastener_loss", random))
+    assert answer is None or answer in screened
+
+
+def test_without_its_library_a_classifier_says_what_to_install(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "sklearn.ensemble", None)
+    ring = Ring(independent_fit(simulate(tmp_path / "c", 3).campaign))
+    with pytest.raises(InputError, match=r"pip install 'permway\[challenge\]'"):
+        Classifier(ring, [])

@@ -17,6 +17,7 @@ import numpy as np
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue import hypotheses
+from permway.diagnosis.classifier import Classifier
 from permway.diagnosis.compete import Quick, Ring
 from permway.diagnosis.discrepancy import Discrepancy, discrepancy
 from permway.diagnosis.evidence import Evidence
@@ -40,6 +41,7 @@ RIVALS = (
     "BIC, independent errors",
     "random answers",
     "Gaussian process",
+    "classifier",
 )
 
 Progress = Callable[[str, int, int], object]
@@ -90,7 +92,8 @@ def rivals(
     random = np.random.default_rng(int.from_bytes(hashlib.sha256(text).digest()[:8], "big"))
     drawn = screened[int(random.integers(len(screened)))]
     quicks = (None, best, by_bic if missing else None, drawn if random.random() < CALLED else None)
-    answers = [*(_answer(quick) for quick in quicks), _of_process(discrepancy(fit))]
+    learnt = Classifier(ring, screened, seed=seed).answer(fit.deviations)
+    answers = [*(_answer(quick) for quick in quicks), _of_process(discrepancy(fit)), _answer(learnt)]
     return dict(zip(RIVALS, answers, strict=True))
 
 
