@@ -100,6 +100,8 @@ class Hypothesis:
         The parameter that says how strong the effect is; "" if none does.
     none : float
         The value of `size` at which there is no effect.
+    variant : str
+        What tells forms of the effect apart that have the same parameters.
     """
 
     entry: str
@@ -112,11 +114,12 @@ class Hypothesis:
     law: Callable[[Mapping[str, float]], str] = field(default=lambda _: "")
     size: str = ""
     none: float = 0.0
+    variant: str = ""
 
     @property
     def form(self) -> tuple[str, ...]:
         """Effect and names of parameters: joints that are cut and joints that bend are two forms of one effect."""
-        return self.entry, self.family, *(f.name for f in self.free)
+        return self.entry, self.family, self.variant, *(f.name for f in self.free)
 
 
 class Entry(Protocol):

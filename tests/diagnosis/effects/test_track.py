@@ -239,6 +239,25 @@ def test_what_is_put_in_is_named_and_measured(
         assert abs(found[name] - values[name]) <= share * (1.0 if in_metres else abs(values[name])), (name, found)
 
 
+def test_absorbers_of_a_stretch_between_fasteners_are_told_from_others(
+    situations: Callable[[str], tuple[Situation, Campaign]], tmp_path: Path
+) -> None:
+    """Where they begin and end, and that they do not hang at the fasteners themselves."""
+    offered = list(entries()["rail_absorber"].hypotheses(situations("viaduct")[0]))
+    inject = next(h for h in offered if "between" in h.variant and "length_m" in {f.name for f in h.free}).amend
+    values = {"mass_kg": 6.0, "frequency_Hz": 110.0, "loss_factor": 0.1, "centre_m": 6.3, "length_m": 4.8}
+    fit, situation = of(read(tmp_path, "viaduct"), 3, partial(_put, inject, values))
+    ring = Ring(fit)
+    found = [ring.full(ring.quick(h), most_steps=15) for h in entries()["rail_absorber"].hypotheses(situation)]
+    best = min(range(len(offered)), key=lambda index: found[index].objective)
+    assert "between" in offered[best].variant
+    other = min(f.objective for f, h in zip(found, offered, strict=True) if h.form != offered[best].form)
+    assert other - found[best].objective > 9.0
+    for end in (-0.5, 0.5):
+        said, true = (v["centre_m"] + end * v["length_m"] for v in (found[best].values(), values))
+        assert abs(said - true) < 0.35
+
+
 @pytest.mark.injection
 @pytest.mark.parametrize("factor", [0.3, 3.0])
 def test_a_bearing_apart_is_found(
