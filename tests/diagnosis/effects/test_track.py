@@ -258,6 +258,41 @@ def test_absorbers_of_a_stretch_between_fasteners_are_told_from_others(
         assert abs(said - true) < 0.35
 
 
+def test_slabs_cut_at_fasteners_are_told_by_their_length(
+    situations: Callable[[str], tuple[Situation, Campaign]], tmp_path: Path
+) -> None:
+    """The fastener over a cut holds both ends by halves: no cut beside it does the same."""
+    offered = list(entries()["slab_joints"].hypotheses(situations("viaduct")[0]))
+    shared = [h for h in offered if "dowels_N_per_m" in {f.name for f in h.free}]
+    lengths = [next(f for f in h.free if f.name == "length_m").value(0.0) for h in shared]
+    assert len(shared) > 2
+    for index in (0, len(shared) - 1):
+        values = {"length_m": lengths[index], "dowels_N_per_m": 1e5}
+        fit, situation = of(read(tmp_path / str(index), "viaduct"), 3, partial(_put, shared[index].amend, values))
+        ring = Ring(fit)
+        quick = [ring.quick(h) for h in entries()["slab_joints"].hypotheses(situation)]
+        best = max(quick, key=lambda q: q.gain)
+        assert best.values.keys() == values.keys()
+        assert best.values["length_m"] == pytest.approx(lengths[index])
+        assert best.values["dowels_N_per_m"] < 1e8
+
+
+def test_no_stiffness_is_lost_or_won_where_a_fastener_holds_two_ends(
+    situations: Callable[[str], tuple[Situation, Campaign]],
+) -> None:
+    situation, base = situations("viaduct")
+    whole = base.model.line.joint_table()
+    for hypothesis in entries()["slab_joints"].hypotheses(situation):
+        values = middle(hypothesis, 0.0)
+        if "dowels_N_per_m" not in values:
+            continue
+        line = hypothesis.amend(base, values).model.line
+        table = line.joint_table()
+        for index, law in enumerate(base.model.line.laws):
+            assert list(line.laws)[index] == law
+            assert table.scale[table.law == index].sum() == pytest.approx(whole.scale[whole.law == index].sum())
+
+
 @pytest.mark.injection
 @pytest.mark.parametrize("factor", [0.3, 3.0])
 def test_a_bearing_apart_is_found(

@@ -8,24 +8,28 @@ from itertools import pairwise
 import numpy as np
 
 from permway.arrays import Reals
-from permway.diagnosis.catalogue._change import with_fields
+from permway.diagnosis.catalogue._change import fresh, with_factors, with_fields, with_joints
 from permway.diagnosis.catalogue._roles import fasteners, reaches, slabs, spacing
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free, log_free
+from permway.laws import Hysteretic
 from permway.model.bodies import Beam, BeamChange
+from permway.model.joints import Joints
 from permway.model.segments import Segment
+from permway.model.stations import MEETINGS
 from permway.recordings.campaign import Campaign
 
 ID = "slab_joints"
 DOMAIN: Domain = "path"
 FAMILY = "slab"
 SUMMARY = (
-    "At every length L of slab a cut, over which nothing passes, or a joint that bends as easily as so many "
-    "metres of slab and holds against shear."
+    "At every length L of slab a cut, over which nothing passes or dowels hold against shear, or a joint that "
+    "bends as easily as so many metres of slab."
 )
 PARAMETERS = {
     "length_m": "m, 1.5 to 26: from joint to joint",
     "offset": "1, -0.5 to 0.5: place of the joints, in lengths from the slab's start",
+    "dowels_N_per_m": "N/m, 1e3 to 1e13: shear stiffness of the dowels of one cut",
     "flexibility_m": "m: of slab, that bend as much as one joint",
 }
 SIGNATURE = "Responses of slab and rail, above the slab's resonance on its bed, by place in the pattern of joints."
@@ -36,6 +40,12 @@ CONFUSED_WITH = {
 SOURCE = "Esveld, Modern Railway Track (2001): prefabricated slab track"
 JOINT_M = 0.1
 """Length over which the bending stiffness is lowered."""
+
+TOUCHING_M, APART_M = 0.05, 0.002
+"""How near a cut is at a fastener, and how far apart the two ends are put that share it."""
+
+DOWEL_LOSS = 0.05
+"""Loss factor of dowels."""
 
 SHORT = 0.25
 """Of the length of a slab: shorter pieces at the ends are no slabs of their own."""
@@ -56,7 +66,7 @@ LONGEST_M = 12.0
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
-    """Two for each row of slabs that are long."""
+    """For each row of slabs that are long: cuts and bending joints anywhere, and cuts at fasteners."""
     line = situation.campaign.model.line
     for name in slabs(line):
         segments = reaches(line, name)
@@ -66,6 +76,9 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             starts = [*_usual(longest), *(start for x in above for start in _between(x, longest))]
             yield _cut(name, segments, starts)
             yield _bending(name, segments, starts)
+            for x in above:
+                for length in _whole_bays(spacing(x), longest):
+                    yield _at_fasteners(name, segments, length, float(x.min()) - longest.start)
 
 
 def _usual(slab: Segment) -> Iterator[tuple[float, float]]:
@@ -83,6 +96,15 @@ def _between(x: Reals, slab: Segment) -> Iterator[tuple[float, float]]:
         for side in (0.5, -0.5):
             offset = (x.min() + side * bay - slab.start) / length
             yield length, float(offset - np.round(offset))
+
+
+def _whole_bays(bay: float, slab: Segment) -> Iterator[float]:
+    """Lengths of whole bays that divide the slab evenly, or are next to a usual one."""
+    extent = slab.stop - slab.start
+    for count in range(int(np.ceil(SHORTEST_M / bay)), int(LONGEST_M / bay) + 1):
+        parts = extent / (count * bay)
+        if abs(parts - round(parts)) < 1e-6 or any(abs(count * bay - usual) <= 0.5 * bay for usual in USUAL_M):
+            yield count * bay
 
 
 def _joints(segment: Segment, values: Mapping[str, float]) -> list[float]:
@@ -121,6 +143,61 @@ def _cut(name: str, segments: list[Segment], tried: list[tuple[float, float]]) -
         locate=lambda _: Where(what=name),
         starts=tuple(_start(*one) for one in tried),
         law=lambda v: f"cut through every {v['length_m']:.3g} m",
+        size="length_m",
+        none=np.inf,
+    )
+
+
+def _at_fasteners(name: str, segments: list[Segment], length: float, start: float) -> Hypothesis:
+    """Cut through at fasteners, each of which then holds both ends by halves, as does the bed; dowels or none.
+
+    Which fasteners, no slope tells: a hypothesis for each length of so many bays.
+    """
+
+    def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
+        shared = dict(
+            values, offset=start / length, length_m=length if np.isfinite(values["length_m"]) else np.inf
+        )
+        line = campaign.model.line
+        x = np.array([joint for segment in segments for joint in _joints(segment, shared)])
+        if x.size == 0:
+            return campaign
+        halves = []
+        table = line.joint_table()
+        for index, layer in enumerate(line.joints):
+            at = (table.layer == index) & (np.abs(table.x[:, None] - x).min(axis=1) < TOUCHING_M)
+            if name in layer.between and at.any():
+                scale = 0.5 * float(table.scale[at].mean())
+                places = tuple(float(one) for one in np.unique(table.x[at]) - APART_M)
+                halves.append(Joints(between=layer.between, law=layer.law, at=places, scale=scale))
+        for law in {half.law for half in halves}:
+            campaign = with_factors(
+                campaign, law, lambda at: np.where(np.abs(at[:, None] - x).min(axis=1) < TOUCHING_M, 0.5, 1.0)
+            )
+        pieces: list[tuple[float, float]] = []
+        for segment in segments:
+            cuts = [one - 0.5 * APART_M for one in _joints(segment, shared)]
+            pieces += pairwise([segment.start, *cuts, segment.stop])
+        campaign = with_fields(campaign, name, intervals_m=tuple(pieces), modes=None)
+        law = fresh("dowels", line.laws)
+        dowels = Joints(between=(name, name), law=law, at=MEETINGS)
+        stiffness = Hysteretic(stiffness=values["dowels_N_per_m"], loss_factor=DOWEL_LOSS)
+        return with_joints(campaign, *halves, dowels, laws={law: stiffness})
+
+    return Hypothesis(
+        entry=ID,
+        domain=DOMAIN,
+        family=FAMILY,
+        free=(
+            linear_free("length_m", "m", length, 0.1 * TOUCHING_M, length - TOUCHING_M, length + TOUCHING_M),
+            log_free("dowels_N_per_m", "N/m", 1e8, 10.0),
+        ),
+        amend=amend,
+        locate=lambda _: Where(what=name),
+        starts=((0.0, -2.0), (0.0, 1.0)),
+        law=lambda v: (
+            f"cut through every {v['length_m']:.3g} m, at fasteners, dowels of {v['dowels_N_per_m']:.2g} N/m"
+        ),
         size="length_m",
         none=np.inf,
     )
