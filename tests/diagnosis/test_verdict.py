@@ -90,7 +90,14 @@ def test_every_key_of_the_design_is_in_the_file_in_its_order() -> None:
         "next",
         "detectable",
     ]
-    assert list(table["evidence"]) == ["bic_gain", "log10_bayes_factor", "e_value", "false_alarm_threshold"]
+    assert list(table["evidence"]) == [
+        "bic_gain",
+        "log10_bayes_factor",
+        "e_value",
+        "false_alarm_threshold",
+        "misfit_before",
+        "misfit_after",
+    ]
     assert set(table["evidence"].values()) == {None}
     (effect,) = json.loads(NAMED.to_json())["effects"]
     assert list(effect) == ["domain", "place", "bands", "name", "class", "law", "parameters"]
@@ -208,6 +215,16 @@ def test_a_size_is_seen_on_the_side_away_from_no_effect() -> None:
     assert smallest("deck_attachment", SMALLEST["deck_attachment"]).endswith("mass_kg above 400 kg")
     stiffer = Smallest(parameter="factor", value=1.01, unit="1", none=1.0)
     assert smallest("bearing_stiffness", stiffer).endswith("factor more than 1 % above 1")
+
+
+@pytest.mark.parametrize("status", ["named", "measurement", "described", "located"])
+def test_a_model_that_leaves_something_says_that_it_is_not_all(status: str) -> None:
+    open_end = Weight(bic_gain=300.0, misfit_before=90.0, misfit_after=74.4)
+    words = "this is not all of it: what is left has 74.4 times the mean square that errors explain."
+    found = verdict(status, effects=(LOST,), evidence=open_end).sentence
+    assert found.endswith(words) == (status != "located")
+    fits = open_end.model_copy(update={"misfit_after": 1.2})
+    assert "not all of it" not in verdict(status, effects=(LOST,), evidence=fits).sentence
 
 
 def test_nothing_missing_in_one_sentence() -> None:

@@ -42,7 +42,7 @@ from permway.report.diagnosis.changes import changes, most_changed
 from permway.report.diagnosis.law import law_picture
 from permway.report.diagnosis.page import render
 from permway.report.diagnosis.pictures import pictures
-from permway.report.diagnosis.tables import candidate_rows, change_table, held_out_rows, parameter_rows
+from permway.report.diagnosis.tables import candidate_rows, change_table, headline, held_out_rows, parameter_rows
 from permway.report.diagnosis.track import drawing
 from permway.report.diagnosis.where import groups, track_picture
 from permway.report.readout import Drawn
@@ -404,3 +404,13 @@ def test_parameters_say_where_they_went(diagnosis: Diagnosis) -> None:
         assert low <= moved_before[name].value <= high
         assert row["before_span"]
     assert list(rows) == [f.name for f in diagnosis.base.free]
+
+
+def test_the_page_says_that_something_is_left() -> None:
+    effect = Effect(domain="path", place=Place(joint="pad"), name="fastener_loss")
+    for left, said in ((1.1, False), (74.4, True)):
+        verdict = Verdict(
+            status="named", effects=(effect,), evidence=Weight(misfit_before=90.0, misfit_after=left)
+        )
+        words = [f"{value} {text}" for value, text in headline(verdict)]
+        assert any(line.startswith("74.4 ") and "not all of it" in line for line in words) == said

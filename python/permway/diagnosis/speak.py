@@ -78,7 +78,7 @@ def verdict_of(
     fits = (accepted[-1].fit if accepted else base).heat < UNFIT
     last = rounds[-1]
     sizes = decide.detectable(last.ring, last.screened, last.threshold) if fits else {}
-    weight = Weight(false_alarm_threshold=first.threshold)
+    weight = Weight(false_alarm_threshold=first.threshold, misfit_before=base.heat)
     recalibrated = Recalibrated(before=_moved(base))
     if not accepted or proof is None:
         status, effects = _nothing(base, first, found)
@@ -100,6 +100,8 @@ def verdict_of(
             log10_bayes_factor=(amended.log_evidence - base.log_evidence) / np.log(10.0),
             e_value=float(np.exp(min(proof.log_e, np.log(LARGEST_E)))),
             false_alarm_threshold=first.threshold,
+            misfit_before=base.heat,
+            misfit_after=amended.heat,
         ),
         held_out=_held_out(proof.held_out),
         placebo=_held_out(proof.placebo),

@@ -143,6 +143,10 @@ class Weight(VerdictPart):
     """Split-likelihood e-value on records that were not fitted: 20 is the bar."""
     false_alarm_threshold: Number | None = None
     """Gain of BIC that 95 of 100 campaigns of this layout stay below if nothing is missing."""
+    misfit_before: Positive | None = None
+    """Mean square of what the recalibrated base leaves, over what noise and smooth errors explain: 1 fits."""
+    misfit_after: Positive | None = None
+    """The same of the amended model: well above 1 the effects are not all that is missing, or not quite it."""
 
 
 class HeldOutGain(VerdictPart):

@@ -9,6 +9,9 @@ from permway.diagnosis.verdict import Effect, Estimate, HeldOutGain, Smallest, V
 MOST_SIZES = 3
 """Detectable sizes that a sentence names, at most."""
 
+INCOMPLETE = 1.5
+"""Misfit from which an amended model is said not to be all of it."""
+
 STATUS = {
     "recalibrated": "nothing missing",
     "measurement": "fault in the measurement",
@@ -39,17 +42,18 @@ def sentence(verdict: Verdict) -> str:
             words = "Nothing that was tried explains enough of these records to be called missing"
             parts = [words, suspect, _seen(verdict), _advice(verdict)]
         case "named":
-            parts = [_named(verdict.effects[0]), _more(verdict), _better(verdict)]
+            parts = [_named(verdict.effects[0]), _more(verdict), _better(verdict), _open(verdict)]
         case "measurement":
             words = f"The measurement is at fault and no physics is missing: {_named(verdict.effects[0])}"
-            parts = [words, _more(verdict), _better(verdict)]
+            parts = [words, _more(verdict), _better(verdict), _open(verdict)]
         case "ambiguous":
             first = next(i for i, effect in enumerate(verdict.effects) if effect.name is None)
-            parts = [_rivals(verdict.effects[first]), _more(verdict, first), _better(verdict), _advice(verdict)]
+            said = _rivals(verdict.effects[first])
+            parts = [said, _more(verdict, first), _better(verdict), _open(verdict), _advice(verdict)]
         case "described":
             effect = verdict.effects[0]
             words = f"{_at(effect)} acts what the catalogue does not hold: {effect.law.words or 'novel physics'}"
-            parts = [words, _more(verdict), _better(verdict)]
+            parts = [words, _more(verdict), _better(verdict), _open(verdict)]
         case "located":
             words = f"{_at(verdict.effects[0])} physics is missing that these records cannot describe"
             parts = [words, _more(verdict), _better(verdict), _advice(verdict)]
@@ -141,6 +145,14 @@ def _better(verdict: Verdict) -> str:
     before, after = found[1].db_before or 0.0, found[1].db_after or 0.0
     moves = "improves" if after < before else "does not improve:"
     return f"the prediction of held-out records {moves} from {before:.1f} to {after:.1f} dB"
+
+
+def _open(verdict: Verdict) -> str:
+    """That something is left which no error explains."""
+    left = verdict.evidence.misfit_after
+    if left is None or left < INCOMPLETE:
+        return ""
+    return f"this is not all of it: what is left has {quantity(left)} times the mean square that errors explain"
 
 
 def _seen(verdict: Verdict) -> str:

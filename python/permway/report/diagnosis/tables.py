@@ -10,7 +10,7 @@ from permway.diagnosis.catalogue import entries
 from permway.diagnosis.compare import LEFT
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.verdict import Effect, HeldOutGain, Moved, Verdict
-from permway.diagnosis.verdict_words import DOMAIN, STATUS, interval, probability, quantity, size
+from permway.diagnosis.verdict_words import DOMAIN, INCOMPLETE, STATUS, interval, probability, quantity, size
 from permway.report.compare.tables import NOTABLE_DB, BandTable, decibels, signed
 from permway.report.diagnosis.changes import Change
 
@@ -43,6 +43,10 @@ def headline(verdict: Verdict) -> list[tuple[str, str]]:
         found.append((quantity(weight.e_value), f"e-value on held-out records; the bar is {BAR_E_VALUE:g}"))
     if verdict.explained_gap is not None:
         found.append((f"{100.0 * verdict.explained_gap:.0f} %", "of the gap to noise explained"))
+    if weight.misfit_after is not None and weight.misfit_after >= INCOMPLETE:
+        found.append(
+            (quantity(weight.misfit_after), "times the mean square that errors explain is left: not all of it")
+        )
     return found
 
 
