@@ -182,9 +182,9 @@ def _effect(one: Finalist, found: Round, amended: Fit, base: Fit, explained: flo
                 moved = hypothesis.locate({**values, f.name: float(end if end is not None else values[f.name])})
                 ends.extend(moved.x_m or ())
         for other in found.followed:
-            # The same effect elsewhere, which does as well: the records do not tell the two places apart.
+            # The same form elsewhere, which does as well: the records do not tell the two places apart.
             alike = (
-                other.hypothesis.entry == hypothesis.entry and one.quick.gain - other.gain < decide.CLASS_DEVIANCE
+                other.hypothesis.form == hypothesis.form and one.quick.gain - other.gain < decide.CLASS_DEVIANCE
             )
             ends.extend((other.hypothesis.locate(other.values).x_m or ()) if alike else ())
         within = (min(ends), max(ends))

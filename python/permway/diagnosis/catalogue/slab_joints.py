@@ -104,7 +104,7 @@ def _whole_bays(bay: float, slab: Segment) -> Iterator[float]:
     for count in range(int(np.ceil(SHORTEST_M / bay)), int(LONGEST_M / bay) + 1):
         parts = extent / (count * bay)
         if abs(parts - round(parts)) < 1e-6 or any(abs(count * bay - usual) <= 0.5 * bay for usual in USUAL_M):
-            yield count * bay
+            yield round(count * bay, 9)
 
 
 def _joints(segment: Segment, values: Mapping[str, float]) -> list[float]:
@@ -176,7 +176,7 @@ def _at_fasteners(name: str, segments: list[Segment], length: float, start: floa
             )
         pieces: list[tuple[float, float]] = []
         for segment in segments:
-            cuts = [one - 0.5 * APART_M for one in _joints(segment, shared)]
+            cuts = [round(one - 0.5 * APART_M, 9) for one in _joints(segment, shared)]
             pieces += pairwise([segment.start, *cuts, segment.stop])
         campaign = with_fields(campaign, name, intervals_m=tuple(pieces), modes=None)
         law = fresh("dowels", line.laws)
