@@ -11,6 +11,7 @@ from permway.diagnosis.clock import Clock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import Found, Spot, scanned
+from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.recovered import same_place
 from permway.diagnosis.search import Finalist, Round, lines, penalty, search
 
@@ -24,7 +25,7 @@ FOLLOWED = 16
 """Elements that are followed after screening: one step tells little of a law's frequency."""
 
 OPEN = 0.05
-"""Share of the gap to a free stiffness that a named effect may leave before small elements are tried."""
+"""Share of the gap to a free stiffness that a named effect that fits may leave before elements are tried."""
 
 
 class Description:
@@ -79,7 +80,9 @@ class Description:
         if accepted:
             best = accepted[-1].fit
             explained = decide.explained(self.base, best, self.left(best))
-            if accepted[0].hypothesis.domain != "path" or not (explained < 1.0 - OPEN or twice is not None):
+            # Of a large gap a small share may still be far more than errors explain.
+            left = explained < 1.0 - OPEN or best.heat > UNFIT
+            if accepted[0].hypothesis.domain != "path" or not (left or twice is not None):
                 return None
         else:
             best = self.base
