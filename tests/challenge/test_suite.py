@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
+import time
 from collections import Counter
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
+import pytest
 from permway.challenge import suite as module
+from permway.challenge.pool import processes
 from permway.challenge.rivals import ANSWERS
 from permway.challenge.run import FAILED, VERDICT
 from permway.challenge.suite import CASES, run_suite, suite_of
-from permway.errors import SolveError
+from permway.errors import InputError, SolveError
 
 
 def test_every_beginning_has_of_each_tier_its_share() -> None:
@@ -56,6 +60,29 @@ def test_what_is_there_is_left_alone_and_only_what_was_asked_for_is_done(tmp_pat
     assert seen == [(1, 3), (2, 3), (3, 3)]
     assert len(list(tmp_path.glob(f"{ANSWERS}/always/*/verdict.json"))) == 3
     assert not list(tmp_path.glob("*/sheet.json"))
+
+
+def test_a_folder_of_another_suite_is_refused(tmp_path: Path) -> None:
+    finished(tmp_path, 2)
+    with pytest.raises(InputError, match="of another suite"):
+        run_suite(tmp_path, 100000, always, cases=2)
+
+
+def interrupted(jobs: list[Future[None]]) -> None:
+    """Hand out hours of work, and stop once the first has begun."""
+    with processes(1) as pool:
+        jobs += [pool.submit(time.sleep, 3600.0) for _ in range(5)]
+        while not jobs[0].running():
+            time.sleep(0.01)
+        raise KeyboardInterrupt
+
+
+def test_on_an_interrupt_nothing_goes_on() -> None:
+    """Not the job that runs, and none of those that wait; without that this test would take hours."""
+    jobs: list[Future[None]] = []
+    with pytest.raises(KeyboardInterrupt):
+        interrupted(jobs)
+    assert all(job.cancelled() or job.exception() is not None for job in jobs)
 
 
 def test_what_cannot_be_weighed_is_kept_with_its_reason(tmp_path: Path) -> None:

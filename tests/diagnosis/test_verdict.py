@@ -223,6 +223,7 @@ def test_a_model_that_leaves_something_says_that_it_is_not_all(status: str) -> N
     words = "this is not all of it: what is left has 74.4 times the mean square that errors explain."
     found = verdict(status, effects=(LOST,), evidence=open_end).sentence
     assert found.endswith(words) == (status != "located")
+    assert "no physics is missing" not in found
     fits = open_end.model_copy(update={"misfit_after": 1.2})
     assert "not all of it" not in verdict(status, effects=(LOST,), evidence=fits).sentence
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from multiprocessing import get_context
+from concurrent.futures import as_completed
 from pathlib import Path
 from typing import Any
 
+from permway.challenge.pool import processes
 from permway.challenge.weigh import whole
 from permway.errors import InputError
 
@@ -47,7 +47,7 @@ def answered(folder: Path, ask: Ask, *, workers: int = 1, progress: Progress | N
     if not campaigns:
         raise InputError("holds no campaign that was run", where=str(folder), remedy="permway challenge run")
     todo = [name for name in campaigns if not _there(folder, name)]
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with processes(workers) as pool:
         jobs = [pool.submit(answer, folder, name, ask) for name in todo]
         for done, job in enumerate(as_completed(jobs), start=1):
             job.result()

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import dataclass
-from multiprocessing import get_context
 from pathlib import Path
 
 from permway.challenge.case import Tier
 from permway.challenge.make import make
+from permway.challenge.pool import processes
 from permway.challenge.rivals import Ask, answer
 from permway.challenge.run import FAILED, VERDICT, diagnosed, threads_of
 from permway.challenge.weigh import Deviance, weigh_one, whole
@@ -92,10 +92,21 @@ def run_suite(
     -------
     dict
         How many have a verdict, and how many failed.
+
+    Raises
+    ------
+    InputError
+        If the folder holds campaigns of another suite.
     """
+    mine = {one.name for one in suite_of(seed)}
+    others = sorted(path.stem for path in (Path(folder) / "truth").glob("*.json") if path.stem not in mine)
+    if others:
+        raise InputError(
+            "is of another suite", where=str(folder), value=others[0], remedy="give a folder of its own"
+        )
     chosen = suite_of(seed)[:cases]
     fine = 0
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with processes(workers) as pool:
         jobs = [pool.submit(_one, Path(folder), one, threads_of(workers), deviance, ask) for one in chosen]
         for done, job in enumerate(as_completed(jobs), start=1):
             fine += job.result()

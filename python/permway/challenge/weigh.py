@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import Future, as_completed
 from dataclasses import replace
-from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from permway.challenge.case import Case, draw, write
+from permway.challenge.pool import processes
 from permway.errors import InputError
 
 Progress = Callable[[int, int], object]
@@ -57,7 +57,7 @@ def weigh(
         raise InputError("holds no truth", where=str(folder), remedy="permway challenge make")
     known = weights(folder)
     todo = [path.stem for path in truths if path.stem not in known and json.loads(path.read_text())["effects"]]
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with processes(workers) as pool:
         jobs: list[Future[float | None]] = [pool.submit(weigh_one, folder, name, deviance) for name in todo]
         for done, job in enumerate(as_completed(jobs), start=1):
             job.result()

@@ -59,14 +59,6 @@ def bases(evidence: Evidence, clock: Clock) -> tuple[Fit, Fit]:
     return base, searched
 
 
-def _objective(evidence: Evidence, fit: Fit) -> float:
-    """Of a fit's values and sizes of errors, in records that weigh otherwise."""
-    evidence = evidence.with_sizes(fit.evidence.sizes, fit.evidence.length)
-    whitener = evidence.whitener
-    square = whitener.square(evidence.deviations(evidence.predicted(fit.campaign).datasets))
-    return square + evidence.log_determinant + whitener.log_determinant + fit.prior
-
-
 def _fits(base: Fit) -> bool:
     """Whether learnt smooth errors explain what is left, by parameters near what their owner said."""
     return base.heat < NEARLY and base.prior < BENT * len(base.free)

@@ -157,7 +157,7 @@ class HeldOutGain(VerdictPart):
     standard_error: Positive | None = None
     """Of the gain, nats."""
     db_before: Positive | None = None
-    """Root mean square error of levels in one-third octaves, recalibrated, dB."""
+    """Root mean square error of levels as measured, line by line or band by band, recalibrated, dB."""
     db_after: Positive | None = None
     """The same of the amended model, dB."""
 

@@ -44,7 +44,8 @@ def sentence(verdict: Verdict) -> str:
         case "named":
             parts = [_named(verdict.effects[0]), _more(verdict), _better(verdict), _open(verdict)]
         case "measurement":
-            words = f"The measurement is at fault and no physics is missing: {_named(verdict.effects[0])}"
+            sure = "" if _open(verdict) else " and no physics is missing"
+            words = f"The measurement is at fault{sure}: {_named(verdict.effects[0])}"
             parts = [words, _more(verdict), _better(verdict), _open(verdict)]
         case "ambiguous":
             first = next(i for i, effect in enumerate(verdict.effects) if effect.name is None)

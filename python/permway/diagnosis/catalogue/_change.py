@@ -71,7 +71,9 @@ def with_fields(campaign: Campaign, name: str, **fields: Any) -> Campaign:
     return with_line(campaign, bodies={**bodies, name: type(body)(**{**dict(body), **fields})})
 
 
-def with_factors(campaign: Campaign, law: str, factor: Callable[[Reals], Reals]) -> Campaign:
+def with_factors(
+    campaign: Campaign, law: str, factor: Callable[[Reals], Reals], *, holding: str | None = None
+) -> Campaign:
     """The campaign with a factor on every joint of a law, by its place.
 
     Parameters
@@ -79,12 +81,14 @@ def with_factors(campaign: Campaign, law: str, factor: Callable[[Reals], Reals])
     law : str
     factor : callable
         From the places of joints, ascending, shape (J,), to the factors.
+    holding : str, optional
+        Only on joints of this row of bodies.
     """
     line = campaign.model.line
     table = line.joint_table()
     joints = list(line.joints)
     for index, layer in enumerate(joints):
-        if layer.law == law:
+        if layer.law == law and (holding is None or holding in layer.between):
             x = np.unique(table.x[table.layer == index])
             changes = (*layer.changes, *_changes(x, factor(x)))
             joints[index] = layer.model_copy(update={"changes": changes})

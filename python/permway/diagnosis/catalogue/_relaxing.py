@@ -5,11 +5,23 @@ from __future__ import annotations
 import numpy as np
 
 from permway.diagnosis.catalogue._change import with_law
+from permway.diagnosis.fit import Free
+from permway.diagnosis.hypothesis import between_free, log_free
 from permway.laws import Hysteretic, Maxwell, Parallel, Springpot
 from permway.recordings.campaign import Campaign
 
 REFERENCE_HZ = 60.0
 """Where the stiffness is told."""
+
+
+def springpot_free() -> tuple[Free, ...]:
+    """What :func:`relaxing` is made of, as parameters of a hypothesis."""
+    return (
+        log_free("stiffness_factor", "1", 1.0, 1.25),
+        between_free("order", "1", 0.02, 0.8),
+        between_free("share", "1", 0.0, 0.98),
+        between_free("rest", "1", 0.0, 1.0),
+    )
 
 
 def relaxing(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 
-from permway.diagnosis.catalogue._relaxing import relaxing, relaxing_once
+from permway.diagnosis.catalogue._relaxing import relaxing, relaxing_once, springpot_free
 from permway.diagnosis.catalogue._roles import laws_of, pads
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, between_free, log_free
 from permway.laws import Hysteretic
@@ -61,12 +61,7 @@ def _springpot(name: str) -> Hypothesis:
         entry=ID,
         domain=DOMAIN,
         family=FAMILY,
-        free=(
-            log_free("stiffness_factor", "1", 1.0, 1.25),
-            between_free("order", "1", 0.02, 0.8),
-            between_free("share", "1", 0.0, 0.98),
-            between_free("rest", "1", 0.0, 1.0),
-        ),
+        free=springpot_free(),
         amend=amend,
         locate=partial(_at, name),
         starts=((0.0, -0.6, 0.5, -1.0), (0.0, -1.2, 1.2, -1.0), (0.0, 0.2, -0.7, 0.0), (0.0, -1.2, -1.0, 1.0)),

@@ -9,14 +9,13 @@ import numpy as np
 from permway.arrays import ABSOLUTE_ZERO_C
 from permway.diagnosis.catalogue._change import with_law
 from permway.diagnosis.catalogue._pads import factors, measured_under, pad_laws, scaled, with_factors
-from permway.diagnosis.catalogue._relaxing import relaxing
+from permway.diagnosis.catalogue._relaxing import relaxing, springpot_free
 from permway.diagnosis.catalogue._roles import laws_of, pads
 from permway.diagnosis.hypothesis import (
     Domain,
     Hypothesis,
     Situation,
     Where,
-    between_free,
     linear_free,
     log_free,
 )
@@ -129,13 +128,7 @@ def _shifted(name: str) -> Hypothesis:
         entry=ID,
         domain=DOMAIN,
         family=FAMILY,
-        free=(
-            log_free("stiffness_factor", "1", 1.0, 1.25),
-            between_free("order", "1", 0.02, 0.8),
-            between_free("share", "1", 0.0, 0.98),
-            between_free("rest", "1", 0.0, 1.0),
-            log_free("decades_per_10K", "1", 0.6, 1.8),
-        ),
+        free=(*springpot_free(), log_free("decades_per_10K", "1", 0.6, 1.8)),
         amend=amend,
         locate=lambda _: Where(what=name),
         starts=(

@@ -46,9 +46,6 @@ FEWEST = 8
 STRETCHES = ((0.0, 0.9), (0.0, -0.3), (-0.9, -0.5), (0.9, -0.5))
 """Middle and length that a stretch begins with, in standard deviations: most of it, its middle, either end."""
 
-NEXT_TO_NOTHING = 1e-9
-"""Share of a mass that places outside the stretch have."""
-
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """At all fasteners, those on the structure where others stand on the ground, or a stretch's; or between."""
@@ -117,7 +114,7 @@ def _over_a_stretch(rail: str, x: Reals, where: str) -> Hypothesis:
         def within(at: Reals) -> Reals:
             # Fading over one spacing, and flat nowhere beside: slopes tell where the ends should go.
             beyond = (np.abs(at - values["centre_m"]) - 0.5 * values["length_m"]) / spacing(x)
-            return np.asarray(np.clip(1.0 - beyond, NEXT_TO_NOTHING, 1.0).round(12))
+            return np.asarray(np.clip(1.0 - beyond, 0.0, 1.0).round(12))
 
         return with_factors(amended, law, within)
 

@@ -77,8 +77,9 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             yield _cut(name, segments, starts)
             yield _bending(name, segments, starts)
             for x in above:
+                first = float(x[x > longest.start - TOUCHING_M].min())
                 for length in _whole_bays(spacing(x), longest):
-                    yield _at_fasteners(name, segments, length, float(x.min()) - longest.start)
+                    yield _at_fasteners(name, segments, length, first - longest.start)
 
 
 def _usual(slab: Segment) -> Iterator[tuple[float, float]]:
@@ -162,18 +163,26 @@ def _at_fasteners(name: str, segments: list[Segment], length: float, start: floa
         x = np.array([joint for segment in segments for joint in _joints(segment, shared)])
         if x.size == 0:
             return campaign
-        halves = []
+
+        def near(places: Reals) -> np.ndarray:
+            return np.asarray(np.abs(places[:, None] - x).min(axis=1) < TOUCHING_M)
+
+        halves: list[Joints] = []
         table = line.joint_table()
         for index, layer in enumerate(line.joints):
-            at = (table.layer == index) & (np.abs(table.x[:, None] - x).min(axis=1) < TOUCHING_M)
+            at = (table.layer == index) & near(table.x)
             if name in layer.between and at.any():
-                scale = 0.5 * float(table.scale[at].mean())
-                places = tuple(float(one) for one in np.unique(table.x[at]) - APART_M)
-                halves.append(Joints(between=layer.between, law=layer.law, at=places, scale=scale))
+                halves += [
+                    Joints(
+                        between=layer.between,
+                        law=layer.law,
+                        at=tuple(float(one) - APART_M for one in table.x[at & (table.scale == scale)]),
+                        scale=0.5 * float(scale),
+                    )
+                    for scale in np.unique(table.scale[at])
+                ]
         for law in {half.law for half in halves}:
-            campaign = with_factors(
-                campaign, law, lambda at: np.where(np.abs(at[:, None] - x).min(axis=1) < TOUCHING_M, 0.5, 1.0)
-            )
+            campaign = with_factors(campaign, law, lambda at: np.where(near(at), 0.5, 1.0), holding=name)
         pieces: list[tuple[float, float]] = []
         for segment in segments:
             cuts = [round(one - 0.5 * APART_M, 9) for one in _joints(segment, shared)]
