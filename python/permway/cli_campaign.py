@@ -59,6 +59,10 @@ def diagnose(
         ),
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Of simulated campaigns with nothing missing.")] = 0,
+    rule_out: Annotated[
+        list[str] | None,
+        typer.Option("--rule-out", metavar="EFFECT", help="Of the catalogue, what cannot be; may be repeated."),
+    ] = None,
     no_report: Annotated[bool, typer.Option("--no-report", help="Without report.html.")] = False,
     allow_outside: Outside = False,
     threads: Threads = None,
@@ -70,17 +74,19 @@ def diagnose(
     not tell, and proves it on records that were not fitted. Writes report.html, verdict.json and amended.toml;
     takes minutes. The same seed gives the same verdict. Stopped and called again, it goes on where it was.
     """
+    from permway.diagnosis.catalogue import known
     from permway.diagnosis.diagnose import diagnose as run
     from permway.diagnosis.journal import FOLDER, keeping, key_of
     from permway.files import prepare_folder
     from permway.recordings.campaign import read_campaign
     from permway.report.diagnosis import write_diagnosis
 
+    ruled_out = known(rule_out or ())
     described = read_campaign(campaign, allow_outside=allow_outside)
     folder = prepare_folder(output or campaign.parent / "diagnosis")
-    with keeping(folder / FOLDER, key_of(described, seed)) as journal:
+    with keeping(folder / FOLDER, key_of(described, seed, ruled_out)) as journal:
         with stage_bar("diagnosing", as_json) as progress:
-            result = run(described, seed=seed, threads=threads, progress=progress)
+            result = run(described, seed=seed, ruled_out=ruled_out, threads=threads, progress=progress)
         written = write_diagnosis(result, folder, page=not no_report)
         journal.close()
     say(written, as_json)

@@ -16,6 +16,8 @@ from permway.challenge import TIERS, draw, make, write, write_truth
 from permway.challenge.errors_of_measurement import NEPER_PER_DB, struck, wander
 from permway.challenge.irregularity import WITHIN_DB, density, deviation, profile
 from permway.challenge.layout import TOLERANCE
+from permway.challenge.run import ruled_out
+from permway.diagnosis.catalogue import entries
 from permway.errors import InputError
 from permway.recordings.importers.sheet import import_sheet
 from short_deck import TWO_SPANS, small_case
@@ -151,3 +153,29 @@ def test_profile_is_of_the_sheets_spectrum_and_not_gaussian() -> None:
         tails.append(np.mean(whitened**4) / np.mean(whitened**2) ** 2)
     assert np.std(off) > 0.3
     assert min(tails) > 3.5
+
+
+def test_of_outside_cases_the_catalogue_loses_families() -> None:
+    invented, taken = 0, 0
+    for seed in range(60):
+        case = draw(seed, "outside")
+        (part,) = case.truth["effects"]
+        assert part["id"] is None
+        assert part["words"]
+        if case.taken_out is None:
+            invented += 1
+            assert case.truth["ruled_out"] == []
+        else:
+            taken += 1
+            assert case.effects[0].ID in case.truth["ruled_out"]
+            assert set(case.truth["ruled_out"]) <= set(entries())
+    assert min(invented, taken) > 15
+
+
+def test_what_is_ruled_out_is_all_that_the_runner_reads_of_a_truth(tmp_path: Path) -> None:
+    (tmp_path / "truth").mkdir()
+    (tmp_path / "truth" / "outside-1.json").write_text(
+        json.dumps({"ruled_out": ["pad_frequency"], "effects": [7]})
+    )
+    assert ruled_out(tmp_path, "outside-1") == ["pad_frequency"]
+    assert ruled_out(tmp_path, "outside-2") == []

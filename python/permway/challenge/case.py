@@ -11,6 +11,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from permway.challenge.effects import CATALOGUE, NONLINEAR, OUTSIDE, STRENGTHS, TWINS, Effect, Site, Strength
+from permway.challenge.effects.taken_out import TAKEN_OUT, TakenOut
 from permway.challenge.files import write_csv, write_mat, write_npz, write_uff
 from permway.challenge.layout import (
     TOLERANCE,
@@ -32,6 +33,9 @@ TIERS: tuple[Tier, ...] = get_args(Tier)
 
 COLD_TOO = 0.15
 """How often hammer tests at two temperatures are made where no effect needs them."""
+
+INVENTED = 0.5
+"""Share of invented mechanisms among effects of no catalogue; of the others the catalogue loses the family."""
 
 SLOW_OR_FAST = 0.005
 """Largest relative error of a speed."""
@@ -56,6 +60,8 @@ class Case:
         In the order drawn; all are of one strength.
     text : bool
         UFF and CSV; MAT and NPZ otherwise.
+    taken_out : TakenOut or None
+        What the catalogue has to do without, and the words for it.
     """
 
     seed: int
@@ -68,6 +74,7 @@ class Case:
     chain: Chain
     effects: tuple[Effect, ...]
     text: bool
+    taken_out: TakenOut | None = None
 
     def plan(self) -> Plan:
         """Track, vehicle, profile and chain with the effects in them."""
@@ -89,6 +96,8 @@ class Case:
     def truth(self) -> dict[str, Any]:
         """The content of `truth.json`."""
         parts = [effect.truth() for effect in self.effects]
+        if self.taken_out is not None:
+            parts = [{**part, "id": None, "words": list(self.taken_out.words)} for part in parts]
         return {
             "seed": self.seed,
             "tier": self.tier,
@@ -98,6 +107,7 @@ class Case:
             "fx": [_short(part) for part in parts if part["domain"] != "vehicle"],
             "vfx": [_short(part) for part in parts if part["domain"] == "vehicle"],
             "effects": parts,
+            "ruled_out": [] if self.taken_out is None else list(self.taken_out.names),
             "notes": "; ".join(part["mechanical"] for part in parts)
             or "nothing is missing: parameters within tolerance only",
         }
@@ -112,7 +122,8 @@ def draw(seed: int, tier: Tier) -> Case:
         Zero or more.
     tier : Tier
         "null": nothing concealed; "single": one effect of the catalogue; "twin": one that has a near twin;
-        "multiple": two or three; "outside": one of no catalogue; "nonlinear": one that depends on amplitude.
+        "multiple": two or three; "outside": one of no catalogue, or one whose family is taken out of it;
+        "nonlinear": one that depends on amplitude.
 
     Raises
     ------
@@ -124,7 +135,10 @@ def draw(seed: int, tier: Tier) -> Case:
     if seed < 0:
         raise InputError("must not be below zero", where="seed", value=seed)
     random = _random(seed, tier, 0)
-    kinds = _kinds(random, tier)
+    kinds, taken_out = _kinds(random, tier), None
+    if tier == "outside" and random.random() >= INVENTED:
+        kinds = [list(TAKEN_OUT)[int(random.integers(len(TAKEN_OUT)))]]
+        taken_out = TAKEN_OUT[kinds[0]]
     strength = None if tier == "null" else STRENGTHS[int(random.integers(3))]
     cold = 2 if random.random() < COLD_TOO else 1
     temperatures = max([cold, *(kind.TEMPERATURES for kind in kinds)])
@@ -146,6 +160,7 @@ def draw(seed: int, tier: Tier) -> Case:
         chain=chain,
         effects=effects,
         text=bool(random.random() < 0.5),
+        taken_out=taken_out,
     )
 
 

@@ -56,7 +56,9 @@ def run(
     def one(case: Path) -> bool:
         nonlocal done
         out = results / case.name
-        fine = (out / VERDICT).is_file() or diagnosed(case, out, threads, report=report)
+        fine = (out / VERDICT).is_file() or diagnosed(
+            case, out, threads, without=ruled_out(folder, case.name), report=report
+        )
         done += 1
         if progress is not None:
             progress(done, len(cases))
@@ -72,7 +74,15 @@ def threads_of(workers: int) -> int:
     return max(1, (os.cpu_count() or 1) // workers)
 
 
-def diagnosed(case: Path, out: Path, threads: int, *, report: bool = False) -> bool:
+def ruled_out(folder: Path, name: str) -> list[str]:
+    """What the catalogue has to do without in one campaign: all that its truth tells beforehand."""
+    truth = folder / "truth" / f"{name}.json"
+    if not truth.is_file():
+        return []
+    return [str(one) for one in json.loads(truth.read_text()).get("ruled_out", [])]
+
+
+def diagnosed(case: Path, out: Path, threads: int, *, without: Sequence[str] = (), report: bool = False) -> bool:
     """Import and diagnose one campaign; what went wrong is kept beside where the verdict would be."""
     out.mkdir(parents=True, exist_ok=True)
     campaign = out / "campaign"
@@ -80,6 +90,7 @@ def diagnosed(case: Path, out: Path, threads: int, *, report: bool = False) -> b
     if not (campaign / "campaign.toml").is_file():
         commands.append(["import", "sheet", str(case), "-o", str(campaign), "--json"])
     page = [] if report else ["--no-report"]
+    page += [word for name in without for word in ("--rule-out", name)]
     commands.append(
         ["diagnose", str(campaign / "campaign.toml"), "-o", str(out), "--threads", str(threads), "--json", *page]
     )

@@ -11,7 +11,7 @@ from permway.challenge.case import Tier
 from permway.challenge.make import make
 from permway.challenge.pool import processes
 from permway.challenge.rivals import Ask, answer
-from permway.challenge.run import FAILED, VERDICT, diagnosed, threads_of
+from permway.challenge.run import FAILED, VERDICT, diagnosed, ruled_out, threads_of
 from permway.challenge.weigh import Deviance, weigh_one, whole
 from permway.errors import InputError, SolveError
 
@@ -120,8 +120,10 @@ def _one(folder: Path, one: Numbered, threads: int, deviance: Deviance, ask: Ask
     if not (folder / "truth" / f"{one.name}.json").is_file():
         make(one.seed, 1, one.tier, folder)
     verdict = folder / "verdicts" / one.name / VERDICT
-    if not verdict.is_file() and not diagnosed(folder / one.name, verdict.parent, threads):
-        return False
+    if not verdict.is_file():
+        without = ruled_out(folder, one.name)
+        if not diagnosed(folder / one.name, verdict.parent, threads, without=without):
+            return False
     try:
         weigh_one(folder, one.name, deviance)
         if ask is not None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from permway.arrays import Complexes
 from permway.diagnosis.advise import advise
 from permway.diagnosis.bases import bases
+from permway.diagnosis.catalogue import known
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.compare import assemble
 from permway.diagnosis.compete import Ring
@@ -31,7 +32,12 @@ SHOWN_INCONSTANT = 8
 
 
 def diagnose(
-    campaign: Campaign, *, seed: int = 0, threads: int | None = None, progress: Progress | None = None
+    campaign: Campaign,
+    *,
+    seed: int = 0,
+    ruled_out: Collection[str] = (),
+    threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Diagnosis:
     """Say what a campaign's model leaves out.
 
@@ -40,6 +46,8 @@ def diagnose(
     campaign : Campaign
     seed : int
         Of simulated nulls: the same seed gives the same verdict.
+    ruled_out : collection of str
+        Effects of the catalogue that cannot be, as somebody knows who was there; the verdict tells of them.
     threads : int, optional
         Of the solver.
     progress : callable, optional
@@ -48,8 +56,9 @@ def diagnose(
     Raises
     ------
     InputError
-        If no record can be predicted, or a file cannot be read.
+        If no record can be predicted, a file cannot be read, or what is ruled out is not in the catalogue.
     """
+    ruled_out = known(ruled_out)
     clock = Clock(progress)
     clock("read")
     kept, left_out = predictable(campaign)
@@ -60,7 +69,9 @@ def diagnose(
     found = scanned(searched)
     mixed = mislabelled(base)
     description = Description(searched, base, found, clock)
-    rounds, accepted = ([], []) if mixed is not None else effects(searched, base, found, seed, clock, description)
+    rounds, accepted = (
+        ([], []) if mixed is not None else effects(searched, base, found, seed, clock, description, ruled_out)
+    )
     described = None if mixed is not None else description.of(rounds, accepted)
     catalogued = rounds
     if described is not None:
@@ -76,10 +87,11 @@ def diagnose(
     clock("compare")
     law, remaining = _law(base, accepted, found, left)
     inconstant = tuple(constancy(Ring(base))[:SHOWN_INCONSTANT])
+    said = (
+        verdict_of(base, rounds, accepted, found, left, proof, advice) if mixed is None else mixed_up(base, mixed)
+    )
     return Diagnosis(
-        verdict=verdict_of(base, rounds, accepted, found, left, proof, advice)
-        if mixed is None
-        else mixed_up(base, mixed),
+        verdict=said.model_copy(update={"ruled_out": ruled_out}),
         base=base,
         amended=amended,
         found=found,

@@ -10,7 +10,7 @@ import contextlib
 import hashlib
 import io
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextvars import ContextVar
 from pathlib import Path
 
@@ -31,9 +31,9 @@ FOLDER = "unfinished"
 """Of the steps, beside what will be written."""
 
 
-def key_of(campaign: Campaign, seed: int) -> str:
-    """Of all that a diagnosis depends on: this version, the campaign file, the model, every record, the seed."""
-    said = hashlib.sha256(f"{__version__} {seed}".encode())
+def key_of(campaign: Campaign, seed: int, ruled_out: Collection[str] = ()) -> str:
+    """Of all that a diagnosis depends on: version, campaign file, model, every record, seed, what is ruled out."""
+    said = hashlib.sha256(f"{__version__} {seed} {sorted(set(ruled_out))}".encode())
     said.update(campaign.said.model_dump_json().encode())
     said.update(campaign.model.model_dump_json().encode())
     for record in campaign.said.records:

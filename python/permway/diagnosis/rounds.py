@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -29,7 +29,13 @@ MOST_OF_IT = 0.5
 
 
 def effects(
-    rough: Fit, base: Fit, found: tuple[Found, ...], seed: int, clock: Clock, description: Description
+    rough: Fit,
+    base: Fit,
+    found: tuple[Found, ...],
+    seed: int,
+    clock: Clock,
+    description: Description,
+    ruled_out: Collection[str] = (),
 ) -> tuple[list[Round], list[Finalist]]:
     """Add effects while one passes; take out those that a later one made needless.
 
@@ -50,7 +56,7 @@ def effects(
     for order in range(MOST_EFFECTS):
         result = None
         for start in [fit] if rough is fit else [rough, fit]:
-            offered = _of_the_owners(base, hypotheses(Situation(start, found)), start)
+            offered = _of_the_owners(base, hypotheses(Situation(start, found), ruled_out), start)
             prefix = f"{order + 1}."
             result = search(
                 start,

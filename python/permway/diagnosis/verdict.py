@@ -62,6 +62,8 @@ class Verdict(VerdictPart):
     """Measurements that would tell rivals apart, the most telling first."""
     detectable: dict[str, Smallest] = Field(default_factory=dict)
     """By effect: the smallest size that this campaign would have shown."""
+    ruled_out: tuple[str, ...] = ()
+    """Effects of the catalogue that were not considered, for somebody had ruled them out."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:

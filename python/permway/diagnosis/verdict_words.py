@@ -58,6 +58,8 @@ def sentence(verdict: Verdict) -> str:
         case "located":
             words = f"{_at(verdict.effects[0])} physics is missing that these records cannot describe"
             parts = [words, _more(verdict), _better(verdict), _advice(verdict)]
+    if verdict.ruled_out:
+        parts.append(f"not considered, for somebody had ruled it out: {', '.join(verdict.ruled_out)}")
     text = "; ".join(part for part in parts if part)
     return f"{text[:1].upper()}{text[1:]}."
 

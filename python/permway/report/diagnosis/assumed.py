@@ -16,7 +16,7 @@ LIBRARIES = ("numpy", "scipy", "xarray")
 
 
 def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
-    """Facts by heading: `model`, `records`, `smooth`, `noise`, `left_out`, `held_out`, `versions`, `seconds`."""
+    """Facts by heading: `model`, `records`, `smooth`, `noise`, `left_out`, `ruled_out`, `held_out`, how made."""
     campaign, comparison = diagnosis.comparison.campaign, diagnosis.comparison
     line = campaign.model.line
     layers = dict.fromkeys(f"{layer.law} ({layer.between[0]} on {layer.between[1]})" for layer in line.joints)
@@ -34,6 +34,7 @@ def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
         "smooth": smooth_rows(comparison),
         "noise": _noise(diagnosis),
         "left_out": list(comparison.left_out.items()),
+        "ruled_out": list(diagnosis.verdict.ruled_out),
         "held_out": [f"{group.name} ({group.axis})" for group in campaign.said.held_out],
         "versions": [
             ("permway", _core.__version__),
