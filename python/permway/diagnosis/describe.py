@@ -9,13 +9,13 @@ import numpy as np
 from permway.diagnosis import decide, grammar
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.fit import Fit
-from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.hypothesis import Situation, Where
 from permway.diagnosis.locate import Found, Spot, scanned
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.recovered import same_place
 from permway.diagnosis.search import Finalist, Round, lines, penalty, search
 
-RESONATOR = ("mass_kg", "frequency_Hz", "loss_factor")
+RESONANCE, MASSES = ("frequency_Hz", "loss_factor"), ("mass_kg", "mass_share")
 """What a mass on a spring is known by."""
 
 ONE_PLACE_M = 0.5
@@ -113,9 +113,11 @@ class Description:
             return self._plain
         found, like = self.found, None
         if twice is not None:
-            at, like = twice.hypothesis.locate(twice.values), twice.values
-            there = (at.x_m or (0.0,))[0]
-            found = tuple(sorted(found, key=lambda f: (f.spot.name != at.what, abs(f.spot.x_m[0] - there))))
+            at = twice.hypothesis.locate(twice.values)
+            if at.x_m is not None:
+                like, there = twice.values, at.x_m[0]
+                found = tuple(sorted(found, key=lambda f: abs(f.spot.x_m[0] - there)))
+            found = tuple(sorted(found, key=lambda f: f.spot.name != at.what))
         result = search(
             self.searched,
             grammar.hypotheses(Situation(self.searched, found), like),
@@ -131,14 +133,18 @@ class Description:
 
 
 def _twice(accepted: Sequence[Finalist]) -> Finalist | None:
-    """The stronger of two masses on springs that hang at one place."""
+    """The heavier of two masses on springs that hang at one place, or all along one body."""
     for index, one in enumerate(accepted):
         for other in accepted[:index]:
             places = [f.hypothesis.locate(f.values) for f in (other, one)]
-            first, second = (place.x_m for place in places)
             alike = other.hypothesis.entry == one.hypothesis.entry and places[0].what == places[1].what
-            if not alike or first is None or second is None or not {*RESONATOR} <= other.values.keys():
-                continue
-            if abs(first[0] - second[0]) < ONE_PLACE_M:
-                return max(other, one, key=lambda f: f.values["mass_kg"])
+            for mass in MASSES:
+                if alike and {mass, *RESONANCE} <= other.values.keys() and _at_one_place(places[0], places[1]):
+                    return max(other, one, key=lambda f: f.values[mass])
     return None
+
+
+def _at_one_place(first: Where, second: Where) -> bool:
+    if first.x_m is None or second.x_m is None:
+        return first.x_m is second.x_m
+    return abs(first.x_m[0] - second.x_m[0]) < ONE_PLACE_M

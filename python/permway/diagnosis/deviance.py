@@ -6,6 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from permway.diagnosis.bases import bases
+from permway.diagnosis.clock import Clock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.recalibrate import recalibrate
@@ -43,7 +45,11 @@ def deviance(
     InputError
         If no record can be predicted, or the two do not have the same records.
     """
-    plain = recalibrate(gather(twin, predictable(twin)[0], threads=threads), progress=progress)
+    def told(stage: str, _done: int, _total: int) -> None:
+        if progress is not None:
+            progress(stage)
+
+    plain, _ = bases(gather(twin, predictable(twin)[0], threads=threads), Clock(told))
     datasets = predictable(campaign)[0]
     there = plain.evidence.selected(plain.evidence.records).datasets
     mine, others = ([d.record.name for d in sets] for sets in (datasets, there))
