@@ -8,11 +8,13 @@ from functools import cached_property
 import numpy as np
 import xarray as xr
 from scipy import sparse
+from scipy.special import digamma, polygamma
 
 from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks import SURE, Rows
 from permway.diagnosis.smooth import Origin, Smooth, SparseColumns
 from permway.diagnosis.wander import Wander
+from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
 
@@ -21,6 +23,10 @@ SMALL = 1e-4
 
 LEAST_LINES = 20
 """Of a part, from which its scatter is learnt."""
+
+
+FEWEST = 3.0
+"""Averages of a run."""
 
 
 class SpectraBlock:
@@ -68,14 +74,23 @@ class SpectraBlock:
         self.frequency: Reals = data["frequency"].values[self._lines]
         self.measured: Complexes = data["csd"].values[:, :, self._lines]
         self.averages = float(data.attrs["averages"])
-        names = data["channel"].values.astype(str)
-        coherence = _coherence(expected["csd"].values[:, :, self._lines])
+        if self.averages < FEWEST:
+            raise InputError(
+                f"has fewer than {FEWEST:g} averages, by which no spectrum is known",
+                where=dataset.record.name,
+                value=round(self.averages, 2),
+                remedy="give a longer record, or a shorter segment_s",
+            )
+        names, everywhere = data["channel"].values.astype(str), np.arange(self.frequency.size)
+        whole = expected["csd"].values[:, :, self._lines]
+        coherence = _coherence(whole)
         self.root, self.tree = _tree(np.nanmean(coherence, axis=-1))
+        self._transfers = {(c, o): _transfer(whole, c, o, everywhere) for c, o in self.tree}
         labels, frequency, scale, kind = [], [], [], []
         self._parts: list[tuple[str, int, int, np.ndarray, Reals]] = []
         self.log_determinant = 0.0
-        single = 1.0 / np.sqrt(self.averages)
-        everywhere = np.arange(self.frequency.size)
+        # Of powers by so many averages, and of what remains of one when another's share is taken off.
+        single, remaining = (float(np.sqrt(polygamma(1, k))) for k in (self.averages, self.averages - 1.0))
 
         def add(what: str, channel: int, other: int, at: np.ndarray, sigma: Reals) -> None:
             copies = 2 if what == "transfer" else 1
@@ -94,10 +109,10 @@ class SpectraBlock:
         for child, parent in self.tree:
             g2 = np.clip(coherence[child, parent], 1e-6, 1.0 - 1e-9)
             at = np.flatnonzero(g2 >= self.LEAST_COHERENCE)
-            relative = np.sqrt((1.0 - g2[at]) / (2.0 * self.averages * g2[at]) + floor**2)
+            relative = np.sqrt((1.0 - g2[at]) / (2.0 * (self.averages - 1.0) * g2[at]) + floor**2)
             add("transfer", child, parent, at, relative)
             at = np.flatnonzero(g2 <= self.MOST_COHERENCE)
-            add("rest", child, parent, at, np.full(at.size, single))
+            add("rest", child, parent, at, np.full(at.size, remaining))
         text = np.array(labels, dtype=str)
         self.rows = Rows(
             text,
@@ -115,17 +130,18 @@ class SpectraBlock:
         for what, c, o, at, sigma in self._parts:
             if what == "power":
                 power = (self.measured[c, c, at] / model[c, c, at]).real
-                found.append(np.log(np.maximum(power, 1e-12)) / sigma)
+                found.append((np.log(np.maximum(power, 1e-12)) - _low(self.averages)) / sigma)
             elif what == "transfer":
-                measured = self.measured[c, o, at] / self.measured[o, o, at].real
-                expected = model[c, o, at] / model[o, o, at].real
-                ratio = measured / expected
-                # Gains multiply; where noise is large, their logarithm is biased, and smooth errors are nothing.
-                off = np.where(sigma < SURE, np.log(ratio), ratio - 1.0)
+                measured, predicted_so = (_transfer(csd, c, o, at) for csd in (self.measured, model))
+                # Gains multiply; where noise is large, their logarithm is biased, and it scatters as was expected:
+                # a model that says more does not scatter more.
+                straight = (measured - predicted_so) / self._transfers[c, o][at]
+                off = np.where(sigma < SURE, np.log(measured / predicted_so), straight)
                 found.extend([off.real / sigma, off.imag / sigma])
             else:
-                rest = _remainder(self.measured, c, o, at) / _remainder(model, c, o, at)
-                found.append(np.log(np.maximum(rest, 1e-12)) / sigma)
+                left = 1.0 - 1.0 / self.averages
+                rest = _remainder(self.measured, c, o, at) / _remainder(model, c, o, at, left)
+                found.append((np.log(np.maximum(rest, 1e-12)) - _low(self.averages - 1.0)) / sigma)
         return np.concatenate(found)
 
     def levels_dB(self, predicted: xr.Dataset) -> Reals:
@@ -232,10 +248,20 @@ def _coherence(csd: Complexes) -> Reals:
     return np.asarray(np.abs(csd) ** 2 / (power[:, None] * power[None, :]))
 
 
-def _remainder(csd: Complexes, c: int, o: int, at: np.ndarray) -> Reals:
-    """Power of c that o does not share, and a thousandth of all of it: no record is clean below."""
+def _transfer(csd: Complexes, c: int, o: int, at: np.ndarray) -> Complexes:
+    """From one channel to another."""
+    return np.asarray(csd[c, o, at] / csd[o, o, at].real)
+
+
+def _low(averages: float) -> float:
+    """Mean of the logarithm of a power by so many averages, less the logarithm of its mean."""
+    return float(digamma(averages) - np.log(averages))
+
+
+def _remainder(csd: Complexes, c: int, o: int, at: np.ndarray, left: float = 1.0) -> Reals:
+    """Power of c that o does not share, as much as is left of it, and a thousandth of all: none is clean below."""
     own = csd[c, c, at].real
-    return np.asarray(own - np.abs(csd[c, o, at]) ** 2 / csd[o, o, at].real + 1e-3 * own)
+    return np.asarray(left * (own - np.abs(csd[c, o, at]) ** 2 / csd[o, o, at].real) + 1e-3 * own)
 
 
 def _tree(coherence: Reals) -> tuple[int, list[tuple[int, int]]]:

@@ -14,6 +14,7 @@ from permway.diagnosis.locate import Found, Spot, scanned
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.recovered import same_place
 from permway.diagnosis.search import Finalist, Round, lines, penalty, search
+from permway.model.bodies import Beam
 
 RESONANCE, MASSES = ("frequency_Hz", "loss_factor"), ("mass_kg", "mass_share")
 """What a mass on a spring is known by."""
@@ -23,6 +24,9 @@ ONE_PLACE_M = 0.5
 
 FOLLOWED = 16
 """Elements that are followed after screening: one step tells little of a law's frequency."""
+
+ONE_FOR_TWO = 0.1
+"""Share of the gain of one effect found twice that one thing in their place may lack: two of a kind are rare."""
 
 OPEN = 0.05
 """Share of the gap to a free stiffness that a named effect that fits may leave before elements are tried."""
@@ -94,8 +98,9 @@ class Description:
         one = result.finalists[0]
         better = best.objective - one.fit.objective - penalty(one.quick, result.ring)
         if twice is not None:
-            # What stands for two effects has to do no better than both, with fewer constants.
+            # What stands for two effects has fewer constants, and need not do quite what both do.
             better += sum(penalty(two.quick, result.ring) for two in accepted)
+            better += ONE_FOR_TWO * (self.base.objective - best.objective)
         elif explained > decide.EXPLAINED and not self._closes(result, best):
             return None
         return result if better > 0.0 else None
@@ -113,9 +118,13 @@ class Description:
             return self._plain
         found, like = self.found, None
         if twice is not None:
-            at = twice.hypothesis.locate(twice.values)
-            if at.x_m is not None:
-                like, there = twice.values, at.x_m[0]
+            at, like = twice.hypothesis.locate(twice.values), twice.values
+            if at.x_m is None:
+                body = self.base.campaign.model.line.bodies[at.what]
+                assert isinstance(body, Beam)
+                like = {**like, "mass_kg": like["mass_share"] * body.mass_kg_per_m * grammar.SPACING_M}
+            else:
+                there = at.x_m[0]
                 found = tuple(sorted(found, key=lambda f: abs(f.spot.x_m[0] - there)))
             found = tuple(sorted(found, key=lambda f: f.spot.name != at.what))
         result = search(

@@ -45,6 +45,7 @@ def deviance(
     InputError
         If no record can be predicted, or the two do not have the same records.
     """
+
     def told(stage: str, _done: int, _total: int) -> None:
         if progress is not None:
             progress(stage)

@@ -37,8 +37,8 @@ SPACING_M = 1.0
 STRETCHES = (3.0, 9.0)
 """Usual lengths, in spacings, that a stretch is looked for with."""
 
-LONGEST = 24.0
-"""Of a stretch, in spacings."""
+LONGEST, MOST = 24.0, 0.8
+"""Of a stretch, in spacings, if its body is shorter; and the share of it that a long one is looked for with."""
 
 Values = Mapping[str, float]
 
@@ -61,7 +61,7 @@ def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hyp
             yield _in_layer(element, joint)
         if body is not None:
             yield _on_body(element, body, like)
-            yield _over_body(situation, element, body)
+            yield _over_body(situation, element, body, like)
 
 
 def _typical(found: Found) -> tuple[float, float]:
@@ -123,16 +123,18 @@ def _in_layer(element: Element, found: Found) -> Hypothesis:
     )
 
 
+def _near(like: Values) -> tuple[Free, ...]:
+    """Constants of what hangs on a body, about those that explained part."""
+    return (
+        log_free("mass_kg", "kg", like["mass_kg"], 2.0),
+        log_free("frequency_Hz", "Hz", like["frequency_Hz"], 1.5),
+        log_free("loss_factor", "1", like["loss_factor"], 2.0),
+    )
+
+
 def _on_body(element: Element, found: Found, like: Values | None = None) -> Hypothesis:
     x = found.spot.x_m[0]
-    free = element.free(*_typical(found))
-    if element.ground and like is not None:
-        mass, frequency, loss = (like[name] for name in ("mass_kg", "frequency_Hz", "loss_factor"))
-        free = (
-            log_free("mass_kg", "kg", mass, 2.0),
-            log_free("frequency_Hz", "Hz", frequency, 1.5),
-            log_free("loss_factor", "1", loss, 2.0),
-        )
+    free = _near(like) if element.ground and like is not None else element.free(*_typical(found))
     # The scan looks at places a metre apart.
     free = (*free, linear_free("x_m", "m", x, 0.5, x - BESIDE_M, x + BESIDE_M))
 
@@ -153,25 +155,33 @@ def _over_joints(situation: Situation, element: Element, found: Found) -> Hypoth
     return _stretch(element, found, layer.between, x, step, "beside each joint of a stretch")
 
 
-def _over_body(situation: Situation, element: Element, found: Found) -> Hypothesis:
+def _over_body(situation: Situation, element: Element, found: Found, like: Values | None = None) -> Hypothesis:
     """At points of a stretch of a body, a metre apart."""
     same = [f.spot.x_m[0] for f in situation.found if f.spot.kind == "body" and f.spot.name == found.spot.name]
     x = np.arange(min(same), max(same) + 1e-6, SPACING_M)
     between = (found.spot.name, GROUND)
-    return _stretch(element, found, between, x, SPACING_M, f"every {SPACING_M:g} m of a stretch of the body")
+    place = f"every {SPACING_M:g} m of a stretch of the body"
+    own = _near(like) if element.ground and like is not None else None
+    return _stretch(element, found, between, x, SPACING_M, place, own)
 
 
 def _stretch(
-    element: Element, found: Found, between: tuple[str, str], x: Reals, step: float, place: str
+    element: Element,
+    found: Found,
+    between: tuple[str, str],
+    x: Reals,
+    step: float,
+    place: str,
+    own: tuple[Free, ...] | None = None,
 ) -> Hypothesis:
     """An element at each of some stations about the most telling place."""
     stiffness, frequency = _typical(found)
-    centre = found.spot.x_m[0]
-    own = element.free(stiffness / STRETCHES[0], frequency)
+    centre, longest = found.spot.x_m[0], max(LONGEST * step, float(np.ptp(x)))
+    own = own or element.free(stiffness / STRETCHES[0], frequency)
     free = (
         *own,
         linear_free("centre_m", "m", centre, 2.0 * step, centre - 6.0 * step, centre + 6.0 * step),
-        linear_free("length_m", "m", STRETCHES[0] * step, 3.0 * step, 0.0, LONGEST * step),
+        linear_free("length_m", "m", STRETCHES[0] * step, 3.0 * step, 0.0, longest),
     )
 
     def amend(campaign: Campaign, values: Values) -> Campaign:
@@ -191,7 +201,7 @@ def _stretch(
         return Where(found.spot.name, (values["centre_m"] - half, values["centre_m"] + half))
 
     made = _made(element, place, free, locate({"centre_m": centre, "length_m": STRETCHES[0] * step}), amend)
-    lengths = [(length - STRETCHES[0]) / 3.0 for length in STRETCHES]
+    lengths = [(length - STRETCHES[0]) / 3.0 for length in (*STRETCHES, MOST * longest / step)]
     starts = [
         (*start[: len(own)], 0.0, z) for start in made.starts[:: 3 if element.ground else 1] for z in lengths
     ]
