@@ -9,6 +9,7 @@ import numpy as np
 from scipy import linalg, optimize
 
 from permway.arrays import Reals
+from permway.diagnosis.bounded import bounded_step
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.felt import changed
 from permway.diagnosis.fit import Build, Fit, Free
@@ -245,8 +246,7 @@ class Ring:
             normal, slope = normal + np.eye(z.size), slope + z
             gained = 0.0
             for _ in range(5):
-                shift = -linalg.solve(normal + damping * np.diag(np.diag(normal)), slope, assume_a="pos")
-                tried = np.clip(z + shift, low, high)
+                tried = np.clip(z + bounded_step(normal, slope, z, low, high, damping), low, high)
                 new = self._deviations(hypothesis, tried)
                 if new is not None:
                     value, moved = self._objective(new)

@@ -65,10 +65,14 @@ class Scored:
         Of the part given the rest, parameters and smooth errors integrated out, nats.
     error_dB : float
         Root mean square of levels as measured, no error of chains taken out, where the record knows them to 1 dB.
+    z, sigma : ndarray, shape (p,)
+        Parameters of the fit to the rest, and their standard deviations.
     """
 
     log_density: float
     error_dB: float
+    z: Reals
+    sigma: Reals
 
 
 def parts(evidence: Evidence) -> Iterator[Part]:
@@ -217,8 +221,9 @@ class Rest:
         """
         z, deviations, levels = self.fitted(~part)
         rest, fit = self._of(~part), self.fit
-        square = self._evidence(self._whole, fit.deviations, fit.z)
-        square -= self._evidence(rest, deviations * ~part, z, ~part)
+        square, _ = self._evidence(self._whole, fit.deviations, fit.z)
+        less, sigma = self._evidence(rest, deviations * ~part, z, ~part)
+        square -= less
         volume = self._whole.log_determinant - rest.log_determinant + float(self._volume[part].sum())
         level = levels[part][fit.evidence.rows.scale_dB[part] < SURE_DB]
         level = level[np.isfinite(level)]
@@ -226,15 +231,23 @@ class Rest:
         # A model that does not fit knows so: its deviations are as much larger on what it has not seen.
         spread = float(np.log(fit.heat))
         log_density = -0.5 * (square + volume + spread * float(part.sum()))
-        return Scored(log_density, error)
+        return Scored(log_density, error, z, sigma)
 
-    def _evidence(self, whitener: Whitener, deviations: Reals, z: Reals, rows: np.ndarray | None = None) -> float:
-        """Quadratic form of some rows and the prior, and what integrating over the parameters adds (Laplace)."""
+    def _evidence(
+        self, whitener: Whitener, deviations: Reals, z: Reals, rows: np.ndarray | None = None
+    ) -> tuple[float, Reals]:
+        """Quadratic form of some rows and the prior, and what integrating over the parameters adds (Laplace).
+
+        And the parameters' standard deviations, by these rows.
+        """
         jacobian = self.fit.jacobian if rows is None else np.where(rows[:, None], self.fit.jacobian, 0.0)
         reduced = whitener.reduce(jacobian)
         normal = (jacobian.T @ jacobian - reduced.T @ reduced) / self.fit.heat + np.eye(z.size)
         square = whitener.square(deviations) / self.fit.heat + float(z @ z)
-        return square + float(np.linalg.slogdet(normal)[1])
+        factor = linalg.cholesky(normal, lower=True)
+        inverse = linalg.solve_triangular(factor, np.eye(z.size), lower=True)
+        volume = 2.0 * float(np.log(np.diag(factor)).sum())
+        return square + volume, np.sqrt((inverse**2).sum(axis=0))
 
 
 @dataclass(frozen=True)
@@ -248,6 +261,8 @@ class Gain:
         Gain of log predictive density; its error is the root of twice the gain, as where two normal densities of
         one width differ in their means.
     before_dB, after_dB : float
+    z, sigma : ndarray, shape (p,)
+        Parameters of the amended model fitted to the rest, and their standard deviations.
     """
 
     part: Part
@@ -255,6 +270,8 @@ class Gain:
     standard_error: float
     before_dB: float
     after_dB: float
+    z: Reals
+    sigma: Reals
 
 
 def gains(base: Rest, amended: Rest, chosen: Sequence[Part]) -> list[Gain]:
@@ -264,7 +281,7 @@ def gains(base: Rest, amended: Rest, chosen: Sequence[Part]) -> list[Gain]:
         before, after = base.scored(part.rows), amended.scored(part.rows)
         nats = after.log_density - before.log_density
         error = float(np.sqrt(2.0 * max(abs(nats), LEAST_NATS)))
-        found.append(Gain(part, nats, error, before.error_dB, after.error_dB))
+        found.append(Gain(part, nats, error, before.error_dB, after.error_dB, after.z, after.sigma))
     return found
 
 

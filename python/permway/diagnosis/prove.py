@@ -12,6 +12,7 @@ from permway.diagnosis.heldout import Rest, at_fault, gains, log_e_value, parts
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.search import Finalist, Round, lines
 from permway.diagnosis.speak import Proof
+from permway.diagnosis.unsteady import unsteady
 
 
 def prove(
@@ -43,6 +44,7 @@ def prove(
         held_out=held_out,
         log_e=log_e,
         placebo=placebo_held_out,
+        unsteady=unsteady(amended, held_out),
         bic_gain=bic,
         conditions=decide.conditions(
             bic_gain=bic,

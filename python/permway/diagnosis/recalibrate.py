@@ -13,6 +13,7 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
+from permway.diagnosis.bounded import bounded_step
 from permway.diagnosis.evidence import LARGEST_SMOOTH, SMALLEST_SMOOTH, Evidence, Solved
 from permway.diagnosis.fit import Build, Fit, Free, free_parameters
 from permway.diagnosis.journal import Arrays, current
@@ -158,6 +159,7 @@ def _descended(
     tangent = problem.tangent(state, slopes)
     exact = slopes is None
     damping, rounds = 1e-3, 0
+    low, high = _limits(free)
     for step in range(most_steps):
         # Far from the records the priors lead: the deviations count as if each were no better than all are.
         heat = max(1.0, tangent.chi2(state) / max(1, state.deviations.size))
@@ -165,8 +167,8 @@ def _descended(
         fresh = tangent.at is state and exact
         moved, gained, foretold = None, 0.0, 0.0
         for _ in range(8 if fresh else 2):
-            shift = -linalg.solve(normal + damping * np.diag(np.diag(normal)), slope, assume_a="pos")
-            tried = problem.at(_inside(state.z + shift, free))
+            shift = bounded_step(normal, slope, state.z, low, high, damping)
+            tried = problem.at(np.clip(state.z + shift, low, high))
             gained = 0.0 if tried is None else tangent.heated(state, heat) - tangent.heated(tried, heat)
             if tried is not None and gained > 0.0:
                 foretold = -float(2.0 * slope @ shift + shift @ normal @ shift)
@@ -228,7 +230,7 @@ def _recalled(problem: Problem, kept: Arrays) -> State:
 
 
 def _solvable(problem: Problem, z: Reals) -> State:
-    state = problem.at(_inside(z, problem.free))
+    state = problem.at(np.clip(z, *_limits(problem.free)))
     if state is None:
         raise InputError("the model cannot be solved there", where="start", value=z.tolist())
     return state
@@ -298,9 +300,11 @@ def untouched(evidence: Evidence) -> Fit:
     )
 
 
-def _inside(z: Reals, free: tuple[Free, ...]) -> Reals:
-    low, high = np.array([f.limits for f in free]).T if free else (np.zeros(0), np.zeros(0))
-    return np.clip(z, low, high)
+def _limits(free: tuple[Free, ...]) -> tuple[Reals, Reals]:
+    if not free:
+        return np.zeros(0), np.zeros(0)
+    low, high = np.array([f.limits for f in free]).T
+    return low, high
 
 
 def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:

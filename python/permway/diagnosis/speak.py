@@ -50,6 +50,8 @@ class Proof:
     Attributes
     ----------
     held_out, placebo : sequence of Gain
+    unsteady : ndarray, shape (p,)
+        Variance of the amended model's parameters beyond that of its fit.
     log_e : float
         Natural logarithm of the e-value.
     bic_gain : float
@@ -58,6 +60,7 @@ class Proof:
 
     held_out: Sequence[Gain]
     placebo: Sequence[Gain]
+    unsteady: Reals
     log_e: float
     bic_gain: float
     conditions: Conditions
@@ -91,7 +94,8 @@ def verdict_of(
         return Verdict(status="insufficient", evidence=weight, recalibrated=recalibrated, detectable=sizes)
     gap = decide.explained(base, amended, left)
     by_prefix = {r.finalists[0].prefix: r for r in rounds if r.finalists}
-    effects = tuple(_effect(one, by_prefix[one.prefix], amended, base, gap) for one in accepted)
+    variance = np.diag(amended.covariance) + proof.unsteady
+    effects = tuple(_effect(one, by_prefix[one.prefix], amended, base, gap, variance) for one in accepted)
     return Verdict(
         status=_status(effects, proof, gap),
         effects=effects,
@@ -160,14 +164,12 @@ def _alike(found: Sequence[Found]) -> tuple[float, float]:
     return min(f.spot.x_m[0] for f in same), max(f.spot.x_m[1] for f in same)
 
 
-def _effect(one: Finalist, found: Round, amended: Fit, base: Fit, explained: float) -> Effect:
+def _effect(one: Finalist, found: Round, amended: Fit, base: Fit, explained: float, variance: Reals) -> Effect:
     members = decide.members(found, explained=explained)
     hypothesis, fit = one.hypothesis, amended
     index = {f.name: i for i, f in enumerate(fit.free)}
     z = np.array([fit.z[index[one.prefix + f.name]] for f in hypothesis.free])
-    sigma = np.sqrt(
-        np.array([fit.covariance[i, i] for i in (index[one.prefix + f.name] for f in hypothesis.free)])
-    )
+    sigma = np.sqrt(np.array([variance[index[one.prefix + f.name]] for f in hypothesis.free]))
     values = {f.name: f.value(float(v)) for f, v in zip(hypothesis.free, z, strict=True)}
     estimates = {}
     for f, v, s in zip(hypothesis.free, z, sigma, strict=True):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from pydantic import Field
 
 from permway.arrays import Complexes, Reals
 from permway.errors import InputError
@@ -91,7 +92,7 @@ class Parallel(_Two):
 
 
 class Scaled(Law):
-    """A law times a number.
+    """A law times a number, factor (1 + i eta).
 
     Parameters
     ----------
@@ -99,11 +100,15 @@ class Scaled(Law):
         N/m or Pa.
     factor : float
         Dimensionless, or m to make a stiffness of a modulus.
+    loss_factor : float
+        Dimensionless; kept as the attribute `eta`: a constant loss of all of it, which no causal law has.
     """
 
     type: Literal["scaled"] = "scaled"
     law: AnyLaw
     factor: Number
+    # The alias is what users write; the bare name belongs to the method every law has.
+    eta: Number = Field(default=0.0, alias="loss_factor")
 
     @property
     def needs_temperature(self) -> bool:
@@ -111,9 +116,11 @@ class Scaled(Law):
         return self.law.needs_temperature
 
     def _at(self, omega: Reals, temperature_C: Reals | None) -> Complexes:
-        return self.factor * self.law._at(omega, temperature_C)
+        return self.factor * (1.0 + 1j * self.eta) * self.law._at(omega, temperature_C)
 
     def _causal_by_structure(self) -> tuple[bool | None, str]:
+        if self.eta != 0.0 and self.factor != 0.0:
+            return False, "scaled with a constant loss, which no causal law has"
         return self.law._causal_by_structure()
 
     def _static(self) -> float | None:

@@ -7,7 +7,8 @@ import numpy as np
 from permway.diagnosis.catalogue._change import with_law
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import between_free, log_free
-from permway.laws import Hysteretic, Maxwell, Parallel, Springpot
+from permway.laws import Hysteretic, Maxwell, Parallel, Scaled, Springpot
+from permway.laws.base import Law
 from permway.recordings.campaign import Campaign
 
 REFERENCE_HZ = 60.0
@@ -27,7 +28,7 @@ def springpot_free() -> tuple[Free, ...]:
 def relaxing(
     campaign: Campaign, name: str, *, stiffness_factor: float, order: float, share: float, rest: float = 0.0
 ) -> Campaign:
-    """The campaign with k (1 - s) + i k r eta + k s (i f / f0)^a / cos(a pi / 2) for a law k (1 + i eta).
+    """The campaign with k (1 + i r eta) (1 - s + s (i f / f0)^a / cos(a pi / 2)) for a law k (1 + i eta).
 
     Parameters
     ----------
@@ -38,7 +39,7 @@ def relaxing(
     order, share : float
         Of the springpot: a, and its share s of the stiffness at 60 Hz; without a share the constant stays.
     rest : float
-        r, of the constant loss, what stays constant; what goes, the springpot has.
+        r, of the constant loss, what stays, of all that relaxes too; what goes, the springpot has.
     """
     law = campaign.model.line.laws[name]
     if share == 0.0:
@@ -50,9 +51,12 @@ def relaxing(
     return with_law(
         campaign,
         name,
-        Parallel(
-            first=_constant(stiffness, 1.0 - share, rest * law.eta),
-            second=Springpot(coefficient=float(coefficient), order=order),
+        _lossy(
+            Parallel(
+                first=Hysteretic(stiffness=stiffness * (1.0 - share)),
+                second=Springpot(coefficient=float(coefficient), order=order),
+            ),
+            rest * law.eta,
         ),
     )
 
@@ -60,7 +64,7 @@ def relaxing(
 def relaxing_once(
     campaign: Campaign, name: str, *, stiffness_factor: float, rise: float, relaxation_Hz: float, rest: float
 ) -> Campaign:
-    """The campaign with a spring and a dashpot in series, r c i f / (f1 + i f), beside the spring c of a law.
+    """The campaign with a spring and a dashpot in series beside the spring of a law, c (1 + r i f / (f1 + i f)).
 
     Parameters
     ----------
@@ -71,7 +75,7 @@ def relaxing_once(
     rise, relaxation_Hz : float
         r, stiffness far above the relaxation over that far below it, less 1; and f1.
     rest : float
-        Of the constant loss k eta, what stays constant.
+        Of the constant loss eta, what stays, of all that relaxes too.
     """
     law = campaign.model.line.laws[name]
     if rise == 0.0:
@@ -83,13 +87,16 @@ def relaxing_once(
     return with_law(
         campaign,
         name,
-        Parallel(
-            first=_constant(stiffness, static, rest * law.eta),
-            second=Maxwell(stiffness=branch, damping=branch / (2.0 * np.pi * relaxation_Hz)),
+        _lossy(
+            Parallel(
+                first=Hysteretic(stiffness=stiffness * static),
+                second=Maxwell(stiffness=branch, damping=branch / (2.0 * np.pi * relaxation_Hz)),
+            ),
+            rest * law.eta,
         ),
     )
 
 
-def _constant(stiffness: float, share: float, loss_factor: float) -> Hysteretic:
-    """A share of a stiffness, with a loss factor of the whole."""
-    return Hysteretic(stiffness=stiffness * share, loss_factor=loss_factor / share)
+def _lossy(law: Law, loss_factor: float) -> Law:
+    """A law with a constant loss of all of it."""
+    return Scaled(law=law, factor=1.0, loss_factor=loss_factor)

@@ -16,7 +16,7 @@ DOMAIN: Domain = "path"
 FAMILY = "pad law"
 SUMMARY = (
     "A springpot beside a spring, k (1 - s) + k s (i f / f0)^a, f0 = 60 Hz, or a spring and a dashpot in series "
-    "beside a spring, c + c r i f / (f1 + i f), for the constant stiffness k."
+    "beside a spring, c + c r i f / (f1 + i f), for the constant stiffness k; of its constant loss a part stays."
 )
 PARAMETERS = {
     "stiffness_factor": "1, 0.3 to 3: stiffness at 60 Hz over the constant one",
@@ -24,7 +24,7 @@ PARAMETERS = {
     "share": "1, 0 to 0.98: share s of the springpot",
     "rise": "1, 0.02 to 10: r, what the stiffness rises by through the relaxation, over that below it",
     "relaxation_Hz": "Hz, 4 to 1000: f1, where the loss of the relaxing branch is largest",
-    "rest": "1, 0 to 1: part of the constant loss that stays beside",
+    "rest": "1, 0 to 1: part of the constant loss that stays, on all that relaxes too",
 }
 SIGNATURE = (
     "All channels from the rail, all pads alike; grows with distance from the frequency that the constant was "

@@ -16,7 +16,10 @@ from permway.recordings.campaign import Campaign
 ID = "support_gradient"
 DOMAIN: Domain = "path"
 FAMILY = "uneven support"
-SUMMARY = "The stiffness of a layer changes linearly along x, by a ratio from its first joint to its last."
+SUMMARY = (
+    "The stiffness of a layer changes linearly along the structure, by a ratio from its first joint to its last; "
+    "beyond, it goes on as at the ends, or is as it was."
+)
 PARAMETERS = {"ratio": "1, 0.13 to 8: stiffness at the end over that at the start, the mean unchanged"}
 SIGNATURE = "Responses at one end of the structure as of a stiffer layer, at the other as of a softer one."
 CONFUSED_WITH = {
@@ -28,7 +31,7 @@ FEWEST = 5
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
-    """One for each law of pads and beds, over its joints on the structure."""
+    """For each law of pads and beds, over its joints on the structure; two if it has others beyond."""
     line = situation.campaign.model.line
     every = layers(line)
     for law in laws_of([*pads(line), *beds(line)]):
@@ -36,17 +39,20 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         carried = [layer for layer in mine if layer.lower != GROUND] or mine
         x = np.concatenate([layer.x for layer in carried])
         if x.size >= FEWEST:
-            yield _of(law, float(x.min()), float(x.max()))
+            low, high = float(x.min()), float(x.max())
+            yield _of(law, low, high, beyond=True)
+            if any(layer.x.min() < low or layer.x.max() > high for layer in mine):
+                yield _of(law, low, high, beyond=False)
 
 
-def _of(law: str, low: float, high: float) -> Hypothesis:
+def _of(law: str, low: float, high: float, *, beyond: bool) -> Hypothesis:
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         ratio = values["ratio"]
 
         def factors(x: Reals) -> Reals:
-            # Beyond the structure the layer goes on as at its ends.
             along = np.clip((x - low) / (high - low), 0.0, 1.0)
-            return np.asarray((1.0 + (ratio - 1.0) * along) * 2.0 / (1.0 + ratio))
+            found = (1.0 + (ratio - 1.0) * along) * 2.0 / (1.0 + ratio)
+            return np.asarray(np.where(beyond | ((x >= low) & (x <= high)), found, 1.0))
 
         return with_factors(campaign, law, factors)
 
@@ -58,7 +64,11 @@ def _of(law: str, low: float, high: float) -> Hypothesis:
         amend=amend,
         locate=lambda _: Where(what=law, x_m=(low, high)),
         starts=((0.7,), (-0.7,)),
-        law=lambda v: f"{v['ratio']:.2f} times as stiff at its end as at its start",
+        law=lambda v: (
+            f"{v['ratio']:.2f} times as stiff at its end as at its start, and beyond "
+            f"{'as at the ends' if beyond else 'as before'}"
+        ),
+        variant="beyond" if beyond else "structure",
         size="ratio",
         none=1.0,
     )
