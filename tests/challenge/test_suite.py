@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import signal
+import subprocess
+import sys
 import time
 from collections import Counter
 from concurrent.futures import Future
@@ -83,6 +86,31 @@ def test_on_an_interrupt_nothing_goes_on() -> None:
     with pytest.raises(KeyboardInterrupt):
         interrupted(jobs)
     assert all(job.cancelled() or job.exception() is not None for job in jobs)
+
+
+def test_on_sigterm_commands_below_end_too(tmp_path: Path) -> None:
+    """A process with a pool, whose worker runs a command that would write a file after a while."""
+    late, begun = tmp_path / "late", tmp_path / "begun"
+    first, last = (f"pathlib.Path({str(path)!r}).touch()" for path in (begun, late))
+    said = f"import pathlib, time; {first}; time.sleep(5); {last}"
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import subprocess, sys\n"
+        "from permway.challenge.pool import processes\n"
+        "def work():\n"
+        f"    subprocess.run([sys.executable, '-c', {said!r}])\n"
+        "if __name__ == '__main__':\n"
+        "    with processes(1) as pool:\n"
+        "        pool.submit(work).result()\n"
+    )
+    parent = subprocess.Popen([sys.executable, str(script)])
+    while not begun.exists():
+        assert parent.poll() is None
+        time.sleep(0.05)
+    parent.send_signal(signal.SIGTERM)
+    assert parent.wait(4.0) == 128 + signal.SIGTERM
+    time.sleep(6.0)
+    assert not late.exists()
 
 
 def test_what_cannot_be_weighed_is_kept_with_its_reason(tmp_path: Path) -> None:

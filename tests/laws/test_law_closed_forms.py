@@ -160,6 +160,13 @@ def test_pad_is_equation_1() -> None:
     assert Scaled(law=pad, factor=2.0).loss_factor(50.0) == pytest.approx(0.2, rel=1e-14)
 
 
+def test_a_constant_loss_of_all_of_a_law() -> None:
+    plain = Maxwell(stiffness=3.0, damping=0.01)
+    lossy = Scaled(law=plain, factor=2.0, loss_factor=0.1)
+    np.testing.assert_allclose(lossy.complex(FREQUENCY), 2.0 * (1.0 + 0.1j) * plain.complex(FREQUENCY), rtol=1e-14)
+    assert "no causal law" in lossy._causal_by_structure()[1]
+
+
 def test_pair_takes_storage_of_one_and_loss_of_the_other() -> None:
     pair = StorageLossPair(storage_law=TABLE_1_STORAGE, loss_law=TABLE_1_LOSS)
     np.testing.assert_array_equal(pair.storage(FREQUENCY), TABLE_1_STORAGE.storage(FREQUENCY))

@@ -238,6 +238,7 @@ EVERY_KIND: list[Law] = [
     ),
     Series(first=Hysteretic(stiffness=1.0, loss_factor=0.1), second=Maxwell(stiffness=1.0, damping=1.0)),
     Parallel(first=Hysteretic(stiffness=1.0), second=Maxwell(stiffness=1.0, damping=1.0)),
+    Scaled(law=Maxwell(stiffness=1.0, damping=1.0), factor=2.0, loss_factor=0.1),
     Scaled(law=Hysteretic(stiffness=1.0, loss_factor=0.3), factor=2.0),
     StorageLossPair(storage_law=Hysteretic(stiffness=1.0), loss_law=Springpot(coefficient=1.0, order=0.1)),
 ]

@@ -7,14 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from permway.diagnosis.catalogue import slab_joints
-from permway.diagnosis.catalogue._pads import STIFFNESS, keys_of
+from permway.diagnosis.catalogue._pads import STIFFNESS, factors, keys_of
 from permway.diagnosis.catalogue._relaxing import REFERENCE_HZ, relaxing, relaxing_once
 from permway.diagnosis.compete import weaker
 from permway.diagnosis.hypothesis import Hypothesis, Where, between_free, log_free
-from permway.laws import Hysteretic
+from permway.laws import Hysteretic, Scaled
 from permway.laws.checks import check_law
 from permway.model.segments import Segment
 from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_factors import model_under
 from simulated import simulate
 
 FREQUENCY = np.geomspace(1.0, 1000.0, 200)
@@ -42,11 +43,13 @@ def test_a_springpot_takes_over_stiffness_and_loss(
     after = relaxing(campaign, "pad", stiffness_factor=factor, order=order, share=share, rest=rest)
     law = after.model.line.laws["pad"]
     k = before.stiffness * factor
-    (at,) = law.complex(np.array([REFERENCE_HZ]), None)
+    # What stays of the constant loss is a loss of all of it.
+    lossy = 1.0 + 1j * rest * before.eta
+    (at,) = law.complex(np.array([REFERENCE_HZ]), None) / lossy
     assert at.real == pytest.approx(k)
-    assert at.imag == pytest.approx(k * (rest * before.eta + share * np.tan(0.5 * np.pi * order)))
+    assert at.imag == pytest.approx(k * share * np.tan(0.5 * np.pi * order))
     # Its part grows with frequency by the order, and the constant part stays.
-    high, low = law.complex(np.array([10.0 * REFERENCE_HZ, 0.0 * REFERENCE_HZ + 1e-9]), None)
+    high, low = law.complex(np.array([10.0 * REFERENCE_HZ, 0.0 * REFERENCE_HZ + 1e-9]), None) / lossy
     assert (high.real - k * (1.0 - share)) / (k * share) == pytest.approx(10.0**order)
     assert low.real >= k * (1.0 - share) * (1.0 - 1e-9)
     assert check_law(law, (1.0, 1000.0)).passive
@@ -63,18 +66,28 @@ def test_a_relaxation_rises_by_what_it_says(
     after = relaxing_once(campaign, "pad", stiffness_factor=factor, rise=rise, relaxation_Hz=hertz, rest=rest)
     law = after.model.line.laws["pad"]
     k = before.stiffness * factor
-    at, low, middle, high = law.complex(np.array([REFERENCE_HZ, 1e-6, hertz, 1e9]), None)
+    lossy = 1.0 + 1j * rest * before.eta
+    at, low, middle, high = law.complex(np.array([REFERENCE_HZ, 1e-6, hertz, 1e9]), None) / lossy
     assert at.real == pytest.approx(k)
     assert high.real / low.real == pytest.approx(1.0 + rise, rel=1e-6)
     assert middle.real == pytest.approx(0.5 * (low.real + high.real), rel=1e-6)
     # Debye's peak: half the step.
-    assert middle.imag - k * rest * before.eta == pytest.approx(0.5 * (high.real - low.real), rel=1e-6)
+    assert middle.imag == pytest.approx(0.5 * (high.real - low.real), rel=1e-6)
     assert check_law(law, (1.0, 1000.0)).passive
 
 
 def test_a_law_of_two_parts_scales_with_both(campaign: Campaign) -> None:
     after = relaxing(campaign, "pad", stiffness_factor=1.0, order=0.2, share=0.5, rest=0.5)
-    assert keys_of(after.model.line.laws["pad"], STIFFNESS) == ("first.stiffness", "second.coefficient")
+    before = after.model.line.laws["pad"]
+    assert isinstance(before, Scaled)
+    assert keys_of(before.law, STIFFNESS) == ("first.stiffness", "second.coefficient")
+    stiffer = model_under(after.model, tuple(factors(after.model.line, "pad", 1.3, 0.5).items()))
+    at = np.array([REFERENCE_HZ])
+    law = stiffer.line.laws["pad"]
+    # Its springpot is half of what it was, and so is the loss of all.
+    inner = before.law.complex(at) - 0.5 * constant(campaign).stiffness
+    expected = 0.5 * constant(campaign).stiffness + 0.5 * inner
+    assert law.complex(at) == pytest.approx(1.3 * (1.0 + 0.5j * before.eta) * expected)
 
 
 @settings(max_examples=100, deadline=None)

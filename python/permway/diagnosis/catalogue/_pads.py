@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from permway.laws import AnyLaw, Parallel
+from permway.laws import AnyLaw, Parallel, Scaled
 from permway.model.line import Line
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_factors import model_under
@@ -42,6 +42,11 @@ def keys_of(law: AnyLaw, of: Mapping[str, Keys]) -> Keys:
         if not all(parts.values()):
             return ()
         return tuple(f"{part}.{key}" for part, keys in parts.items() for key in keys)
+    if isinstance(law, Scaled):
+        inner = keys_of(law.law, of)
+        if not inner:
+            return ()
+        return ("factor",) if of is STIFFNESS else (*(f"law.{key}" for key in inner), "loss_factor")
     return of.get(law.type, ())
 
 
