@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+import numpy as np
+
 from permway.diagnosis.catalogue._excite import stays, with_speed
 from permway.diagnosis.catalogue._runs import excesses
-from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, linear_free
+from permway.diagnosis.fit import Free
+from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation
 from permway.recordings.campaign import Campaign
 
 ID = "speed_error"
@@ -21,6 +24,7 @@ CONFUSED_WITH = {
 }
 SOURCE = "Brandt, Noise and Vibration Analysis (2011), chapter 12: order tracking"
 SIGMA = 0.015
+LIMITS = (float(np.log(0.9)) / SIGMA, float(np.log(1.1)) / SIGMA)
 STARTS = tuple((sign * z,) for z in (0.02, 0.07, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5) for sign in (1.0, -1.0))
 """So near each other that phases of wheels far apart are less than half a turn off at the nearest."""
 
@@ -39,7 +43,8 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             entry=ID,
             domain=DOMAIN,
             family=FAMILY,
-            free=(linear_free("factor", "1", 1.0, SIGMA, 0.9, 1.1),),
+            # Of all runs it does what the runs' own speeds do together: logarithms make that a straight line.
+            free=(Free("factor", "1", lambda z: float(np.exp(SIGMA * z)), LIMITS),),
             amend=amend,
             locate=stays("speed" if name is None else f"speed of {name}"),
             starts=STARTS,

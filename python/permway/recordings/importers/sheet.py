@@ -244,6 +244,7 @@ def _train_parameters(sheet: Sheet, runs: Sequence[str]) -> list[dict[str, Any]]
             "paths": [f"campaign.conditions.{run}.speed_m_per_s"],
             "acts": "scales",
             "tolerance_2sigma": SPEED_2SIGMA,
+            "prior": "log_normal",
             "bounds": [speed / 3.6 * (1.0 - SPEED_BOUND), speed / 3.6 * (1.0 + SPEED_BOUND)],
         }
         for run, speed in zip(runs, sheet.runs.speeds_kmh if sheet.runs else (), strict=True)
