@@ -40,11 +40,11 @@ def test_densities_of_what_was_left_out_add_up_to_that_of_all(base: Fit) -> None
     rest = Rest(base)
     rows = np.isin(base.evidence.rows.sensor, ["deck@3"])
     one, other = rest.scored(rows), rest.scored(~rows)
-    whole = rest._evidence(rest._whole, base.deviations, base.z)
+    whole, _ = rest._evidence(rest._whole, base.deviations, base.z)
     for part, scored in ((rows, one), (~rows, other)):
         volume = rest._whole.log_determinant - rest._of(~part).log_determinant + float(rest._volume[part].sum())
         z, deviations, _ = rest.fitted(~part)
-        alone = rest._evidence(rest._of(~part), deviations * ~part, z, ~part)
+        alone, _ = rest._evidence(rest._of(~part), deviations * ~part, z, ~part)
         assert -2.0 * scored.log_density == pytest.approx(whole - alone + volume, abs=1e-6)
         # More records never make what is known less likely than chance alone would.
         assert whole > alone
