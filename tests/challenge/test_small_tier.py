@@ -1,4 +1,4 @@
-"""The proof in small, end to end: a short deck with fasteners lost, of a seed that stays (`pytest -m injection`)."""
+"""The proof in small, end to end: a deck with fasteners lost, of a seed that stays (`pytest -m injection`)."""
 
 from __future__ import annotations
 
