@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -28,7 +29,7 @@ from permway.recordings.campaign import Campaign
 from simulated import simulate
 
 
-def same(_: Path) -> dict[str, Any]:
+def same(_: Path, __: Sequence[str]) -> dict[str, Any]:
     return {"always": {"status": "named", "effects": [], "held_out": {}}}
 
 
@@ -41,6 +42,10 @@ def test_without_guards_smooth_errors_are_called_an_effect(tmp_path: Path) -> No
     for name in ("smallest residual", "BIC, independent errors"):
         assert said[name]["effects"]
     assert rivals(campaign, threads=1) == said
+    # What is ruled out is offered to no rival.
+    best = said["smallest residual"]["effects"][0]["name"]
+    without = rivals(campaign, ruled_out=[best], threads=1)
+    assert all(effect["name"] != best for one in without.values() for effect in one["effects"])
 
 
 def test_a_gaussian_process_says_that_and_near_which_sensor_and_not_what(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from collections.abc import Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
@@ -40,7 +41,7 @@ def never(_: Path, __: Path) -> float:
     raise SolveError("no such model")
 
 
-def same(_: Path) -> dict[str, Any]:
+def same(_: Path, __: Sequence[str]) -> dict[str, Any]:
     return {"always": {"status": "named", "effects": [], "held_out": {}}}
 
 

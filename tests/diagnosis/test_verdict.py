@@ -318,3 +318,9 @@ def test_a_notebook_shows_a_small_table() -> None:
     assert rivals == "fastener_loss 0.97, novel 0.02"
     assert values == "factor 0.05 (0.03 to 0.08)"
     assert "<script>" not in html
+
+
+def test_the_sentence_tells_what_was_ruled_out() -> None:
+    said = verdict("recalibrated", ruled_out=("wheel_flat", "wheel_polygon")).sentence
+    assert said.endswith("; not considered, for somebody had ruled it out: wheel_flat, wheel_polygon.")
+    assert "ruled" not in verdict("recalibrated").sentence

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import as_completed
 from pathlib import Path
 from typing import Any
 
 from permway.challenge.pool import processes
+from permway.challenge.run import ruled_out
 from permway.challenge.weigh import whole
 from permway.errors import InputError
 
 ANSWERS = "rivals"
 
 Progress = Callable[[int, int], object]
-Ask = Callable[[Path], Mapping[str, Any]]
-"""From a campaign file to the answer of each rival."""
+Ask = Callable[[Path, Sequence[str]], Mapping[str, Any]]
+"""From a campaign file, and what the catalogue has to do without, to the answer of each rival."""
 
 
 def answered(folder: Path, ask: Ask, *, workers: int = 1, progress: Progress | None = None) -> int:
@@ -60,7 +61,8 @@ def answer(folder: Path, name: str, ask: Ask) -> None:
     """Let rivals answer on one campaign that was run, unless they have."""
     if _there(folder, name):
         return
-    for rival, said in ask(folder / "verdicts" / name / "campaign" / "campaign.toml").items():
+    campaign = folder / "verdicts" / name / "campaign" / "campaign.toml"
+    for rival, said in ask(campaign, ruled_out(folder, name)).items():
         target = folder / ANSWERS / rival / name
         target.mkdir(parents=True, exist_ok=True)
         whole(target / "verdict.json", json.dumps(said, indent=1) + "\n")

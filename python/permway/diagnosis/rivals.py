@@ -7,7 +7,7 @@ errors that are smooth in frequency, a gain that must hold on records not fitted
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -50,7 +50,12 @@ Answer = dict[str, Any]
 
 
 def rivals(
-    campaign: Campaign, *, seed: int = 0, threads: int | None = None, progress: Progress | None = None
+    campaign: Campaign,
+    *,
+    seed: int = 0,
+    ruled_out: Collection[str] = (),
+    threads: int | None = None,
+    progress: Progress | None = None,
 ) -> dict[str, Answer]:
     """What each rival says of a campaign.
 
@@ -59,6 +64,8 @@ def rivals(
     campaign : Campaign
     seed : int
         Of random answers, together with the campaign's title.
+    ruled_out : collection of str
+        Effects of the catalogue that cannot be.
     threads : int, optional
         Of the solver.
     progress : callable, optional
@@ -76,7 +83,7 @@ def rivals(
     evidence = independent(gather(campaign, predictable(campaign)[0], threads=threads))
     fit = replace(recalibrate(evidence, learn=False, reweigh=True), heat=1.0)
     ring = Ring(fit)
-    offered = list(hypotheses(Situation(fit, scanned(fit))))
+    offered = list(hypotheses(Situation(fit, scanned(fit)), ruled_out))
     screened: list[Quick] = []
     for index, hypothesis in enumerate(offered):
         if progress is not None:
@@ -97,9 +104,9 @@ def rivals(
     return dict(zip(RIVALS, answers, strict=True))
 
 
-def of_file(campaign: Path) -> dict[str, Answer]:
+def of_file(campaign: Path, ruled_out: Collection[str]) -> dict[str, Answer]:
     """The same of a campaign file, on one thread."""
-    return rivals(read_campaign(campaign), threads=1)
+    return rivals(read_campaign(campaign), ruled_out=ruled_out, threads=1)
 
 
 def independent(evidence: Evidence) -> Evidence:

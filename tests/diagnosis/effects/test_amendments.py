@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from permway.diagnosis.catalogue import slab_joints
+from permway.diagnosis.catalogue import slab_joints, support_gradient
 from permway.diagnosis.catalogue._pads import STIFFNESS, factors, keys_of
 from permway.diagnosis.catalogue._relaxing import REFERENCE_HZ, relaxing, relaxing_once
 from permway.diagnosis.compete import weaker
@@ -133,3 +133,16 @@ def test_what_has_no_size_or_would_grow_is_left_as_it_is() -> None:
     assert weaker(sized(0.0, size=""), start, 0.5) == []
     assert weaker(sized(0.0), start, 1.5) == []
     assert weaker(sized(0.0), start, 0.0) == []
+
+
+@pytest.mark.parametrize("beyond", [True, False])
+def test_a_gradient_goes_on_beyond_the_structure_or_does_not(campaign: Campaign, beyond: bool) -> None:
+    line = campaign.model.line
+    x = line.joint_table().x[[line.joints[i].law == "pad" for i in line.joint_table().layer]]
+    low, high = np.quantile(x, [0.3, 0.7], method="nearest")
+    changed = support_gradient._of("pad", float(low), float(high), beyond=beyond).amend(campaign, {"ratio": 1.5})
+    table = changed.model.line.joint_table()
+    scale = table.scale[[changed.model.line.joints[i].law == "pad" for i in table.layer]]
+    assert scale[x == high][0] / scale[x == low][0] == pytest.approx(1.5)
+    assert scale[x == x.min()][0] == pytest.approx(0.8 if beyond else 1.0)
+    assert scale[x == x.max()][0] == pytest.approx(1.2 if beyond else 1.0)

@@ -20,6 +20,7 @@ STIFFNESS: dict[str, Keys] = {
     "fractional_kelvin_voigt": ("stiffness", "coefficient"),
     "springpot": ("coefficient",),
     "maxwell": ("stiffness", "damping"),
+    "scaled": ("factor",),
 }
 """Numbers of a law that all scale with its stiffness."""
 
@@ -42,11 +43,9 @@ def keys_of(law: AnyLaw, of: Mapping[str, Keys]) -> Keys:
         if not all(parts.values()):
             return ()
         return tuple(f"{part}.{key}" for part, keys in parts.items() for key in keys)
-    if isinstance(law, Scaled):
+    if isinstance(law, Scaled) and law.type not in of:
         inner = keys_of(law.law, of)
-        if not inner:
-            return ()
-        return ("factor",) if of is STIFFNESS else (*(f"law.{key}" for key in inner), "loss_factor")
+        return (*(f"law.{key}" for key in inner), "loss_factor") if inner else ()
     return of.get(law.type, ())
 
 
