@@ -17,6 +17,8 @@ from permway.challenge.effects.fasteners import FastenersLost
 from permway.challenge.layout import Layout, draw_tests
 
 SENSORS, STRUCK = slice(0, 6), slice(0, 13, 2)
+NOISE = 9.97e-7
+"""Of a sensor at one line, m/s2 for a blow of 1 N."""
 
 
 def measured(seed: int = 11) -> tuple[str, list[tuple[str, str]]]:
@@ -25,7 +27,7 @@ def measured(seed: int = 11) -> tuple[str, list[tuple[str, str]]]:
     tests = draw_tests(np.random.default_rng(seed), layout, temperatures=1)
     tests = replace(tests, lines_Hz=(4.0, 400.0, 4.0), seconds=8.0)
     lost = FastenersLost.draw(np.random.default_rng(5), "strong", Site(layout, tests))
-    case = replace(case, layout=layout, tests=tests, effects=(lost,))
+    case = replace(case, layout=layout, tests=tests, effects=(lost,), chain=replace(case.chain, noise=NOISE))
     test = case.measure()[0][0]
     names, files = [f"{body}@{x:.2f}" for body, x in tests.sensors[SENSORS]], []
     for (body, x), frf, coherence in zip(

@@ -63,6 +63,15 @@ def diagnose(
         list[str] | None,
         typer.Option("--rule-out", metavar="EFFECT", help="Of the catalogue, what cannot be; may be repeated."),
     ] = None,
+    draws: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            max=1_000_000,
+            help="Draws of the parameters of what is found, for its intervals and class: 400, say, a solve each. "
+            "By default from curvature.",
+        ),
+    ] = 0,
     no_report: Annotated[bool, typer.Option("--no-report", help="Without report.html.")] = False,
     allow_outside: Outside = False,
     threads: Threads = None,
@@ -86,7 +95,9 @@ def diagnose(
     folder = prepare_folder(output or campaign.parent / "diagnosis")
     with keeping(folder / FOLDER, key_of(described, seed, ruled_out)) as journal:
         with stage_bar("diagnosing", as_json) as progress:
-            result = run(described, seed=seed, ruled_out=ruled_out, threads=threads, progress=progress)
+            result = run(
+                described, seed=seed, ruled_out=ruled_out, draws=draws, threads=threads, progress=progress
+            )
         written = write_diagnosis(result, folder, page=not no_report)
         journal.close()
     say(written, as_json)

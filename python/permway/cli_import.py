@@ -29,7 +29,10 @@ def import_rubber_rig(
     folder: Folder,
     output: Into,
     copy: Copy = False,
-    law: Annotated[str, typer.Option(help="Form of the law.")] = "fractional_zener",
+    law: Annotated[
+        str,
+        typer.Option(help="Form of the law; constant is what a data sheet says, the DMA withheld."),
+    ] = "fractional_zener",
     as_json: Json = False,
 ) -> None:
     """DMA tables and shaker records, a campaign for each rubber."""

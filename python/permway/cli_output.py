@@ -12,6 +12,8 @@ from typing import Annotated, Any
 
 import typer
 
+from permway.interrupt import interruptible
+
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, for machines.")]
 Threads = Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; by default all processors.")]
 Outside = Annotated[
@@ -33,40 +35,47 @@ def tell(message: object) -> None:
 
 
 @contextmanager
+def _unwinding() -> Iterator[None]:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    with interruptible():
+        yield
+
+
+@contextmanager
 def progress_bar(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
     """A bar on the terminal; nothing when piped. Within it, and after, Ctrl-C unwinds what is under way."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    if quiet or not sys.stderr.isatty():
-        yield lambda _done, _total: None
-        return
-    # A fifth of a second to load, which only a terminal needs.
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    with _unwinding():
+        if quiet or not sys.stderr.isatty():
+            yield lambda _done, _total: None
+            return
+        # A fifth of a second to load, which only a terminal needs.
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
-    columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn()
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(title, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+        columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn()
+        with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+            task = bar.add_task(title, total=None)
+            yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
 @contextmanager
 def stage_bar(title: str, quiet: bool) -> Iterator[Callable[[str, int, int], None]]:
     """A bar that names the stage it is in; of a stage whose length is not known it only shows that it moves."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    if quiet or not sys.stderr.isatty():
-        yield lambda _stage, _done, _total: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    with _unwinding():
+        if quiet or not sys.stderr.isatty():
+            yield lambda _stage, _done, _total: None
+            return
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(title, total=None)
+        columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+        with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+            task = bar.add_task(title, total=None)
 
-        def progress(stage: str, done: int, total: int) -> None:
-            bar.update(task, description=f"{title}: {stage}", completed=done, total=total or None)
+            def progress(stage: str, done: int, total: int) -> None:
+                bar.update(task, description=f"{title}: {stage}", completed=done, total=total or None)
 
-        yield progress
+            yield progress
 
 
 def say(result: dict[str, Any], as_json: bool) -> None:

@@ -20,7 +20,7 @@ FAMILIES = {"fastener_loss": "local loss", "mortar_void": "local loss", "sensor_
 
 
 def truth(*effects: dict[str, Any]) -> dict[str, Any]:
-    return {"effects": list(effects)}
+    return {"effects": [{"kind": "lost", **one} for one in effects]}
 
 
 def verdict(status: str, *effects: dict[str, Any], gain: float = 5.0) -> dict[str, Any]:

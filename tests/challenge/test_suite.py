@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -89,29 +90,35 @@ def test_on_an_interrupt_nothing_goes_on() -> None:
     assert all(job.cancelled() or job.exception() is not None for job in jobs)
 
 
-def test_on_sigterm_commands_below_end_too(tmp_path: Path) -> None:
-    """A process with a pool, whose worker runs a command that would write a file after a while."""
-    late, begun = tmp_path / "late", tmp_path / "begun"
-    first, last = (f"pathlib.Path({str(path)!r}).touch()" for path in (begun, late))
-    said = f"import pathlib, time; {first}; time.sleep(5); {last}"
+def test_on_sigterm_workers_and_commands_end_and_begin_nothing_more(tmp_path: Path) -> None:
+    """A pool with jobs that wait, whose worker runs a command that would write a file after a while."""
+    said = "import pathlib, sys, time; pathlib.Path(sys.argv[1]).touch(); time.sleep(3); "
+    said += "pathlib.Path(sys.argv[1] + '.late').touch()"
     script = tmp_path / "script.py"
     script.write_text(
-        "import subprocess, sys\n"
+        "import os, pathlib, subprocess, sys\n"
         "from permway.challenge.pool import processes\n"
-        "def work():\n"
-        f"    subprocess.run([sys.executable, '-c', {said!r}])\n"
+        "def work(index):\n"
+        f"    folder = pathlib.Path({str(tmp_path)!r})\n"
+        "    (folder / f'worker.{os.getpid()}').touch()\n"
+        f"    subprocess.run([sys.executable, '-c', {said!r}, str(folder / f'job{{index}}')])\n"
         "if __name__ == '__main__':\n"
         "    with processes(1) as pool:\n"
-        "        pool.submit(work).result()\n"
+        "        for job in [pool.submit(work, index) for index in range(4)]:\n"
+        "            job.result()\n"
     )
     parent = subprocess.Popen([sys.executable, str(script)])
-    while not begun.exists():
+    while not (tmp_path / "job0").exists():
         assert parent.poll() is None
         time.sleep(0.05)
     parent.send_signal(signal.SIGTERM)
     assert parent.wait(4.0) == 128 + signal.SIGTERM
-    time.sleep(6.0)
-    assert not late.exists()
+    time.sleep(4.0)
+    # The pool had given the worker its next job beforehand.
+    assert sorted(path.name for path in tmp_path.glob("job*")) == ["job0"]
+    (worker,) = tmp_path.glob("worker.*")
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(worker.suffix[1:]), 0)
 
 
 def test_what_cannot_be_weighed_is_kept_with_its_reason(tmp_path: Path) -> None:

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
-from permway.diagnosis.compete import Quick
 from permway.diagnosis.hypothesis import Hypothesis, Where, linear_free
+from permway.diagnosis.quick import Quick
 from permway.diagnosis.search import _finalists
 
 RING = cast(Any, SimpleNamespace(fit=SimpleNamespace(deviations=np.zeros(2000))))

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.blocks_spectra import SpectraBlock
+from permway.diagnosis.blocks_tabular import TableBlock
 from permway.diagnosis.catalogue import sensor_gain
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.compete import Ring
+from permway.diagnosis.e_value import _halves, log_e_value
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather
-from permway.diagnosis.heldout import Rest, gains, log_e_value, parts
+from permway.diagnosis.heldout import Rest, gains, parts
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.recordings.campaign import Campaign
@@ -88,6 +93,25 @@ def test_levels_are_as_measured_however_large_the_errors_of_pairs(evidence: Evid
     expected = 20.0 * np.log10(np.abs(measured) / np.abs(said)).reshape(-1)
     np.testing.assert_allclose(levels[0][: expected.size], expected, atol=1e-9)
     assert np.isnan(levels[0][expected.size : 2 * expected.size]).all()
+
+
+def test_halves_are_points_and_lines_and_of_several_tables_whole_tables(evidence: Evidence) -> None:
+    """Runs meet one profile, so one says nothing of whether another was met by chance."""
+    assert len(list(_halves(evidence))) == 1
+    table, run = TableBlock.__new__(TableBlock), SpectraBlock.__new__(SpectraBlock)
+    rows = SimpleNamespace(force=np.array([""] * 6), frequency_Hz=np.array([10.0, 20.0] * 3))
+
+    def halves(*blocks: object) -> list[list[bool]]:
+        some = SimpleNamespace(rows=rows, block_of=np.array([0, 0, 1, 1, 2, 2]), blocks=blocks)
+        return [half.tolist() for half in _halves(cast(Evidence, some))]
+
+    by_line = [False, True] * 3
+    assert halves(run, run, run) == [by_line]
+    assert halves(table, table, table) == [by_line, [False, False, True, True, False, False]]
+    assert halves(table, run, table) == [by_line, [False, False, False, True, True, True]]
+    rows.force = np.array(["a", "b", "", "", "", ""])
+    struck = [False, True, False, True, False, True]
+    assert halves(run, table, table) == [struck, [False, True, False, False, True, True]]
 
 
 def test_with_nothing_missing_the_e_value_passes_20_once_in_twenty_times_at_most(tmp_path: Path) -> None:

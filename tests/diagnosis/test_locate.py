@@ -16,8 +16,9 @@ from permway.diagnosis.compete import Ring
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
-from permway.diagnosis.locate import Found, scan
+from permway.diagnosis.locate import scan
 from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.spot import Found
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from simulated import Simulated, simulate

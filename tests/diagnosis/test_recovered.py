@@ -10,9 +10,10 @@ from permway.diagnosis.catalogue._change import hung_mass, with_joints
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
-from permway.diagnosis.locate import Found, scan
-from permway.diagnosis.recalibrate import untouched
+from permway.diagnosis.locate import scan
 from permway.diagnosis.recovered import law_stiffness
+from permway.diagnosis.refit import untouched
+from permway.diagnosis.spot import Found
 from permway.model.joints import GROUND, Joints
 from simulated import simulate
 

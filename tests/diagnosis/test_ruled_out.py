@@ -10,7 +10,7 @@ from permway.diagnosis.catalogue import entries, hypotheses, known
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.journal import key_of
-from permway.diagnosis.recalibrate import untouched
+from permway.diagnosis.refit import untouched
 from permway.errors import InputError
 from simulated import simulate
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from permway.diagnosis.gather import gather
-from permway.diagnosis.recalibrate import learnt
+from permway.diagnosis.learning import learnt
 from permway.diagnosis.smooth import Origin, PairColumns, Smooth, SparseColumns
 from permway.diagnosis.wander import LENGTHS, SHORTEST, Wander
 from permway.diagnosis.whitener import AllColumns, Whitener

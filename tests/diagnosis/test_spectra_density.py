@@ -37,10 +37,20 @@ def measured(averages: int, seed: int, coherence: float = 0.5) -> np.ndarray:
 
 def block(averages: int, seed: int, coherence: float = 0.5) -> SpectraBlock:
     dataset = SimpleNamespace(
-        data=csd(measured(averages, seed, coherence), averages), record=SimpleNamespace(name="run")
+        data=csd(measured(averages, seed, coherence), averages), record=SimpleNamespace(name="run", segment_s=2.0)
     )
     expected = csd(truth(coherence=coherence), averages)
     return SpectraBlock(cast(Any, dataset), expected, noise=np.zeros((2, LINES.size)), floor=0.0)
+
+
+def test_lines_within_the_window_s_reach_of_zero_are_not_used() -> None:
+    """In segments of 2 s it reaches over 2 Hz: so does the line at 2 Hz to zero, and is the first that is used."""
+    one = block(14, 3)
+    assert one.frequency.tolist() == LINES[::2].tolist()
+    first = one.dataset.data.isel(frequency=slice(0, 1)).assign_coords(frequency=[1.5])
+    near = SimpleNamespace(data=first.assign_attrs(averages=14.0), record=one.dataset.record)
+    with pytest.raises(InputError, match=r"run: has no line .*got 'up to 1.5 Hz.*; give a longer segment_s"):
+        SpectraBlock(cast(Any, near), first, noise=np.zeros((2, 1)))
 
 
 @pytest.mark.parametrize("averages", [4, 14, 120])

@@ -24,7 +24,8 @@ from permway.diagnosis.verdict import (
     Weight,
     json_schema,
 )
-from permway.diagnosis.verdict_words import smallest
+from permway.diagnosis.verdict_parts import Moved, Recalibrated
+from permway.diagnosis.verdict_words import smallest, span
 from permway.errors import InputError
 from permway.model.line import Line
 from simulated import MODEL
@@ -227,6 +228,29 @@ def test_a_model_that_leaves_something_says_that_it_is_not_all(status: str) -> N
     assert "no physics is missing" not in found
     fits = open_end.model_copy(update={"misfit_after": 1.2})
     assert "not all of it" not in verdict(status, effects=(LOST,), evidence=fits).sentence
+
+
+def test_the_ends_of_an_interval_differ_as_they_are_written() -> None:
+    assert span(0.0499, 0.0501) == "0.0499 to 0.0501"
+    assert span(0.04999, 0.05001) == "0.04999 to 0.05001"
+    assert span(12345.6, 12345.9) == "12345.6 to 12345.9"
+    assert span(-1e-5, 1e-5) == "−1e−5 to 1e−5"
+    assert span(2.0, 2.0) == "2 to 2"
+
+
+def test_a_parameter_that_nobody_would_believe_is_said() -> None:
+    near = Moved(value=1.05e9, prior=1e9, z=1.2)
+    far = {"level": Moved(value=7.0, prior=0.0, z=7.0), "pad.k": Moved(value=2e7, prior=6e7, z=-4.4)}
+    words = (
+        "; level has to be 7 for it, 7 standard deviations from the owner's 0"
+        " and pad.k has to be 2e7 for it, 4.4 standard deviations from the owner's 6e7."
+    )
+    found = verdict("recalibrated", recalibrated=Recalibrated(before={"slab.E": near, **far})).sentence
+    assert found.endswith(words)
+    assert "slab.E" not in found
+    # What an amendment brings back is off no more.
+    back = Recalibrated(before=far, after=dict.fromkeys(far, near))
+    assert "has to be" not in verdict("named", effects=(LOST,), recalibrated=back).sentence
 
 
 def test_nothing_missing_in_one_sentence() -> None:

@@ -135,10 +135,10 @@ def test_interpolation_weakens_what_comes_late(tmp_path: Path) -> None:
 
 def test_lines_to_solve_at() -> None:
     plain = solved_lines(np.array([10.0, 20.0]), 1.0, None)
-    assert plain.tolist() == list(range(6, 25))
+    assert plain.tolist() == [*np.arange(6.0, 16.1, 0.25), *range(17, 25)]
     mixed = solved_lines(np.array([28.0, 33.0]), 1.0, [(0.0, 0.5), (30.0, 1.0)])
     assert mixed.tolist() == [*np.arange(24.0, 30.1, 0.5), *np.arange(31.0, 38.0)]
-    assert solved_lines(np.array([1.0, 2.0]), 1.0, None)[0] == 1.0
+    assert solved_lines(np.array([1.0, 2.0]), 1.0, None)[0] == 0.25
 
 
 def rig(folder: Path) -> Campaign:

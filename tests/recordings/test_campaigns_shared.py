@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from permway.laws import FractionalKelvinVoigt, Hysteretic
+from permway.diagnosis.diagnose import diagnose
+from permway.laws import TFDV, FractionalKelvinVoigt, FractionalZener, Hysteretic, Pad
 from permway.model.bodies import Mass
 from permway.model.changes import Change
 from permway.model.file import Model
@@ -39,6 +40,7 @@ MESH_NEPER = 0.02
 """Of the finite elements that made the records: they turn the phase by up to 0.5 degrees, 0.009, at 400 Hz."""
 
 
+@pytest.mark.filterwarnings("default:.*times the noise of the other channels")
 @pytest.mark.parametrize("name", SEALED)
 def test_sealed_campaigns_import(name: str, tmp_path: Path) -> None:
     campaign = import_sheet(SHARED / "campaigns" / name, tmp_path / name)
@@ -151,6 +153,27 @@ def test_rubber_rig_by_its_campaign(tmp_path: Path) -> None:
             assert rms_dB(predicted["transmissibility"].values, dataset.data["transmissibility"].values) < bar
     table = rubber.load()[0]
     assert rms_dB(predict(rubber, [table])[0]["modulus"].values, table.data["modulus"].values) < 1.0
+
+
+def test_rubber_that_is_shaken_says_what_its_dma_knows(tmp_path: Path) -> None:
+    """The DMA withheld, and a data sheet's modulus instead: the order is that of the law that the DMA gives."""
+    folder = SHARED / "recordings" / "rubber-rig"
+    _, sheet = import_rubber_rig(folder, tmp_path / "sheet", law="constant")
+    _, known = import_rubber_rig(folder, tmp_path / "dma")
+    law = known.model.line.laws["rubber"]
+    assert isinstance(law, Pad)
+    assert isinstance(law.material, TFDV)
+    assert isinstance(law.material.law, FractionalZener)
+    verdict = diagnose(sheet, threads=1).verdict
+    (effect,) = verdict.effects
+    assert (verdict.status, effect.name) == ("named", "pad_frequency")
+    order = effect.parameters["order"]
+    assert order.low is not None
+    assert order.high is not None
+    assert order.low <= law.material.law.order <= order.high
+    assert order.high - order.low < 0.2
+    for gain in verdict.held_out.values():
+        assert gain.db_after < 0.4 < gain.db_before
 
 
 def test_pad_materials_by_their_campaigns(tmp_path: Path) -> None:

@@ -197,3 +197,20 @@ def test_the_model_file_is_one_that_can_be_solved(campaign: Campaign) -> None:
     text = (campaign.folder / "model.toml").read_text()
     assert tomllib.loads(text)["irregularity"] == {"type": "german_sato", "continuous": True, "exponent": 3.06}
     assert read_model(campaign.folder / "model.toml") == campaign.model
+
+
+def test_the_floor_of_a_channel_much_noisier_than_its_like_is_that_of_the_others(
+    folder: Path, tmp_path: Path
+) -> None:
+    """Else the model would hold for right what its owner would call a fault."""
+    noisy = Path(shutil.copytree(folder, tmp_path / "deck"))
+    random = np.random.default_rng(3)
+    for path in noisy.glob("run_*.npz"):
+        content = dict(np.load(path))
+        acceleration = content["acceleration"]
+        acceleration[:, 5] += 9.0 * NOISE * random.standard_normal(len(acceleration))
+        np.savez(path, **content)
+    with pytest.warns(UserWarning, match=r"carbody: [78]\d.* times the noise of the other channels"):
+        campaign = import_sheet(noisy, tmp_path / "out")
+    floors = [campaign.sensor(name).chain.noise_floor for name in ("axlebox1", "bogie1", "carbody")]
+    assert floors == pytest.approx([2.0 * NOISE**2 / RATE_HZ] * 3, rel=0.2)

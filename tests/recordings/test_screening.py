@@ -6,8 +6,10 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from permway.recordings.finding import Screening
 from permway.recordings.record import TimeRecord
-from permway.recordings.screening import FALSE_ALARMS, Screening, screen
+from permway.recordings.screening import screen
+from permway.recordings.screening_levels import FALSE_ALARMS
 from scipy import signal
 
 RATE = 1024.0

@@ -37,6 +37,9 @@ COLD_TOO = 0.15
 INVENTED = 0.5
 """Share of invented mechanisms among effects of no catalogue; of the others the catalogue loses the family."""
 
+NOISY, NOISIEST = 0.5, 100.0
+"""Share of campaigns whose hammer tests are noisier than the cleanest, and up to how many times, in amplitude."""
+
 SLOW_OR_FAST = 0.005
 """Largest relative error of a speed."""
 
@@ -146,7 +149,7 @@ def draw(seed: int, tier: Tier) -> Case:
     nominal = draw_nominal(_random(seed, tier, 1, 1))
     tests = draw_tests(_random(seed, tier, 1, 2), layout, temperatures=temperatures)
     true = draw_true(_random(seed, tier, 2), nominal)
-    chain = _chain(_random(seed, tier, 3))
+    chain = _chain(_random(seed, tier, 3), _noisier(_random(seed, tier, 6)))
     site, drawing = Site(layout, tests), _random(seed, tier, 5)
     effects = tuple(kind.draw(drawing, strength or "medium", site) for kind in kinds)
     return Case(
@@ -182,11 +185,16 @@ def _kinds(random: np.random.Generator, tier: Tier) -> list[type[Effect]]:
             return apart[: int(random.integers(2, 4))]
 
 
-def _chain(random: np.random.Generator) -> Chain:
+def _noisier(random: np.random.Generator) -> float:
+    """Times the noise of a clean hammer test: the noisier the test, the harder an effect is to find."""
+    return float(NOISIEST ** random.random()) if random.random() < NOISY else 1.0
+
+
+def _chain(random: np.random.Generator, noisier: float) -> Chain:
     speeds = tuple(round(1.0 + float(x), 5) for x in random.uniform(-SLOW_OR_FAST, SLOW_OR_FAST, 2))
     return Chain(
         wander_dB=round(float(random.uniform(0.5, 1.5)), 3),
-        noise=round(1.2e-6 * float(np.exp(0.4 * random.standard_normal())), 9),
+        noise=round(noisier * 1.2e-6 * float(np.exp(0.4 * random.standard_normal())), 9),
         speed=speeds,
         warmer_C=tuple(round(0.5 * float(x), 3) for x in random.standard_normal(2)),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import threading
@@ -22,9 +23,10 @@ def processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     workers : int
     """
     others = set(active_children())
-    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_end_when_told)
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_of_a_group_of_its_own)
     # Handlers belong to the main thread.
-    before = _end_when_told() if threading.current_thread() is threading.main_thread() else None
+    main = threading.current_thread() is threading.main_thread()
+    before = signal.signal(signal.SIGTERM, _exit) if main else None
     try:
         yield pool
     except BaseException:
@@ -38,6 +40,21 @@ def processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     pool.shutdown()
 
 
-def _end_when_told() -> signal._HANDLER:
-    """Make SIGTERM an exit of Python's, on which the commands that run below are ended, too."""
-    return signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
+def _exit(*_: object) -> None:
+    sys.exit(128 + signal.SIGTERM)
+
+
+def _of_a_group_of_its_own() -> None:
+    """Make a worker end on SIGTERM with all commands that it runs.
+
+    An exception would not do: the pool would hand it on as the job's, and have the worker begin with the next.
+    """
+    if hasattr(os, "setpgrp"):
+        os.setpgrp()
+        signal.signal(signal.SIGTERM, _end_group)
+
+
+def _end_group(*_: object) -> None:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    os.killpg(0, signal.SIGTERM)
+    os._exit(128 + signal.SIGTERM)

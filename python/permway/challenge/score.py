@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import beta
 
+from permway.challenge.parameters import in_catalogue
 from permway.challenge.weigh import weights, weights_of_each
 from permway.errors import InputError
 
@@ -193,9 +194,9 @@ def _covered(concealed: Iterable[Mapping[str, Any]], effects: Iterable[Mapping[s
     by_name = {e["name"]: e["parameters"] for e in effects if e["name"]}
     found = []
     for effect in concealed:
-        for key, value in effect.get("parameters", {}).items():
+        for key, value in in_catalogue(effect["kind"], effect.get("parameters", {})).items():
             said = by_name.get(effect["id"], {}).get(key)
-            if said is not None and said["low"] is not None and isinstance(value, int | float):
+            if said is not None and said["low"] is not None:
                 found.append(bool(said["low"] <= value <= said["high"]))
     return found
 

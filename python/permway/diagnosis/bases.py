@@ -8,7 +8,8 @@ from permway.arrays import Reals
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
-from permway.diagnosis.recalibrate import recalibrate, relearnt
+from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.refit import relearnt
 
 NEARLY = 1.3
 """Mean square of the deviations below which the recalibrated base is searched itself."""

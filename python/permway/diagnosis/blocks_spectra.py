@@ -17,13 +17,13 @@ from permway.diagnosis.wander import Wander
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
+from permway.recordings.predict.grid import REACH_LINES
 
 SMALL = 1e-4
 """Neper, of the gains by which answers to gains are found."""
 
 LEAST_LINES = 20
 """Of a part, from which its scatter is learnt."""
-
 
 FEWEST = 3.0
 """Averages of a run."""
@@ -69,9 +69,18 @@ class SpectraBlock:
         self.dataset, self._expected, self._floor, self._noise = dataset, expected, floor, noise
         self._scatter = tuple(scatter)
         data = dataset.data
-        # Neighbouring lines under Hann's window say half the same.
-        self._lines = np.arange(0, data.sizes["frequency"], 2)
-        self.frequency: Reals = data["frequency"].values[self._lines]
+        known_Hz, segment_s = data["frequency"].values, dataset.record.segment_s
+        lines = np.flatnonzero(known_Hz * segment_s >= REACH_LINES - 1e-9)
+        if lines.size == 0:
+            raise InputError(
+                f"has no line that is {REACH_LINES} lines from zero, as far as Hann's window reaches",
+                where=dataset.record.name,
+                value=f"up to {known_Hz.max():g} Hz, segments of {segment_s:g} s",
+                remedy="give a longer segment_s, or a wider band_Hz",
+            )
+        # Neighbouring lines under that window say half the same; the first say what lies beyond zero.
+        self._lines = lines[::2]
+        self.frequency: Reals = known_Hz[self._lines]
         self.measured: Complexes = data["csd"].values[:, :, self._lines]
         self.averages = float(data.attrs["averages"])
         if self.averages < FEWEST:

@@ -14,8 +14,9 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
-from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.compete import Ring
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.quick import Quick
 from permway.diagnosis.whitener import Whitener
 from permway.errors import InputError
 

@@ -12,6 +12,7 @@ import xarray as xr
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.compare_tables import parameters_of, smooth_of
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.fit import Fit, Free, free_parameters
 from permway.diagnosis.gather import gather, predictable
@@ -31,12 +32,6 @@ KIND = {
     "transmissibility": "transmissibilities",
     "material": "moduli",
 }
-
-SAYS_NOTHING = 0.9
-"""A posterior that is wider than this share of the prior: the records say nothing of the parameter."""
-
-LEFT = 2.0
-"""Standard deviations of the prior beyond which a value has left its tolerance."""
 
 Progress = Callable[[int, int], object]
 
@@ -204,8 +199,8 @@ def assemble(
         records=tuple(records),
         bands=tuple(bands),
         deviations=tuple(deviations),
-        parameters=_parameters(campaign, fit),
-        smooth=_smooth(measure),
+        parameters=parameters_of(campaign, fit),
+        smooth=smooth_of(measure),
         left_out=dict(left_out or {}),
     )
     if finished is not None:
@@ -249,62 +244,6 @@ def _spread(evidence: Evidence, free: Sequence[Free], z: Reals, covariance: Real
         variance = np.einsum("cfp,pq,cfq->cf", jacobian, covariance, jacobian, optimize=True)
         found.append(scale * np.sqrt(np.maximum(variance, 0.0)))
     return found
-
-
-def _parameters(campaign: Campaign, fit: Fit | None) -> xr.Dataset:
-    """Owner's value and tolerance of every parameter; recalibrated, beside them, what was found."""
-    known = list(campaign.parameters.known.values())
-    nominal = np.array([k.nominal for k in known])
-    columns: dict[str, Any] = {
-        "nominal": nominal,
-        "low_2sigma": np.array([k.value(-2.0) for k in known]),
-        "high_2sigma": np.array([k.value(2.0) for k in known]),
-    }
-    if fit is not None:
-        values, intervals = fit.values(), fit.intervals()
-        sigma = dict(zip((f.name for f in fit.free), np.sqrt(np.diag(fit.covariance)), strict=True))
-        z = dict(zip((f.name for f in fit.free), fit.z, strict=True))
-        names = [k.name for k in known]
-        columns |= {
-            "value": np.array([values[n] for n in names]),
-            "low": np.array([intervals[n][0] for n in names]),
-            "high": np.array([intervals[n][1] for n in names]),
-            "z": np.array([z[n] for n in names]),
-            "sigma_over_prior": np.array([sigma[n] for n in names]),
-        }
-        columns["left"] = np.abs(columns["z"]) > LEFT
-        columns["not_informed"] = columns["sigma_over_prior"] > SAYS_NOTHING
-    return xr.Dataset(
-        {name: ("parameter", values) for name, values in columns.items()},
-        coords={
-            "parameter": np.array([k.name for k in known], dtype=str),
-            "unit": ("parameter", np.array([k.parameter.unit for k in known], dtype=str)),
-        },
-        attrs={"interval": "low to high hold 90 %", "z": "standard deviations of the owner's prior"},
-    )
-
-
-def _smooth(evidence: Evidence) -> xr.Dataset:
-    """Sizes of the smooth errors that were allowed, dB of the level they act on."""
-    decay = {f"record {d.record.name}" for d in evidence.datasets if VARIABLE[d.record.statistic] in POWERS}
-    sizes = {
-        origin: size * (POWER_DB if origin.startswith(("irregularity", "decay")) or origin in decay else NEPER_DB)
-        for origin, size in evidence.sizes.items()
-        if origin in {o.name for o in evidence.columns.origins}
-    }
-    for block in evidence.blocks:
-        if isinstance(block, FrfBlock):
-            sizes[f"pairs of {block.dataset.record.name}"] = block.pair * NEPER_DB
-    return xr.Dataset(
-        {
-            "size_dB": (
-                "origin",
-                np.array(list(sizes.values())),
-                {"long_name": "standard deviation", "units": "dB"},
-            )
-        },
-        coords={"origin": np.array(list(sizes), dtype=str)},
-    )
 
 
 class _Steps:

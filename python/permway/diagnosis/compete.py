@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
-from scipy import linalg, optimize
+from scipy import linalg
 
 from permway.arrays import Reals
 from permway.diagnosis.bounded import bounded_step
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.felt import changed
-from permway.diagnosis.fit import Build, Fit, Free
+from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Hypothesis
+from permway.diagnosis.quick import Quick, stacked, weaker
 from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.refit import moved
 from permway.diagnosis.tangent import STEP
 from permway.errors import InputError, SolveError
-from permway.recordings.campaign import Campaign
 
 STEPS_BACK = 4
 """Further steps of a hypothesis that promises much and whose start is worse than nothing."""
@@ -26,90 +27,6 @@ STEPS_TOGETHER = 5
 """Of base and effect, where the effect alone does not gain what it promises."""
 
 Progress = Callable[[str], object]
-
-
-@dataclass(frozen=True)
-class Quick:
-    """What a hypothesis gains while the base moves linearly.
-
-    Attributes
-    ----------
-    hypothesis : Hypothesis
-    z : ndarray
-        Of the effect's parameters.
-    base_z : ndarray
-        Of the base's parameters, moved along.
-    gain : float
-        Of the heated objective; minus infinity if the amended model cannot be solved.
-    columns : ndarray of float32, shape (n, p), optional
-        Derivative of the deviations by z, where it was last taken.
-    direction : ndarray of float32, shape (n,), optional
-        What the start that it was screened from does to the deviations.
-    start : ndarray, optional
-        Coordinates of that start.
-    promise : float
-        What the change that the start makes would gain, if it could be taken in any measure.
-    """
-
-    hypothesis: Hypothesis
-    z: Reals
-    base_z: Reals
-    gain: float
-    columns: np.ndarray | None = None
-    direction: np.ndarray | None = None
-    start: Reals | None = None
-    promise: float = 0.0
-
-    @property
-    def values(self) -> dict[str, float]:
-        """Of the effect's parameters, by name."""
-        return {f.name: f.value(float(v)) for f, v in zip(self.hypothesis.free, self.z, strict=True)}
-
-
-def stacked(build: Build, hypothesis: Hypothesis, prefix: str) -> tuple[Build, tuple[Free, ...]]:
-    """A base with an effect on top: from values to the campaign, and the effect's parameters by their new names.
-
-    Parameters
-    ----------
-    build : callable
-        The base's.
-    hypothesis : Hypothesis
-    prefix : str
-        Before the names of the effect's parameters, as "1.": two effects may be of one kind.
-    """
-    names = {prefix + f.name: f.name for f in hypothesis.free}
-
-    def made(values: Mapping[str, float]) -> Campaign:
-        base = build({k: v for k, v in values.items() if k not in names})
-        return hypothesis.amend(base, {names[k]: v for k, v in values.items() if k in names})
-
-    free = tuple(Free(prefix + f.name, f.unit, f.value, f.limits) for f in hypothesis.free)
-    return made, free
-
-
-def weaker(hypothesis: Hypothesis, z: Reals, share: float) -> list[Reals]:
-    """The same with a size so much nearer to none; nothing where an effect has no such size.
-
-    Parameters
-    ----------
-    hypothesis : Hypothesis
-    z : ndarray
-        Of its parameters.
-    share : float
-        Of how far the size is from none.
-    """
-    names = [f.name for f in hypothesis.free]
-    if not 0.0 < share < 1.0 or hypothesis.size not in names or np.isinf(hypothesis.none):
-        return []
-    place = names.index(hypothesis.size)
-    free = hypothesis.free[place]
-    size = hypothesis.none + share * (free.value(float(z[place])) - hypothesis.none)
-    low, high = free.limits
-    if (free.value(low) - size) * (free.value(high) - size) >= 0.0:
-        return []
-    found = z.copy()
-    found[place] = optimize.brentq(lambda one: free.value(one) - size, low, high)
-    return [found]
 
 
 class Ring:
@@ -131,6 +48,20 @@ class Ring:
         normal = (fit.jacobian.T @ fit.jacobian - self.reduced.T @ self.reduced) / fit.heat
         self.factor = linalg.cho_factor(normal + np.eye(fit.z.size))
         self.start = self._objective(fit.deviations)[0]
+        self._others: dict[tuple[tuple[str, float], ...], Ring] = {}
+
+    def _about(self, hypothesis: Hypothesis) -> Ring:
+        """The ring about the base that a hypothesis is tried from: its own, but where it names another."""
+        if not hypothesis.about:
+            return self
+        key = tuple(sorted(hypothesis.about.items()))
+        if key not in self._others:
+            self._others[key] = Ring(moved(self.fit, hypothesis.about))
+        return self._others[key]
+
+    def _seen_from(self, other: Ring, quick: Quick) -> Quick:
+        """What was gained over another ring's start, as gain over this one's; and back with the two exchanged."""
+        return replace(quick, gain=quick.gain + self.start - other.start)
 
     def _objective(self, deviations: Reals) -> tuple[float, Reals]:
         """The least heated objective over linear moves of the base, and the move."""
@@ -167,6 +98,10 @@ class Ring:
         least : float
             Promised gain below which the step is not taken, and the promise is what it is said to gain.
         """
+        other = self._about(hypothesis)
+        if other is not self:
+            found = other.screen(replace(hypothesis, about={}), least=least)
+            return self._seen_from(other, replace(found, hypothesis=hypothesis))
         best: tuple[tuple[float, float], Quick, Reals] | None = None
         low, high = np.array([f.limits for f in hypothesis.free]).T
         tried = [np.clip(np.array(start, dtype=np.float64), low, high) for start in hypothesis.starts]
@@ -220,6 +155,11 @@ class Ring:
 
     def quick(self, hypothesis: Hypothesis, *, after: Quick | None = None, steps: int = 6) -> Quick:
         """Follow a hypothesis on from where screening ended, while the base moves linearly."""
+        other = self._about(hypothesis)
+        if other is not self:
+            begun = None if after is None else other._seen_from(self, after)
+            found = other.quick(replace(hypothesis, about={}), after=begun, steps=steps)
+            return self._seen_from(other, replace(found, hypothesis=hypothesis))
         found = self.screen(hypothesis) if after is None else after
         deviations = self._deviations(hypothesis, found.z)
         return found if deviations is None else self._descend(found, deviations, steps)
@@ -311,13 +251,14 @@ class Ring:
         See :func:`permway.diagnosis.recalibrate.recalibrate`.
         """
         build, free = stacked(self.fit.build, quick.hypothesis, prefix)
+        known = self._about(quick.hypothesis).fit
         return recalibrate(
             self.evidence,
             build=build,
             free=(*self.fit.free, *free),
             start=np.concatenate([quick.base_z, quick.z]),
             learn=False,
-            slopes=None if quick.columns is None else np.hstack([self.fit.jacobian, quick.columns]),
+            slopes=None if quick.columns is None else np.hstack([known.jacobian, quick.columns]),
             most_steps=most_steps,
             settle=settle,
             progress=progress,

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.compete import Ring
 from permway.diagnosis.felt import FELT
 from permway.diagnosis.fit import Fit, Free
 from permway.diagnosis.heldout import Gain
-from permway.diagnosis.locate import Found
+from permway.diagnosis.quick import Quick
 from permway.diagnosis.search import Finalist, Round, lines, penalty
+from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL
 from permway.diagnosis.verdict_parts import ClassMember, Smallest
 from permway.errors import InputError, SolveError
@@ -121,7 +122,7 @@ def explained(base: Fit, amended: Fit, left: Sequence[Found]) -> float:
     return float(gained / (gained + max(unexplained(amended, left), 0.0)))
 
 
-def members(found: Round, *, explained: float) -> list[ClassMember]:
+def members(found: Round, *, explained: float, beside: Collection[str] = ()) -> list[ClassMember]:
     """The class of effects that the records allow, the most probable first.
 
     Parameters
@@ -131,19 +132,23 @@ def members(found: Round, *, explained: float) -> list[ClassMember]:
     explained : float
         Share of the gap to a free description that the amended model closes: what is open is novel as likely as it
         is large.
+    beside : collection of str
+        What was found beside it, and so is no rival.
     """
     best = found.finalists[0]
     weight: dict[str, float] = {}
     for finalist in found.finalists:
         # While none fits, the records say less than they would. The best form of an effect comes first.
-        less = (finalist.fit.log_evidence - best.fit.log_evidence) / best.fit.heat
+        less = finalist.fit.log_evidence + finalist.correction - best.fit.log_evidence - best.correction
+        less /= best.fit.heat
         weight.setdefault(finalist.hypothesis.entry, float(np.exp(min(less, 0.0))))
     for quick in _twins(found, best):
         behind = 0.5 * (quick.gain - best.quick.gain) - 0.5 * (
             penalty(quick, found.ring) - penalty(best.quick, found.ring)
         )
         weight.setdefault(quick.hypothesis.entry, float(np.exp(min(behind, 0.0))))
-    weight.pop(NOVEL, None)
+    for name in {NOVEL, *(set(beside) - {best.hypothesis.entry})}:
+        weight.pop(name, None)
     if not weight:
         return [ClassMember(name=NOVEL, probability=1.0)]
     total = sum(weight.values())

@@ -10,10 +10,11 @@ from permway.diagnosis import decide, grammar
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Situation, Where
-from permway.diagnosis.locate import Found, Spot, scanned
+from permway.diagnosis.locate import scanned
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.recovered import same_place
 from permway.diagnosis.search import Finalist, Round, lines, penalty, search
+from permway.diagnosis.spot import Found, Spot
 from permway.model.bodies import Beam
 
 RESONANCE, MASSES = ("frequency_Hz", "loss_factor"), ("mass_kg", "mass_share")

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 from permway.arrays import Complexes
 from permway.diagnosis.advise import advise
 from permway.diagnosis.bases import bases
+from permway.diagnosis.candidates import candidates
 from permway.diagnosis.catalogue import known
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.compare import assemble
@@ -17,14 +19,17 @@ from permway.diagnosis.describe import Description
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.labels import mislabelled
-from permway.diagnosis.locate import Found, scanned
+from permway.diagnosis.locate import scanned
 from permway.diagnosis.prove import prove
 from permway.diagnosis.recovered import law_stiffness, same_place
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.rounds import effects
-from permway.diagnosis.search import Finalist, Progress, Round, candidates
+from permway.diagnosis.sampling import corrected, sampled
+from permway.diagnosis.search import Finalist, Progress, Round
 from permway.diagnosis.speak import Proof, mixed_up, verdict_of
+from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict_parts import NextMeasurement
+from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 
 SHOWN_INCONSTANT = 8
@@ -36,6 +41,7 @@ def diagnose(
     *,
     seed: int = 0,
     ruled_out: Collection[str] = (),
+    draws: int = 0,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Diagnosis:
@@ -48,6 +54,8 @@ def diagnose(
         Of simulated nulls: the same seed gives the same verdict.
     ruled_out : collection of str
         Effects of the catalogue that cannot be, as somebody knows who was there; the verdict tells of them.
+    draws : int
+        Of the parameters of what is found, for intervals and classes; 0 for curvature alone. Each takes a solve.
     threads : int, optional
         Of the solver.
     progress : callable, optional
@@ -56,9 +64,12 @@ def diagnose(
     Raises
     ------
     InputError
-        If no record can be predicted, a file cannot be read, or what is ruled out is not in the catalogue.
+        If no record can be predicted, a file cannot be read, what is ruled out is not in the catalogue, or draws
+        are negative.
     """
     ruled_out = known(ruled_out)
+    if draws < 0:
+        raise InputError("must not be negative", where="draws", value=draws, remedy="0 is for curvature alone")
     clock = Clock(progress)
     clock("read")
     kept, left_out = predictable(campaign)
@@ -73,6 +84,8 @@ def diagnose(
         ([], []) if mixed is not None else effects(searched, base, found, seed, clock, description, ruled_out)
     )
     described = None if mixed is not None else description.of(rounds, accepted)
+    if draws:
+        rounds = [corrected(one, draws=draws, seed=seed, progress=clock) for one in rounds]
     catalogued = rounds
     if described is not None:
         rounds, accepted = [described], [described.finalists[0]]
@@ -83,6 +96,9 @@ def diagnose(
     if amended is not None:
         clock("hold out")
         proof = prove(base, amended, rounds, accepted, clock, others=catalogued[0])
+        if draws:
+            proof = replace(proof, spans=_spans(proof.weighed, accepted, draws, seed, clock))
+        amended = proof.weighed
         advice = _advice(rounds, clock)
     clock("compare")
     law, remaining = _law(base, accepted, found, left)
@@ -104,6 +120,17 @@ def diagnose(
         seconds=clock.seconds(),
         inconstant=inconstant,
     )
+
+
+def _spans(
+    weighed: Fit, accepted: Sequence[Finalist], draws: int, seed: int, clock: Clock
+) -> dict[str, tuple[float, float]]:
+    """Of every effect whose draws say enough."""
+    spans: dict[str, tuple[float, float]] = {}
+    for one in accepted:
+        found = sampled(weighed, one.own, draws=draws, seed=seed, progress=clock)
+        spans.update(found.spans if found is not None else {})
+    return spans
 
 
 def _advice(rounds: Sequence[Round], clock: Clock) -> tuple[NextMeasurement, ...]:

@@ -49,14 +49,14 @@ def gather(
     """
     evidence = _blocked(campaign, campaign.load() if datasets is None else datasets, threads)
     origins = evidence.columns.origins
-    return evidence.with_sizes({o.name: 1.0 if o.fixed else _first_size(campaign, o.name) for o in origins})
+    return evidence.with_sizes({o.name: 1.0 if o.fixed else first_size(campaign, o.name) for o in origins})
 
 
 def evidence_of(campaign: Campaign, datasets: Sequence[Dataset], like: Evidence) -> Evidence:
     """Datasets that need not be of the campaign's files, with the sizes of smooth errors that another has."""
     evidence = _blocked(campaign, datasets, like.threads)
     learnt = [like.sizes[o.name] for o in like.columns.origins if not o.fixed]
-    usual = float(np.median(learnt)) if learnt else _first_size(campaign, "")
+    usual = float(np.median(learnt)) if learnt else first_size(campaign, "")
     sizes = {o.name: 1.0 if o.fixed else like.sizes.get(o.name, usual) for o in evidence.columns.origins}
     return evidence.with_sizes(sizes, like.length)
 
@@ -96,7 +96,8 @@ def _kind(dataset: Dataset) -> str:
     return "spectra" if dataset.record.statistic in ("csd", "psd") else dataset.record.statistic
 
 
-def _first_size(campaign: Campaign, origin: str) -> float:
+def first_size(campaign: Campaign, origin: str) -> float:
+    """Size of an origin's smooth errors before anything is learnt, neper; the irregularity's is its owner's."""
     known = campaign.said.irregularity
     if origin == "irregularity":
         # Two standard deviations, of a power.

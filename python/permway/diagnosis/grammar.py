@@ -18,7 +18,7 @@ from permway.diagnosis.catalogue._interval import shares, spacing_of, stations_o
 from permway.diagnosis.elements import ELEMENTS, Element
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation, Where, linear_free, log_free
-from permway.diagnosis.locate import Found
+from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL
 from permway.laws import Parallel
 from permway.model.changes import Change

@@ -283,30 +283,3 @@ def gains(base: Rest, amended: Rest, chosen: Sequence[Part]) -> list[Gain]:
         error = float(np.sqrt(2.0 * max(abs(nats), LEAST_NATS)))
         found.append(Gain(part, nats, error, before.error_dB, after.error_dB, after.z, after.sigma))
     return found
-
-
-def log_e_value(base: Rest, amended: Rest, tried: int) -> float:
-    """Logarithm of an e-value: what the amended model foretells of one half from the other, over the base.
-
-    With nothing missing, and parameters as their owner says, the ratio of the two predictive densities has the
-    expectation 1, so it passes 20 once in twenty times at most (Vovk and Wang 2021). It is the mean of both ways
-    to take the halves, and of all effects that were tried, of which the others are counted as foretelling nothing:
-    choosing the best of them is so paid for. (A split likelihood in the manner of Wasserman, Ramdas and
-    Balakrishnan (2020) lets the base fit the judging half itself; with thirty parameters that are known beforehand
-    this costs some twenty nats.) The sizes of smooth errors are those learnt on all records.
-
-    Parameters
-    ----------
-    base, amended : Rest
-    tried : int
-        Effects, or sets of effects, that the amended model was chosen from.
-    """
-    rows = base.fit.evidence.rows
-    points = list(dict.fromkeys(rows.force[rows.force != ""]))
-    # Every second point of the hammer; of what has none, every second line: an effect may show in one run only.
-    half = np.isin(rows.force, points[1::2])
-    bare = np.ones(half.size, dtype=bool) if len(points) < 2 else rows.force == ""
-    _, line = np.unique(rows.frequency_Hz[bare], return_inverse=True)
-    half[bare] = line % 2 == 1
-    one, other = (amended.scored(j).log_density - base.scored(j).log_density for j in (half, ~half))
-    return float(np.logaddexp(one, other)) - float(np.log(2.0 * max(tried, 1)))

@@ -9,7 +9,7 @@ from typing import Literal, Protocol
 import numpy as np
 
 from permway.diagnosis.fit import Fit, Free
-from permway.diagnosis.locate import Found
+from permway.diagnosis.spot import Found
 from permway.recordings.campaign import Campaign
 
 Domain = Literal["path", "irregularity", "vehicle", "measurement"]
@@ -102,6 +102,8 @@ class Hypothesis:
         The value of `size` at which there is no effect.
     variant : str
         What tells forms of the effect apart that have the same parameters.
+    about : mapping of str to float
+        Coordinates z of parameters of the base, by name, that it is tried from where the base's own lead astray.
     """
 
     entry: str
@@ -115,6 +117,7 @@ class Hypothesis:
     size: str = ""
     none: float = 0.0
     variant: str = ""
+    about: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def form(self) -> tuple[str, ...]:

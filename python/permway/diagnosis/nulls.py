@@ -13,7 +13,8 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
-from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.compete import Ring
+from permway.diagnosis.quick import Quick
 from permway.diagnosis.search import penalty
 
 DRAWS = 2000

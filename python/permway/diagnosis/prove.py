@@ -6,10 +6,12 @@ import numpy as np
 
 from permway.diagnosis import decide
 from permway.diagnosis.clock import Clock
-from permway.diagnosis.compete import Quick
+from permway.diagnosis.e_value import log_e_value
 from permway.diagnosis.fit import Fit, gained
-from permway.diagnosis.heldout import Rest, at_fault, gains, log_e_value, parts
+from permway.diagnosis.heldout import Rest, at_fault, gains, parts
+from permway.diagnosis.quick import Quick
 from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.refit import weighed_anew
 from permway.diagnosis.search import Finalist, Round, lines
 from permway.diagnosis.speak import Proof
 from permway.diagnosis.unsteady import unsteady
@@ -28,6 +30,8 @@ def prove(
     held_out = gains(before, after, chosen)
     tried = [len(found.screened) for found in rounds[: len(accepted)]]
     log_e = log_e_value(before, after, int(np.prod(tried)))
+    clock("weigh anew")
+    weighed = weighed_anew(amended)
     clock("placebo")
     sham = _placebo(others, accepted[0])
     placebo_gain, placebo_held_out = 0.0, []
@@ -45,6 +49,7 @@ def prove(
         log_e=log_e,
         placebo=placebo_held_out,
         unsteady=unsteady(amended, held_out),
+        weighed=weighed,
         bic_gain=bic,
         conditions=decide.conditions(
             bic_gain=bic,

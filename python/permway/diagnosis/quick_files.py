@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from permway.diagnosis.compete import Quick
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.journal import Arrays
+from permway.diagnosis.quick import Quick
 
 OPTIONAL = ("columns", "direction", "start")
 

@@ -14,22 +14,13 @@ from scipy import linalg
 
 from permway.arrays import Reals
 from permway.diagnosis.bounded import bounded_step
-from permway.diagnosis.evidence import LARGEST_SMOOTH, SMALLEST_SMOOTH, Evidence, Solved
+from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Build, Fit, Free, free_parameters
 from permway.diagnosis.journal import Arrays, current
+from permway.diagnosis.learning import learnt
 from permway.diagnosis.speeds import begin
 from permway.diagnosis.tangent import Problem, State, Tangent
-from permway.diagnosis.wander import LENGTHS
 from permway.errors import InputError
-
-USUAL, SEEN = 0.02, 4.0
-"""Size of smooth errors that is expected beforehand, neper or rad, and how many coefficients it counts for."""
-
-APART, FEWEST_ALIKE = 3.0, 4
-"""Times the median of its kind that the size of an origin may be, and of how many that is told."""
-
-LARGEST = {"irregularity": 1.5, "decay": 0.5}
-"""Of origins by their first word, nepers of a power, where it is not that of a chain."""
 
 UNFIT, COARSE = 1.5, 1e-3
 """Mean square of the deviations from which a model does not fit, and share of them that a step must then gain."""
@@ -37,14 +28,8 @@ UNFIT, COARSE = 1.5, 1e-3
 FORETOLD = 0.95
 """Ratio of a step's gain to what the slopes foretold, or the other way round, from which they serve once more."""
 
-MOST_LEARNT, LEARNING_STEPS = 2, 5
-"""Times that the sizes of smooth errors are learnt, and steps each time."""
-
-HOPELESS = 3.0
-"""Times the gain of the last learning by which a fit may lie behind a rival and yet come near."""
-
-MOST_RELEARNT, RELEARNT = 6, 2.0
-"""Times that sizes are learnt of a model that is fitted, and what the objective must then gain."""
+MOST_LEARNT = 2
+"""Times that the sizes of smooth errors are learnt on the way."""
 
 Progress = Callable[[str], object]
 
@@ -236,133 +221,8 @@ def _solvable(problem: Problem, z: Reals) -> State:
     return state
 
 
-def relearnt(fit: Fit, sharp: Evidence, *, best: float = np.inf) -> Fit:
-    """On the records as they are, the sizes of smooth errors learnt anew, now that less is left to explain.
-
-    As often as the fit gains by it: sizes that are too large hide where to go on.
-
-    Parameters
-    ----------
-    fit : Fit
-    sharp : Evidence
-        Of the records as they are.
-    best : float
-        Objective of a rival: what lies behind it by more than a few times its last gain will not come near.
-    """
-    value, slopes = np.inf, None
-    for _ in range(MOST_RELEARNT):
-        evidence, _ = learnt(sharp, sharp.predicted(fit.campaign))
-        fit = recalibrate(evidence, build=fit.build, free=fit.free, start=fit.z, learn=False, slopes=slopes)
-        slopes = fit.jacobian
-        if fit.objective > value - RELEARNT or fit.objective - best > HOPELESS * (value - fit.objective):
-            break
-        sharp, value = evidence, fit.objective
-    return fit
-
-
-def settled(fit: Fit) -> Fit:
-    """The same with slopes and covariance of where it ended."""
-    return recalibrate(
-        fit.evidence,
-        build=fit.build,
-        free=fit.free,
-        start=fit.z,
-        slopes=fit.jacobian,
-        learn=False,
-        reweigh=False,
-        most_steps=0,
-    )
-
-
-def untouched(evidence: Evidence) -> Fit:
-    """The owner's values as if the records were what they predict: slopes and covariance, and no deviation."""
-    problem = Problem(evidence, evidence.campaign.with_values, free_parameters(evidence.campaign))
-    state = problem.at(np.zeros(len(problem.free)))
-    if state is None:
-        raise InputError("the model cannot be solved", where="model")
-    tangent = problem.tangent(state)
-    nothing = np.zeros_like(state.deviations)
-    return Fit(
-        free=problem.free,
-        z=state.z,
-        covariance=np.asarray(linalg.inv(tangent.normal(1.0))),
-        campaign=state.solved.campaign,
-        evidence=evidence,
-        deviations=nothing,
-        clean=nothing,
-        chi2=0.0,
-        prior=0.0,
-        log_determinant=tangent.whitener.log_determinant,
-        jacobian=tangent.jacobian,
-        heat=1.0,
-        evaluations=problem.evaluations,
-        build=problem.build,
-    )
-
-
 def _limits(free: tuple[Free, ...]) -> tuple[Reals, Reals]:
     if not free:
         return np.zeros(0), np.zeros(0)
     low, high = np.array([f.limits for f in free]).T
     return low, high
-
-
-def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
-    """Learn the sizes of smooth errors, and the length of those of chains, about a prediction.
-
-    Sizes by MacKay's fixed point (1992): a coefficient counts by as much as the records tell of it.
-
-    Returns
-    -------
-    (Evidence, float)
-        And the largest change of a size's logarithm.
-    """
-    before = evidence.sizes
-    for step in range(LEARNING_STEPS):
-        deviations = evidence.deviations(solved.datasets)
-        if step == 0:
-            evidence = _of_best_length(evidence, deviations)
-        whitener = evidence.whitener
-        coefficients, told = whitener.explained(deviations), 1.0 - whitener.variances()
-        origin_of = whitener.of_origin()
-        sizes, change = dict(evidence.sizes), 0.0
-        for index, origin in enumerate(whitener.columns.origins):
-            if origin.fixed:
-                continue
-            mine, old = origin_of == index, evidence.sizes[origin.name]
-            # As if so many more of the usual size had been seen: what does not fit is not all chain.
-            power = float(np.sum(coefficients[mine] ** 2)) * old**2
-            new = float(np.sqrt((power + SEEN * USUAL**2) / (told[mine].sum() + SEEN)))
-            highest = LARGEST.get(origin.name.split()[0], LARGEST_SMOOTH)
-            sizes[origin.name] = float(np.clip(new, SMALLEST_SMOOTH, highest))
-        sizes = _alike(sizes)
-        for origin in whitener.columns.origins:
-            old = evidence.sizes[origin.name]
-            change = max(change, abs(np.log(sizes[origin.name] / old)))
-        clean = deviations - whitener.smooth(coefficients, deviations.size)
-        evidence = evidence.with_sizes(sizes).learnt_scatter(solved.datasets, clean)
-        if change < 0.1:
-            break
-    return evidence, max((abs(np.log(evidence.sizes[o] / size)) for o, size in before.items()), default=0.0)
-
-
-def _alike(sizes: dict[str, float]) -> dict[str, float]:
-    """Without one that is far larger than most of its kind: chains of a kind wander alike.
-
-    What one channel is missed by beyond that is a fault of its own, or physics, and is sought.
-    """
-    kinds: dict[str, list[float]] = {}
-    for name, size in sizes.items():
-        kinds.setdefault(name.split()[0], []).append(size)
-    most = {
-        kind: max(APART * float(np.median(found)), USUAL) if len(found) >= FEWEST_ALIKE else np.inf
-        for kind, found in kinds.items()
-    }
-    return {name: min(size, most[name.split()[0]]) for name, size in sizes.items()}
-
-
-def _of_best_length(evidence: Evidence, deviations: Reals) -> Evidence:
-    """Of the present length and its neighbours, the one under which the deviations are likeliest."""
-    at = int(np.argmin(np.abs(np.log(np.array(LENGTHS) / evidence.length))))
-    tried = [evidence.with_sizes(evidence.sizes, length) for length in LENGTHS[max(0, at - 1) : at + 2]]
-    return min(tried, key=lambda e: e.whitener.square(deviations) + e.whitener.log_determinant)

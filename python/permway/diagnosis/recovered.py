@@ -7,7 +7,7 @@ import numpy as np
 from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.fit import Fit
-from permway.diagnosis.locate import Found, Spot
+from permway.diagnosis.spot import Found, Spot
 from permway.model.line import Line
 from permway.recordings.campaign_factors import campaign_under
 from permway.recordings.predict.hammer import temperature

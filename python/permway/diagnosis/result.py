@@ -11,7 +11,7 @@ from permway.diagnosis.compare import Comparison
 from permway.diagnosis.constancy import Inconstant
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Where
-from permway.diagnosis.locate import Found
+from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import Verdict
 
 Stage = Literal["screened", "quick", "full"]

@@ -18,12 +18,13 @@ from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.classifier import Classifier
-from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.compete import Ring
 from permway.diagnosis.discrepancy import Discrepancy, discrepancy
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
+from permway.diagnosis.quick import Quick
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.search import lines
 from permway.diagnosis.verdict import NOVEL

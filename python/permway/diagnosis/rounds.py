@@ -9,23 +9,29 @@ import numpy as np
 
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.clock import Clock
-from permway.diagnosis.compete import Quick, Ring, stacked
+from permway.diagnosis.compete import Ring
+from permway.diagnosis.decide import E_VALUE
 from permway.diagnosis.describe import Description
+from permway.diagnosis.e_value import log_e_value
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.heldout import Rest
 from permway.diagnosis.hypothesis import Hypothesis, Situation
-from permway.diagnosis.locate import Found
 from permway.diagnosis.nulls import threshold
-from permway.diagnosis.recalibrate import UNFIT, recalibrate, settled
-from permway.diagnosis.search import Finalist, Round, lines, search
+from permway.diagnosis.quick import Quick, stacked
+from permway.diagnosis.recalibrate import UNFIT, recalibrate
+from permway.diagnosis.refit import settled, weighed_anew
+from permway.diagnosis.search import Finalist, Round, lines, penalty, search
+from permway.diagnosis.slips import gain_by_record, slip
+from permway.diagnosis.spot import Found
 from permway.errors import InputError, SolveError
 
 MOST_EFFECTS = 3
 
-SECOND = 0.03
-"""Share of the first effect's gain from which a further one counts as an effect."""
-
 MOST_OF_IT = 0.5
 """Share of what earlier effects leave that may be left by a smaller one."""
+
+BEYOND, BELIEVED = 5.0, 2.5
+"""Standard deviations of its prior beyond which nobody would believe a parameter, and within which one does."""
 
 
 def effects(
@@ -74,7 +80,7 @@ def effects(
         rounds.append(result)
         if not result.finalists:
             break
-        if accepted and _mends(accepted, result.finalists[0]):
+        if accepted and (_mends(base, accepted, result.finalists[0]) or not _stands(accepted[-1], result, clock)):
             break
         accepted.append(result.finalists[0])
         if order == 0 and description.instead(result):
@@ -90,13 +96,35 @@ def effects(
     return rounds, accepted
 
 
-def _mends(accepted: Sequence[Finalist], last: Finalist) -> bool:
+def _mends(base: Fit, accepted: Sequence[Finalist], last: Finalist) -> bool:
     """Whether a further effect is so small that it is as likely to mend how the first was idealised.
 
-    Beside a large first effect that leaves a misfit, one that explains most of that is no such thing.
+    Beside a large first effect that leaves a misfit, one that explains most of that is no such thing; nor is one
+    that brings a parameter back from where nobody would believe it.
     """
     before, after = accepted[-1].fit.heat - 1.0, last.fit.heat - 1.0
-    return last.gain < SECOND * accepted[0].gain and not (before > UNFIT - 1.0 and after < MOST_OF_IT * before)
+    if before > UNFIT - 1.0 and after < MOST_OF_IT * before:
+        return False
+    known = {f.name: abs(float(z)) for f, z in zip(last.fit.free, last.fit.z, strict=True)}
+    own = zip(accepted[-1].fit.free, accepted[-1].fit.z, strict=True)
+    if any(abs(z) > BEYOND and known[f.name] < BELIEVED for f, z in own if f.name in known):
+        return False
+    further = gain_by_record(accepted[-1].fit, last.fit)
+    return last.gain < slip(gain_by_record(base, accepted[0].fit), further)
+
+
+def _stands(before: Finalist, result: Round, clock: Clock) -> bool:
+    """Whether a further effect still gains where the model without it weighs the records, and foretells there.
+
+    A base that lacks the first effect weighs spectra wrongly, and so leaves what further ones seem to explain.
+    """
+    last = result.finalists[0]
+    clock("weigh anew")
+    known = weighed_anew(before.fit)
+    fit = recalibrate(known.evidence, build=last.fit.build, free=last.fit.free, start=last.fit.z, learn=False)
+    if known.objective - fit.objective - penalty(last.quick, result.ring) < result.threshold:
+        return False
+    return log_e_value(Rest(known), Rest(fit), len(result.screened)) > float(np.log(E_VALUE))
 
 
 def _of_the_owners(base: Fit, offered: Iterable[Hypothesis], fit: Fit) -> list[Hypothesis]:
@@ -114,6 +142,9 @@ def _of_the_owners(base: Fit, offered: Iterable[Hypothesis], fit: Fit) -> list[H
 def _without_needless(base: Fit, accepted: list[Finalist], least: float, clock: Clock) -> list[Finalist]:
     """Backward: earlier effects that the last one has made needless are dropped, and the rest fitted again."""
     kept = list(accepted)
+    before = [base, *(f.fit for f in accepted)]
+    index = int(np.argmax([f.gain for f in accepted]))
+    largest = gain_by_record(before[index], accepted[index].fit)
     for one in accepted[:-1]:
         rest = [f for f in kept if f is not one]
         whole = kept[-1].fit
@@ -131,7 +162,7 @@ def _without_needless(base: Fit, accepted: list[Finalist], least: float, clock: 
             # A later effect stands on this one.
             continue
         asked = len(one.hypothesis.free) * float(np.log(lines(base)))
-        needed = max(least + asked, SECOND * max(f.gain for f in accepted))
+        needed = max(least + asked, slip(largest, gain_by_record(without, whole)))
         if without.objective - whole.objective < needed:
             kept = [*rest[:-1], _with_fit(rest[-1], without)]
     return kept

@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.compete import Ring
 from permway.diagnosis.felt import FELT, moved
 from permway.diagnosis.fit import Fit, gained
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.journal import current
+from permway.diagnosis.quick import Quick
 from permway.diagnosis.quick_files import noted, recalled
-from permway.diagnosis.recalibrate import relearnt
-from permway.diagnosis.result import Candidate
+from permway.diagnosis.refit import relearnt
 from permway.errors import InputError, SolveError
 
 FOLLOWED, PER_FORM = 10, 2
@@ -64,6 +64,8 @@ class Finalist:
     gain, log_evidence : float
         Of the objective, and of the log evidence in nats, over the base's, sizes of smooth errors learnt on both
         sides.
+    correction : float
+        Of the log evidence, by sampling: see :mod:`permway.diagnosis.sampling`.
     """
 
     quick: Quick
@@ -72,11 +74,17 @@ class Finalist:
     prefix: str
     gain: float
     log_evidence: float
+    correction: float = 0.0
 
     @property
     def hypothesis(self) -> Hypothesis:
         """What was fitted."""
         return self.quick.hypothesis
+
+    @property
+    def own(self) -> list[str]:
+        """Names of the effect's parameters among the fit's."""
+        return [self.prefix + f.name for f in self.hypothesis.free]
 
     @property
     def values(self) -> dict[str, float]:
@@ -275,55 +283,3 @@ def _finalists(followed: Sequence[Quick], ring: Ring, threshold: float) -> list[
             found[form] = quick
             leading.setdefault(entry, quick.gain)
     return list(found.values())[: FINALISTS + 1]
-
-
-def candidates(found: Round) -> list[Candidate]:
-    """Everything that was tried, the most telling first, each as far as it was followed."""
-    seen: set[int] = set()
-    rows = []
-    for finalist in found.finalists:
-        seen.add(id(finalist.hypothesis))
-        spans, values = finalist.fit.intervals(), finalist.values
-        rows.append(
-            Candidate(
-                entry=finalist.hypothesis.entry,
-                family=finalist.hypothesis.family,
-                domain=finalist.hypothesis.domain,
-                place=finalist.hypothesis.locate(values),
-                law=finalist.hypothesis.law(values),
-                gain=finalist.gain,
-                log_evidence=finalist.log_evidence,
-                parameters={
-                    f.name: (
-                        values[f.name],
-                        min(spans[finalist.prefix + f.name]),
-                        max(spans[finalist.prefix + f.name]),
-                        f.unit,
-                    )
-                    for f in finalist.hypothesis.free
-                },
-                stage="full",
-            )
-        )
-    for stage, quicks in (("quick", found.followed), ("screened", found.screened)):
-        for quick in quicks:
-            if id(quick.hypothesis) in seen:
-                continue
-            seen.add(id(quick.hypothesis))
-            values = quick.values
-            rows.append(
-                Candidate(
-                    entry=quick.hypothesis.entry,
-                    family=quick.hypothesis.family,
-                    domain=quick.hypothesis.domain,
-                    place=quick.hypothesis.locate(values),
-                    law=quick.hypothesis.law(values),
-                    gain=quick.gain,
-                    log_evidence=0.5 * (quick.gain - penalty(quick, found.ring)),
-                    parameters={
-                        f.name: (values[f.name], float("nan"), float("nan"), f.unit) for f in quick.hypothesis.free
-                    },
-                    stage="quick" if stage == "quick" else "screened",
-                )
-            )
-    return rows

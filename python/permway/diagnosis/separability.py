@@ -19,7 +19,7 @@ from permway.diagnosis.decide import CLASS_DEVIANCE
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.locate import unseen
-from permway.diagnosis.recalibrate import untouched
+from permway.diagnosis.refit import untouched
 from permway.diagnosis.search import Progress
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,9 +13,10 @@ from permway.diagnosis.decide import Conditions
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.heldout import Gain
 from permway.diagnosis.labels import Mislabelled
-from permway.diagnosis.locate import Found
 from permway.diagnosis.recalibrate import UNFIT
+from permway.diagnosis.rounds import BEYOND
 from permway.diagnosis.search import Finalist, Round, lines
+from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL, Status, Verdict
 from permway.diagnosis.verdict_parts import (
     Effect,
@@ -35,6 +36,10 @@ LABELS = "sensor_labels"
 REASON = 0.5
 """Share of a misfit that a free stiffness at a place has to explain, or else nothing is said to be there."""
 
+LEFT, LITTLE = 1.3, 0.1
+"""Mean square of the deviations from which something is left, and the share of what is too much that an effect has
+to explain then."""
+
 LARGEST_E = 1e300
 SHOWN = 0.8
 """Share of an effect's gain that its bands hold."""
@@ -52,6 +57,11 @@ class Proof:
     held_out, placebo : sequence of Gain
     unsteady : ndarray, shape (p,)
         Variance of the amended model's parameters beyond that of its fit.
+    spans : mapping of str to (float, float)
+        Ends of 90 % intervals in z of those that were sampled.
+    weighed : Fit
+        The amended model, records weighed by what it predicts itself: what its parameters are told by. (All that
+        holds it against the base weighs alike on both sides: by what the base predicts.)
     log_e : float
         Natural logarithm of the e-value.
     bic_gain : float
@@ -61,9 +71,11 @@ class Proof:
     held_out: Sequence[Gain]
     placebo: Sequence[Gain]
     unsteady: Reals
+    weighed: Fit
     log_e: float
     bic_gain: float
     conditions: Conditions
+    spans: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 def verdict_of(
@@ -89,13 +101,16 @@ def verdict_of(
             status=status, effects=effects, evidence=weight, recalibrated=recalibrated, detectable=sizes
         )
     amended = accepted[-1].fit
-    if amended.heat > max(UNFIT, decide.HALF * base.heat):
-        # Next to nothing of a misfit is no suspicion of anything.
+    if _explains_little(base, amended):
         return Verdict(status="insufficient", evidence=weight, recalibrated=recalibrated, detectable=sizes)
     gap = decide.explained(base, amended, left)
     by_prefix = {r.finalists[0].prefix: r for r in rounds if r.finalists}
-    variance = np.diag(amended.covariance) + proof.unsteady
-    effects = tuple(_effect(one, by_prefix[one.prefix], amended, base, gap, variance) for one in accepted)
+    ends = _ends(proof)
+    explained = gap * _credit(proof.weighed)
+    names = [one.hypothesis.entry for one in accepted]
+    effects = tuple(
+        _effect(one, by_prefix[one.prefix], proof.weighed, base, explained, ends, names) for one in accepted
+    )
     return Verdict(
         status=_status(effects, proof, gap),
         effects=effects,
@@ -110,10 +125,17 @@ def verdict_of(
         held_out=_held_out(proof.held_out),
         placebo=_held_out(proof.placebo),
         explained_gap=gap,
-        recalibrated=Recalibrated(before=_moved(base), after=_moved(amended)),
+        recalibrated=Recalibrated(before=_moved(base), after=_moved(proof.weighed)),
         next=advice,
         detectable=sizes,
     )
+
+
+def _explains_little(base: Fit, amended: Fit) -> bool:
+    """Whether so much of a misfit is left that what was found is no suspicion of anything."""
+    if amended.heat > max(UNFIT, decide.HALF * base.heat):
+        return True
+    return amended.heat > LEFT and base.heat - amended.heat < LITTLE * (base.heat - 1.0)
 
 
 def mixed_up(base: Fit, mixed: Mislabelled) -> Verdict:
@@ -131,12 +153,24 @@ def _status(effects: Sequence[Effect], proof: Proof, gap: float) -> Status:
     if not proof.conditions.hold or (gap < decide.HALF and any(e.domain != "path" for e in effects)):
         return "insufficient"
     if effects[0].class_ and effects[0].class_[0].name == NOVEL:
-        return "described" if effects[0].parameters and gap >= decide.EXPLAINED else "located"
+        # Of a form of the catalogue that is believed no more than this, no mechanics are told.
+        sole = len(effects[0].class_) == 1
+        return "described" if sole and effects[0].parameters and gap >= decide.EXPLAINED else "located"
     if gap < decide.HALF and effects[0].domain == "path":
         return "located"
     if any(effect.name is None for effect in effects):
         return "ambiguous"
     return "measurement" if all(effect.domain == "measurement" for effect in effects) else "named"
+
+
+def _credit(amended: Fit) -> float:
+    """Share of what an amended model explains that its name may be credited with, 0 to 1.
+
+    One that does not fit, and only with parameters that nobody would believe, has the wrong name.
+    """
+    owner = amended.evidence.campaign.parameters.known
+    far = any(abs(z) > BEYOND for f, z in zip(amended.free, amended.z, strict=True) if f.name in owner)
+    return min(1.0, UNFIT / amended.heat) if far else 1.0
 
 
 def _nothing(base: Fit, first: Round, found: Sequence[Found]) -> tuple[Status, tuple[Effect, ...]]:
@@ -164,16 +198,34 @@ def _alike(found: Sequence[Found]) -> tuple[float, float]:
     return min(f.spot.x_m[0] for f in same), max(f.spot.x_m[1] for f in same)
 
 
-def _effect(one: Finalist, found: Round, amended: Fit, base: Fit, explained: float, variance: Reals) -> Effect:
-    members = decide.members(found, explained=explained)
+def _ends(proof: Proof) -> dict[str, tuple[float, float]]:
+    """Ends of 90 % intervals in z of all parameters of the amended model, as wide as they are unsteady."""
+    fit, found = proof.weighed, {}
+    own, wider = WIDTH * np.sqrt(np.diag(fit.covariance)), WIDTH * np.sqrt(proof.unsteady)
+    for f, z, reach, more in zip(fit.free, fit.z, own, wider, strict=True):
+        low, high = proof.spans.get(f.name, (z - reach, z + reach))
+        further = [float(np.hypot(end - z, more) - abs(end - z)) for end in (low, high)]
+        found[f.name] = (low - further[0], high + further[1])
+    return found
+
+
+def _effect(
+    one: Finalist,
+    found: Round,
+    amended: Fit,
+    base: Fit,
+    explained: float,
+    ends_z: Mapping[str, tuple[float, float]],
+    names: Sequence[str],
+) -> Effect:
+    members = decide.members(found, explained=explained, beside=names)
     hypothesis, fit = one.hypothesis, amended
     index = {f.name: i for i, f in enumerate(fit.free)}
     z = np.array([fit.z[index[one.prefix + f.name]] for f in hypothesis.free])
-    sigma = np.sqrt(np.array([variance[index[one.prefix + f.name]] for f in hypothesis.free]))
     values = {f.name: f.value(float(v)) for f, v in zip(hypothesis.free, z, strict=True)}
     estimates = {}
-    for f, v, s in zip(hypothesis.free, z, sigma, strict=True):
-        ends = sorted(f.value(float(np.clip(v + side * WIDTH * s, *f.limits))) for side in (-1.0, 1.0))
+    for f, name in zip(hypothesis.free, one.own, strict=True):
+        ends = sorted(f.value(float(np.clip(end, *f.limits))) for end in ends_z[name])
         estimates[f.name] = Estimate(value=values[f.name], unit=f.unit, low=ends[0], high=ends[1])
     where = hypothesis.locate(values)
     within = None

@@ -14,7 +14,7 @@ from permway.diagnosis.whitener import Whitener
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
 
-STEP = 1e-3
+STEP = 1e-5
 """Of finite differences, in standard deviations of the prior."""
 
 

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from html import escape
 
-from permway.diagnosis.verdict import Effect, Estimate, HeldOutGain, Smallest, Verdict
+from permway.diagnosis.verdict import NOVEL, Effect, Estimate, HeldOutGain, Smallest, Verdict
 
 MOST_SIZES = 3
 """Detectable sizes that a sentence names, at most."""
 
+MOST_DIGITS = 7
+"""Of an interval's ends."""
+
 INCOMPLETE = 1.5
 """Misfit from which an amended model is said not to be all of it."""
+
+BEYOND, MOST_BEYOND = 4.0, 2
+"""Standard deviations of its tolerance from which a parameter is said to be off, and how many at most."""
 
 STATUS = {
     "recalibrated": "nothing missing",
@@ -58,24 +64,33 @@ def sentence(verdict: Verdict) -> str:
         case "located":
             words = f"{_at(verdict.effects[0])} physics is missing that these records cannot describe"
             parts = [words, _more(verdict), _better(verdict), _advice(verdict)]
+    parts.append(_beyond(verdict))
     if verdict.ruled_out:
         parts.append(f"not considered, for somebody had ruled it out: {', '.join(verdict.ruled_out)}")
     text = "; ".join(part for part in parts if part)
     return f"{text[:1].upper()}{text[1:]}."
 
 
-def quantity(value: float, unit: str = "") -> str:
+def quantity(value: float, unit: str = "", digits: int = 3) -> str:
     """Three significant digits, or a whole number below 100 000, and the unit; a ratio has none."""
-    plain = f"{value:.0f}" if 1000.0 <= abs(value) < 1e5 else f"{value:.3g}"
+    plain = f"{value:.0f}" if 1000.0 <= abs(value) < 1e5 and digits == 3 else f"{value:.{digits}g}"
     text = plain.replace("e+0", "e").replace("e+", "e").replace("e-0", "e-").replace("-", "−")
     return text if unit in ("", "1") else f"{text} {unit}"
 
 
+def span(low: float, high: float) -> str:
+    """From and to, with so many digits that the two differ, if seven do."""
+    ends = quantity(low), quantity(high)
+    for digits in range(4, MOST_DIGITS + 1):
+        if ends[0] != ends[1]:
+            break
+        ends = quantity(low, digits=digits), quantity(high, digits=digits)
+    return f"{ends[0]} to {ends[1]}"
+
+
 def interval(one: Estimate) -> str:
     """The 90 % interval, or ""."""
-    if one.low is None or one.high is None:
-        return ""
-    return f"{quantity(one.low)} to {quantity(one.high)}"
+    return "" if one.low is None or one.high is None else span(one.low, one.high)
 
 
 def smallest(name: str, one: Smallest) -> str:
@@ -137,8 +152,13 @@ def _rivals(effect: Effect) -> str:
 
 def _more(verdict: Verdict, said: int = 0) -> str:
     """The effects beside the one that was said."""
-    others = [_named(effect) for i, effect in enumerate(verdict.effects) if i != said]
+    others = [_named(e) for i, e in enumerate(verdict.effects) if i != said and not _disbelieved(e)]
     return f"beside that {' and '.join(others)}" if others else ""
+
+
+def _disbelieved(effect: Effect) -> bool:
+    """Whether it more likely is something else than any of its names."""
+    return len(effect.class_) > 1 and effect.class_[0].name == NOVEL
 
 
 def _better(verdict: Verdict) -> str:
@@ -156,6 +176,18 @@ def _open(verdict: Verdict) -> str:
     if left is None or left < INCOMPLETE:
         return ""
     return f"this is not all of it: what is left has {quantity(left)} times the mean square that errors explain"
+
+
+def _beyond(verdict: Verdict) -> str:
+    """Parameters of the owner's that stand where nobody would believe them, the farthest first."""
+    known = verdict.recalibrated.after or verdict.recalibrated.before
+    off = {name: abs(one.z) for name, one in known.items() if abs(one.z) >= BEYOND}
+    said = [
+        f"{name} has to be {quantity(known[name].value)} for it, {quantity(off[name])} standard deviations from "
+        f"the owner's {quantity(known[name].prior)}"
+        for name in sorted(off, key=lambda name: -off[name])[:MOST_BEYOND]
+    ]
+    return " and ".join(said)
 
 
 def _seen(verdict: Verdict) -> str:
@@ -178,7 +210,7 @@ def html_table(verdict: Verdict) -> str:
     rows = []
     for effect in verdict.effects:
         values = ", ".join(
-            f"{name} {quantity(one.value, one.unit)}" + (f" ({span})" if (span := interval(one)) else "")
+            f"{name} {quantity(one.value, one.unit)}" + (f" ({ends})" if (ends := interval(one)) else "")
             for name, one in effect.parameters.items()
         )
         rivals = ", ".join(f"{m.name} {m.probability:.2f}" for m in effect.class_)

@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
-import inspect
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field, PositiveFloat, ValidationError, field_validator, model_validator
 
 from permway.arrays import Reals
 from permway.errors import InputError
-from permway.laws.base import Law
-from permway.laws.lawfile import load_law
-from permway.laws.measured import Quantity, read_measured
 from permway.model.faults import fault, model_error, refuse_coercion
+from permway.model.file_parts import below, line_of, table_at, train_of
 from permway.model.irregularity import AnyIrregularity, Conversion
-from permway.model.irregularity_spectra import FASTEST_M_PER_S
 from permway.model.line import Line
-from permway.model.presets import LAWS, LINES
 from permway.model.roll import Roll, antisymmetric
-from permway.model.vehicle import Vehicle
-from permway.model.vehicle_presets import VEHICLES
-from permway.reading import inside, read_toml
+from permway.reading import read_toml
 from permway.records import FrozenModel
 from permway.response.passby.settings import PassBy
 from permway.response.receptance import Formulation, Place, check_places, check_sweep
@@ -180,19 +173,19 @@ class Model(FrozenModel):
             self.line.joint_table()
             self.line.stiffness(self.frequencies.array()[[0, -1]], self.temperature_C)
         except InputError as error:
-            raise _below("line", error) from error
+            raise below("line", error) from error
         for kind, places in (("forces", self.forces), ("sensors", self.sensors)):
             check_places(self.line, places, kind)
         if self.roll is not None:
             try:
                 antisymmetric(self.line, self.roll)
             except InputError as error:
-                raise _below("roll", error) from error
+                raise below("roll", error) from error
         if self.train is not None:
             try:
                 check_places(self.line, self.train.wheels(), "wheels")
             except InputError as error:
-                raise _below("train", error) from error
+                raise below("train", error) from error
 
 
 def read_model(path: str | Path) -> Model:
@@ -236,9 +229,9 @@ def model_from_dict(table: Mapping[str, Any], *, folder: Path | None = None) -> 
     # A model written as JSON says null where a file says nothing.
     filled = {key: value for key, value in table.items() if value is not None}
     if "line" in filled:
-        filled["line"] = _line(_table(filled["line"], "line"), folder)
+        filled["line"] = line_of(table_at(filled["line"], "line"), folder)
     if "train" in filled:
-        filled["train"] = _train(_table(filled["train"], "train"))
+        filled["train"] = train_of(table_at(filled["train"], "train"))
     # Absurd numbers overflow on the way to the check that refuses them.
     with np.errstate(all="ignore"):
         try:
@@ -248,140 +241,3 @@ def model_from_dict(table: Mapping[str, Any], *, folder: Path | None = None) -> 
         refuse_coercion(filled, model, "")
         model.check()
     return model
-
-
-def _below(table: str, error: InputError) -> InputError:
-    """The same complaint, its place taken to lie in a table."""
-    return InputError(error.what, where=f"{table}.{error.where}", value=error.value, remedy=error.remedy)
-
-
-def _table(value: object, where: str) -> dict[str, Any]:
-    if not isinstance(value, Mapping):
-        raise InputError("must be a table", where=where, value=value, remedy=f"write [{where}]")
-    return dict(value)
-
-
-def _line(table: dict[str, Any], folder: Path | None) -> Line | dict[str, Any]:
-    if isinstance(table.get("laws"), Mapping):
-        table["laws"] = {name: _law(law, f"line.laws.{name}", folder) for name, law in table["laws"].items()}
-    if "preset" not in table:
-        return table
-    name = table.pop("preset")
-    options = _table(table.pop("options", {}), "line.options")
-    laws = _table(table.pop("laws", {}), "line.laws")
-    if table:
-        raise InputError(
-            "does not go with a preset",
-            where=f"line.{next(iter(table))}",
-            remedy="a preset takes options and laws",
-        )
-    if "pad" in options:
-        options["pad"] = _law(options["pad"], "line.options.pad", folder)
-    line: Line = _preset(LINES, name, options, "line", "options")
-    for law in laws:
-        if law not in line.laws:
-            raise InputError(
-                f"the preset {name!r} has no such law",
-                where=f"line.laws.{law}",
-                remedy=f"use one of {list(line.laws)}",
-            )
-    changed = {"bodies": line.bodies, "joints": line.joints, "laws": {**line.laws, **laws}}
-    try:
-        built = Line.model_validate(changed)
-    except ValidationError as error:
-        raise model_error(error, changed, "line") from error
-    refuse_coercion(laws, {key: built.laws[key] for key in laws}, "line.laws")
-    return built
-
-
-def _law(law: object, where: str, folder: Path | None) -> object:
-    """A law by name or from a file, also within a law made of laws; else the table as it is."""
-    if not isinstance(law, Mapping):
-        return law
-    if "preset" in law:
-        options = dict(law)
-        built: Law = _preset(LAWS, options.pop("preset"), options, where)
-        return built
-    if "file" in law:
-        return _law_file(dict(law), where, folder)
-    return {key: _law(part, f"{where}.{key}", folder) for key, part in law.items()}
-
-
-def _law_file(table: dict[str, Any], where: str, folder: Path | None) -> Law:
-    name = table.pop("file")
-    quantity = None
-    if table.get("type") == "measured":
-        quantity = table.pop("quantity", None)
-        if quantity not in get_args(Quantity):
-            raise InputError(
-                "unknown",
-                where=f"{where}.quantity",
-                value=quantity,
-                remedy=f"use one of {list(get_args(Quantity))}",
-            )
-        del table["type"]
-    if table:
-        raise InputError(
-            "does not go with a file", where=f"{where}.{next(iter(table))}", remedy="name the file alone"
-        )
-    if folder is None:
-        raise InputError("a table without a folder cannot name a file", where=f"{where}.file", value=name)
-    path = inside(name, folder, where=f"{where}.file", of="the model's", remedy="put it beside the model")
-    try:
-        return load_law(path) if quantity is None else read_measured(path, quantity)
-    except InputError as error:
-        raise InputError(
-            error.what, where=f"{where}.file: {error.where}", value=error.value, remedy=error.remedy
-        ) from error
-
-
-def _train(table: dict[str, Any]) -> dict[str, Any]:
-    if "speed_km_per_h" in table:
-        if "speed_m_per_s" in table:
-            raise InputError(
-                "the speed is given twice", where="train", remedy="give speed_m_per_s or speed_km_per_h"
-            )
-        speed = table.pop("speed_km_per_h")
-        if not isinstance(speed, int | float) or isinstance(speed, bool):
-            raise InputError("must be a number", where="train.speed_km_per_h", value=speed)
-        # Out of all bounds, an integer may not even fit a float.
-        if not 0 < speed <= 3.6 * FASTEST_M_PER_S:
-            raise InputError(
-                f"must be above 0 and at most {3.6 * FASTEST_M_PER_S:g} km/h",
-                where="train.speed_km_per_h",
-                value=speed,
-            )
-        table["speed_m_per_s"] = speed / 3.6
-    vehicle = table.get("vehicle")
-    if isinstance(vehicle, Mapping) and "preset" in vehicle:
-        options = dict(vehicle)
-        name = options.pop("preset")
-        whole: Vehicle = _preset({key: _constant(v) for key, v in VEHICLES.items()}, name, {}, "train.vehicle")
-        table["vehicle"] = {**whole.model_dump(), **options}
-    return table
-
-
-def _constant(value: Vehicle) -> Callable[[], Vehicle]:
-    return lambda: value
-
-
-def _preset(
-    presets: Mapping[str, Callable[..., Any]],
-    name: object,
-    options: dict[str, Any],
-    where: str,
-    key: str | None = None,
-) -> Any:
-    """Call a preset; its options lie in the table `key` of `where`, or in `where` itself."""
-    if not isinstance(name, str) or name not in presets:
-        raise InputError(
-            "no such preset", where=f"{where}.preset", value=name, remedy=f"use one of {sorted(presets)}"
-        )
-    inside = f"{where}.{key}" if key else where
-    try:
-        inspect.signature(presets[name]).bind(**options)
-        return presets[name](**options)
-    except InputError as error:
-        raise _below(inside, error) from error
-    except TypeError as error:
-        raise InputError(f"the preset {name!r}: {error}", where=inside) from error

@@ -12,7 +12,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 from permway.arrays import Complexes, Reals, check_frequency
 from permway.errors import InputError
 from permway.model.vehicle_additions import AnyAddition, check_additions, hung_mass_kg
-from permway.model.vehicle_condensed import condensed
+from permway.model.vehicle_condensed import Condensed, condensed
 from permway.records import FrozenModel
 
 STANDARD_GRAVITY = 9.80665
@@ -167,7 +167,7 @@ class Vehicle(FrozenModel):
         InputError
             For a frequency that is not finite and positive.
         """
-        return _blocks(self._car_stiffness(frequency_Hz), self.cars)
+        return _blocks(self._condensed(frequency_Hz).stiffness, self.cars)
 
     def wheel_receptance(self, frequency_Hz: ArrayLike) -> Complexes:
         """Displacement of the wheels per force on the wheels, both positive down, the rail taken away.
@@ -190,7 +190,30 @@ class Vehicle(FrozenModel):
         InputError
             For a frequency that is not finite and positive.
         """
-        return _blocks(self._car_response(frequency_Hz)[:, _WHEELS, :], self.cars)
+        return _blocks(self._car_per_force(frequency_Hz)[1], self.cars)
+
+    def per_wheel_force(self, frequency_Hz: ArrayLike) -> tuple[Complexes, Complexes]:
+        """Displacement of every degree of freedom, and of the contacts, per force on each wheel, positive down.
+
+        The two are alike in the wheels' rows, but for wheelsets that bend: their boxes are the degrees.
+
+        Parameters
+        ----------
+        frequency_Hz : array_like, shape (F,)
+            Finite and above zero.
+
+        Returns
+        -------
+        degrees, contacts : ndarray of complex128, shapes (F, 10 n, 4 n) and (F, 4 n, 4 n)
+            m/N and rad/N.
+
+        Raises
+        ------
+        InputError
+            For a frequency that is not finite and positive.
+        """
+        degrees, contacts = self._car_per_force(frequency_Hz)
+        return _blocks(degrees, self.cars), _blocks(contacts, self.cars)
 
     def response_to_wheel_force(self, frequency_Hz: ArrayLike, force_N: ArrayLike) -> Complexes:
         """Displacement of every degree of freedom under forces on the wheels.
@@ -213,7 +236,7 @@ class Vehicle(FrozenModel):
         InputError
             For a frequency that is not finite and positive, a force of another shape or not finite.
         """
-        response = self._car_response(frequency_Hz)
+        response, _ = self._car_per_force(frequency_Hz)
         force = np.asarray(force_N, dtype=np.complex128)
         expected = (response.shape[0], 4 * self.cars)
         if force.shape != expected:
@@ -333,7 +356,7 @@ class Vehicle(FrozenModel):
         stiffness[wheels, wheels] += on_contact
         return mass, damping, stiffness
 
-    def _car_stiffness(self, frequency_Hz: ArrayLike) -> Complexes:
+    def _condensed(self, frequency_Hz: ArrayLike) -> Condensed:
         omega = 2.0 * np.pi * np.atleast_1d(check_frequency(frequency_Hz))
         if omega.ndim != 1:
             raise InputError("must have one dimension", where="frequency_Hz", value=omega.shape)
@@ -341,16 +364,19 @@ class Vehicle(FrozenModel):
             springs = (self.secondary_stiffness_N_per_m, self.primary_stiffness_N_per_m)
             dashpots = (self.secondary_damping_Ns_per_m, self.primary_damping_Ns_per_m)
             masses, stretches = self._car_masses(), self._stretches()
-            return self.share * condensed(omega, masses, stretches, springs, dashpots, self.additions)
-        omega = omega[:, None, None]
+            whole = condensed(omega, masses, stretches, springs, dashpots, self.additions)
+            return Condensed(self.share * whole.stiffness, whole.push, whole.give / self.share)
         mass, damping, stiffness = self._car_matrices()
-        return np.asarray(stiffness + 1j * omega * damping - omega**2 * mass)
+        push = np.broadcast_to(np.eye(_N, dtype=np.complex128)[:, _WHEELS], (omega.size, _N, 4))
+        give = np.zeros((omega.size, 4, 4), dtype=np.complex128)
+        omega = omega[:, None, None]
+        return Condensed(np.asarray(stiffness + 1j * omega * damping - omega**2 * mass), push, give)
 
-    def _car_response(self, frequency_Hz: ArrayLike) -> Complexes:
-        """Displacements of one car per force on its wheels, (F, 10, 4)."""
-        stiffness = self._car_stiffness(frequency_Hz)
-        forces = np.broadcast_to(np.eye(_N)[:, _WHEELS], (stiffness.shape[0], _N, 4))
-        return np.asarray(np.linalg.solve(stiffness, forces), dtype=np.complex128)
+    def _car_per_force(self, frequency_Hz: ArrayLike) -> tuple[Complexes, Complexes]:
+        """Of one car, (F, 10, 4) and (F, 4, 4)."""
+        car = self._condensed(frequency_Hz)
+        degrees = np.asarray(np.linalg.solve(car.stiffness, car.push), dtype=np.complex128)
+        return degrees, np.swapaxes(car.push, 1, 2) @ degrees + car.give
 
 
 def _blocks(block: Complexes, count: int) -> Complexes:

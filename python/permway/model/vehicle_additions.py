@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Annotated, Literal
 
-from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
+from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from permway.arrays import Complexes, Reals
 from permway.model.faults import fault
@@ -77,7 +77,7 @@ class FlexibleMode(_Resonant):
     """A symmetric bending mode of a part that was rigid; its mass stays what it is.
 
     The part's degree of freedom is then the motion of the point that is read: the middle of the car body or of
-    the bogie frame, the wheelset where it runs, is sprung and is read. The mode is scaled to 1 there.
+    the bogie frame, the axle boxes of a wheelset, where it is sprung, too. The mode is scaled to 1 there.
 
     Parameters
     ----------
@@ -89,19 +89,13 @@ class FlexibleMode(_Resonant):
         Of the free part.
     shape : float
         The mode where other springs hold the part: at the secondary suspension for the body, at the primary for a
-        bogie. Negative beyond the node. A wheelset has one point, and takes 1.
+        bogie, at the contact for a wheelset. Negative beyond the node: boxes of mass b on a spring to wheels of
+        mass w are -b / w with a modal mass of b (b + w) / w.
     """
 
     type: Literal["flexible_mode"] = "flexible_mode"
     modal_mass_kg: PositiveFloat
     shape: Number = Field(default=1.0, ge=-10.0, le=10.0)
-
-    @model_validator(mode="after")
-    def _check_shape(self) -> FlexibleMode:
-        if self.on.startswith("wheelset") and self.shape != 1.0:
-            what = "a wheelset is read, sprung and in contact at one point of the model: leave it out"
-            raise fault(what, "shape", value=self.shape)
-        return self
 
 
 class DamperSeries(FrozenModel):

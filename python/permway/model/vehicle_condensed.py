@@ -3,19 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from permway.arrays import Complexes, Reals
 from permway.model.vehicle_additions import (
     BODY,
-    BOGIES,
+    WHEELSETS,
     AirSpring,
     AnyAddition,
     DamperSeries,
     FlexibleMode,
     Resonator,
 )
+
+
+@dataclass(frozen=True, eq=False)
+class Condensed:
+    """A car as its ten degrees see it.
+
+    Attributes
+    ----------
+    stiffness : ndarray of complex128, shape (F, n, n)
+        Dynamic stiffness.
+    push : ndarray of complex128, shape (F, n, wheels)
+        Forces on the degrees per force on the contacts; turned over, what contacts move with the degrees.
+    give : ndarray of complex128, shape (F, wheels, wheels)
+        What contacts move per force on them while the degrees are held, m/N.
+    """
+
+    stiffness: Complexes
+    push: Complexes
+    give: Complexes
 
 
 def condensed(
@@ -25,11 +45,12 @@ def condensed(
     springs: tuple[float, float],
     dashpots: tuple[float, float],
     additions: Sequence[AnyAddition],
-) -> Complexes:
-    """Dynamic stiffness of one whole car.
+) -> Condensed:
+    """One whole car.
 
     A flexible mode q, scaled to 1 at the point y that is read, leaves the mass of its part at y - q and the other
-    springs of the part at y + (shape - 1) q. Every q is then eliminated, which keeps what is passive passive.
+    springs of the part, or the contact of a wheelset, at y + (shape - 1) q. Every q is then eliminated, which
+    keeps what is passive passive.
 
     Parameters
     ----------
@@ -45,7 +66,7 @@ def condensed(
 
     Returns
     -------
-    ndarray of complex128, shape (F, n, n)
+    Condensed
     """
     modes = [(mode, degree) for mode in additions if isinstance(mode, FlexibleMode) for degree in mode.at()]
     n, q = masses.size, len(modes)
@@ -53,13 +74,16 @@ def condensed(
     secondary, primary = (np.hstack([rows, np.zeros((rows.shape[0], q))]) for rows in stretches)
     modal = np.zeros(q)
     own = np.zeros(q, dtype=np.complex128)
+    contacts = np.eye(n + q)[:, list(WHEELSETS)]
     for index, (mode, degree) in enumerate(modes):
         rigid[degree, n + index] = -1.0
         modal[index] = mode.modal_mass_kg
         own[index] = mode.modal_mass_kg * mode.spring()
-        held = secondary if degree == BODY else primary if degree in BOGIES else None
-        if held is not None:
-            held[:, n + index] = (mode.shape - 1.0) * held[:, degree]
+        if degree in WHEELSETS:
+            contacts[n + index, WHEELSETS.index(degree)] = mode.shape - 1.0
+            continue
+        held = secondary if degree == BODY else primary
+        held[:, n + index] = (mode.shape - 1.0) * held[:, degree]
     mass = rigid.T @ (masses[:, None] * rigid) + np.diag(np.concatenate([np.zeros(n), modal]))
     stiffness = _suspensions(omega, springs, dashpots, additions)
     whole = (
@@ -72,10 +96,13 @@ def condensed(
         if isinstance(addition, Resonator):
             degrees = list(addition.at())
             whole[:, degrees, degrees] += addition.stiffness(omega)[:, None]
-    if not q:
-        return np.asarray(whole)
-    out = np.linalg.solve(whole[:, n:, n:], whole[:, n:, :n])
-    return np.asarray(whole[:, :n, :n] - whole[:, :n, n:] @ out)
+    pushed = np.broadcast_to(contacts[n:], (omega.size, q, len(WHEELSETS)))
+    out = np.linalg.solve(whole[:, n:, n:], np.concatenate([whole[:, n:, :n], pushed], axis=2))
+    return Condensed(
+        stiffness=np.asarray(whole[:, :n, :n] - whole[:, :n, n:] @ out[:, :, :n]),
+        push=np.asarray(contacts[:n] - whole[:, :n, n:] @ out[:, :, n:]),
+        give=np.asarray(contacts[n:].T @ out[:, :, n:]),
+    )
 
 
 def _suspensions(

@@ -137,6 +137,9 @@ class Record(FrozenModel):
         Of a material whose storage modulus is in `file` and whose loss factor is in another.
     law : str, optional
         Of a material's table: path of the law in the model file, as "line.laws.pad.material".
+    within_dB : float, optional
+        Of a transmissibility or a material: two standard deviations of what its instruments get wrong, smoothly
+        over frequency. By default nobody knows, and a diagnosis learns it.
     """
 
     name: str = Field(min_length=1)
@@ -158,6 +161,7 @@ class Record(FrozenModel):
     select: dict[str, str | Number | bool] = Field(default_factory=dict)
     loss_file: str | None = None
     law: str | None = None
+    within_dB: PositiveFloat | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Record:
@@ -183,6 +187,8 @@ class Record(FrozenModel):
             raise fault('goes with statistic = "material"', "loss_file")
         if self.averages is not None and not frf:
             raise fault("of an FRF only: other statistics count their own", "averages")
+        if self.within_dB is not None and self.statistic not in ("transmissibility", "material"):
+            raise fault('goes with statistic "transmissibility" or "material"', "within_dB")
         _check_lines(self.interpolated_Hz or ())
         for key in ("interpolated_Hz", "sampling_Hz"):
             if getattr(self, key) is not None and self.statistic not in ("csd", "psd"):

@@ -10,16 +10,14 @@ import multiprocessing
 import os
 import signal
 import sys
-import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
-from types import FrameType
 
 from permway.errors import SolveError
 from permway.study.answer import Answer, answer_with_notes
@@ -54,15 +52,13 @@ def solve_locally(study: Study, cases: Sequence[int], threads: int | None) -> It
     """
     threads = threads or _processors()
     start, done = time.monotonic(), 0
-    with _interruptible() as check:
-        while done < len(cases):
-            yield cases[done], answer_with_notes(partial(study.model, cases[done]), study.keep, threads=threads)
-            done += 1
-            check()
-            spent = time.monotonic() - start
-            saved = spent / done * (len(cases) - done) * (1.0 - 1.0 / threads)
-            if saved > START_S and spent > min(MEASURED_S, START_S):
-                break
+    while done < len(cases):
+        yield cases[done], answer_with_notes(partial(study.model, cases[done]), study.keep, threads=threads)
+        done += 1
+        spent = time.monotonic() - start
+        saved = spent / done * (len(cases) - done) * (1.0 - 1.0 / threads)
+        if saved > START_S and spent > min(MEASURED_S, START_S):
+            break
     if done < len(cases):
         yield from _Pool(study, cases[done:], threads).answers()
 
@@ -71,33 +67,6 @@ def _processors() -> int:
     if sys.platform == "linux":
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
-
-
-@contextmanager
-def _interruptible() -> Iterator[Callable[[], None]]:
-    """Remember Ctrl-C: libraries swallow the exception when it meets them in a destructor."""
-    if threading.current_thread() is not threading.main_thread():
-        yield lambda: None
-        return
-    before = signal.getsignal(signal.SIGINT)
-    if before is not signal.default_int_handler:
-        yield lambda: None
-        return
-    pressed = []
-
-    def press(number: int, frame: FrameType | None) -> None:
-        pressed.append(number)
-        signal.default_int_handler(number, frame)
-
-    def check() -> None:
-        if pressed:
-            raise KeyboardInterrupt
-
-    signal.signal(signal.SIGINT, press)
-    try:
-        yield check
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 class _Worker:

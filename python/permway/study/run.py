@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from permway.errors import InputError, SolveError
+from permway.interrupt import interruptible
 from permway.model.file import Frequencies
 from permway.response.limits import check_threads
 from permway.response.receptance import Progress
@@ -89,7 +90,7 @@ def run_study(
     for index in cases_to_check(study):
         study.model(index)
     _probe(study)
-    with Store(Path(folder), study, fresh=fresh) as store:
+    with interruptible(), Store(Path(folder), study, fresh=fresh) as store:
         missing = store.missing()
         total = study.plan.cases
         done = total - len(missing)

@@ -13,10 +13,12 @@ import pytest
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._excite import chain_with, with_irregularity, with_speed
-from permway.diagnosis.compete import Quick, Ring
+from permway.diagnosis.compete import Ring
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Hypothesis, Situation
-from permway.diagnosis.recalibrate import recalibrate, relearnt
+from permway.diagnosis.quick import Quick
+from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.refit import relearnt
 from permway.model.contact import GivenContact
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_excitation import Push, RoughBand, TrackLines, WheelLines

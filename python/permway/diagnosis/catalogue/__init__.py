@@ -33,7 +33,7 @@ def known(names: Collection[str]) -> tuple[str, ...]:
     """
     for name in names:
         if name not in entries():
-            remedy = f"use of {', '.join(entries())}"
+            remedy = f"use one of {', '.join(entries())}"
             raise InputError("is no effect of the catalogue", where="ruled out", value=name, remedy=remedy)
     return tuple(sorted(set(names)))
 

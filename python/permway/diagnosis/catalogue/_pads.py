@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from permway.diagnosis.catalogue._roles import rubbers
 from permway.laws import AnyLaw, Parallel, Scaled
 from permway.model.line import Line
 from permway.recordings.campaign import Campaign
@@ -50,11 +51,8 @@ def keys_of(law: AnyLaw, of: Mapping[str, Keys]) -> Keys:
 
 
 def pad_laws(line: Line) -> list[str]:
-    """Laws between a rail and what lies below, of which the numbers can be scaled."""
-    laws = dict.fromkeys(
-        layer.law for layer in line.joints if "rail" in (body.split("[")[0] for body in layer.between)
-    )
-    return [name for name in laws if keys_of(line.laws[name], STIFFNESS)]
+    """Laws of pads, or of a rig's rubber, of which the numbers can be scaled."""
+    return [name for name in rubbers(line) if keys_of(line.laws[name], STIFFNESS)]
 
 
 def loss_factor(line: Line, law: str) -> float:

@@ -82,6 +82,13 @@ def pads(line: Line) -> list[Layer]:
     return [layer for layer in layers(line) if is_rail(layer.upper)]
 
 
+def rubbers(line: Line) -> list[str]:
+    """Laws of the pads; on a rig without a rail, of what carries its masses."""
+    if any(is_rail(body_of(name)) for name in line.bodies):
+        return laws_of(pads(line))
+    return laws_of([layer for layer in layers(line) if isinstance(line.bodies.get(layer.upper), Mass)])
+
+
 def fasteners(line: Line) -> list[Layer]:
     """Layers that carry a rail at places a bay apart, not as a continuous support."""
     return [layer for layer in pads(line) if spacing(layer.x) >= DENSE_M]

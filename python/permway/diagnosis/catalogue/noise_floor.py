@@ -18,7 +18,7 @@ from permway.recordings.campaign import Campaign
 ID = "noise_floor"
 DOMAIN: Domain = "measurement"
 FAMILY = "noise"
-SUMMARY = "Noise of density e N ((1 - s) + s 10 Hz / f) on top of one channel's noise floor N."
+SUMMARY = "Noise of density e N ((1 - s) + s 10 Hz / f) on top of one channel's noise floor, N as its owner says."
 PARAMETERS = {
     "extra": "1, 1e-3 to 1e6: e",
     "flicker": "1, 0 to 1: s, the share that falls with frequency",
@@ -77,7 +77,9 @@ def _on_board(situation: Situation) -> Iterator[Hypothesis]:
     for name in suspects(situation, names, 4):
         sensor = situation.campaign.sensor(name)
         least = min(float(np.min(power)) for _, power in measured_psd(situation, name))
-        unit = sensor.chain.noise_floor or max(LOWEST * least / sensor.to_SI**2, 1e-30)
+        # The owner's floor, not where the base's was driven to.
+        stated = situation.fit.evidence.campaign.sensor(name).chain.noise_floor
+        unit = stated or max(LOWEST * least / sensor.to_SI**2, 1e-30)
         # As much as the least power on record, where that is more than what is stated.
         seen = float(np.log(max(least / sensor.to_SI**2 / unit, 1.0) / 10.0) / np.log(6.0))
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 
 from permway.diagnosis.catalogue._relaxing import relaxing, relaxing_once, springpot_free
-from permway.diagnosis.catalogue._roles import laws_of, pads
+from permway.diagnosis.catalogue._roles import rubbers
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, between_free, log_free
 from permway.laws import Hysteretic
 from permway.recordings.campaign import Campaign
@@ -43,9 +43,9 @@ def _at(name: str, _: Mapping[str, float]) -> Where:
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
-    """Two for each law between a rail and what lies below that is constant."""
+    """Two for each law of pads, or of a rig's rubber, that is constant."""
     line = situation.campaign.model.line
-    for name in laws_of(pads(line)):
+    for name in rubbers(line):
         if not isinstance(line.laws[name], Hysteretic):
             continue
 

@@ -10,7 +10,7 @@ from permway.arrays import ABSOLUTE_ZERO_C
 from permway.diagnosis.catalogue._change import with_law
 from permway.diagnosis.catalogue._pads import factors, measured_under, pad_laws, scaled, with_factors
 from permway.diagnosis.catalogue._relaxing import relaxing, springpot_free
-from permway.diagnosis.catalogue._roles import laws_of, pads
+from permway.diagnosis.catalogue._roles import rubbers
 from permway.diagnosis.hypothesis import (
     Domain,
     Hypothesis,
@@ -63,7 +63,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         return
     yield _stiffer(names)
     line = situation.campaign.model.line
-    for name in laws_of(pads(line)):
+    for name in rubbers(line):
         if isinstance(line.laws[name], Hysteretic):
             yield _shifted(name)
 

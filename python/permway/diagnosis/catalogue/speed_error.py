@@ -28,12 +28,20 @@ LIMITS = (float(np.log(0.9)) / SIGMA, float(np.log(1.1)) / SIGMA)
 STARTS = tuple((sign * z,) for z in (0.02, 0.07, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5) for sign in (1.0, -1.0))
 """So near each other that phases of wheels far apart are less than half a turn off at the nearest."""
 
+FAR, WIDE = 3.0, tuple((float(z),) for z in np.arange(LIMITS[0], LIMITS[1], 0.05))
+"""Standard deviations by which a base may have a run's speed off its note; and starts where one has it further.
+
+Such a base has sought what no speed of its own gives, and has stopped at any turn of phases, each run at one of
+its own, so that no factor leads all to the truth. All runs are then taken as they were noted.
+"""
+
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """Of all runs; and of each run of several, three at most."""
     names = list(dict.fromkeys(run.condition.name for run in excesses(situation)))
     if not names:
         return
+    astray = _astray(situation)
     for name in (None, *(names[:3] if len(names) > 1 else ())):
 
         def amend(campaign: Campaign, values: Mapping[str, float], name: str | None = name) -> Campaign:
@@ -47,8 +55,20 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             free=(Free("factor", "1", lambda z: float(np.exp(SIGMA * z)), LIMITS),),
             amend=amend,
             locate=stays("speed" if name is None else f"speed of {name}"),
-            starts=STARTS,
+            starts=WIDE if astray and name is None else STARTS,
             law=lambda v: f"{100 * (v['factor'] - 1):+.2f} % of the speed noted",
             size="factor",
             none=1.0,
+            about=astray if name is None else {},
         )
+
+
+def _astray(situation: Situation) -> dict[str, float]:
+    """The speeds' names, each with the centre of its prior, where the base has one far from what was noted."""
+    known = situation.campaign.parameters
+    speeds = {
+        f.name: float(z)
+        for f, z in zip(situation.fit.free, situation.fit.z, strict=True)
+        if f.name in known.known and "campaign.conditions" in known.touches(f.name)
+    }
+    return dict.fromkeys(speeds, 0.0) if any(abs(z) > FAR for z in speeds.values()) else {}

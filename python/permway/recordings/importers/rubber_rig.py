@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from permway.errors import InputError
 from permway.laws import law_to_dict
-from permway.laws.dma import read_dma
+from permway.laws.dma import DmaTable, read_dma
 from permway.laws.identify import identify
 from permway.laws.transmissibility import ShearRig
 from permway.recordings.campaign import Campaign
@@ -22,8 +25,23 @@ RIG = ShearRig(
 MASSES_KG = {"118g": 0.1178, "253g": 0.2533, "573g": 0.573, "1196g": 1.196}
 """By the name of the file, to the tenth of a gram."""
 
+AREA_M2 = RIG.shape_factor_m * RIG.thickness_m / RIG.rings
+"""Of one ring."""
+
 ROOM_C = 21.0
 """Of the shaker's room, not logged."""
+
+CONSTANT, SHEET_HZ = "constant", 10.0
+"""The law that a data sheet knows, and the frequency that it is of."""
+
+KNOWN = {"tolerance_2sigma": 0.5}
+"""How well a rig's factor, or a rubber's stiffness and loss, are known, relative."""
+
+WITHIN_DB = 0.5
+"""Of two accelerometers against each other, as data sheets have it: not stated, usual."""
+
+Known = list[tuple[str, str, str]]
+"""Name, unit and key of what is not known of a law."""
 
 
 def import_rubber_rig(
@@ -32,7 +50,9 @@ def import_rubber_rig(
     """Turn every material of the folder into a campaign in a folder of its name.
 
     The model is the rubber's law as identified from the DMA table at the lowest strain, by WLF, and one mass on it
-    for each shaker record; nothing is fitted to the shaker.
+    for each shaker record; nothing is fitted to the shaker. With the law "constant" it is what a data sheet says,
+    modulus and loss factor at 10 Hz and room temperature, and the campaign holds the shaker's records alone: what
+    the DMA knows of frequency is withheld.
 
     Parameters
     ----------
@@ -42,7 +62,7 @@ def import_rubber_rig(
     copy : bool
         Whether the records are copied beside the campaigns.
     law : str
-        Family of the law, see :func:`permway.laws.identify.identify`.
+        "constant", or a family, see :func:`permway.laws.identify.identify`.
 
     Raises
     ------
@@ -61,10 +81,11 @@ def _material(folder: Path, output: Path, *, copy: bool, law: str) -> Campaign:
     shaken = sorted((folder / "shaker").glob("*.csv"))
     if not shaken:
         raise InputError("holds no shaker record", where=str(folder / "shaker"))
-    found = identify(read_dma(sweep), law=law, shift="wlf", reference_temperature_C=ROOM_C)
+    rubber, known = _constant(read_dma(sweep)) if law == CONSTANT else _identified(read_dma(sweep), law)
     masses = {path: _mass(path) for path in shaken}
     strains = sorted((folder / "dma").glob("sd_*.csv"))
-    records: list[dict[str, Any]] = [_dma(path) for path in (sweep, *strains)]
+    tested = [] if law == CONSTANT else [sweep, *strains]
+    records: list[dict[str, Any]] = [_dma(path) for path in tested]
     records += [
         {
             "name": path.stem,
@@ -72,29 +93,25 @@ def _material(folder: Path, output: Path, *, copy: bool, law: str) -> Campaign:
             "condition": f"shaker_{path.stem.split('_')[0]}",
             "statistic": "transmissibility",
             "channels": {"mass": name},
+            "within_dB": WITHIN_DB,
         }
         for path, (name, _) in masses.items()
     ]
     levels = sorted({path.stem.split("_")[0] for path in shaken})
     campaign = {
         "format": 1,
-        "title": f"{folder.name}: two rings in shear, and their DMA",
+        "title": f"{folder.name}: two rings in shear, {'and their DMA' if tested else 'as a data sheet has it'}",
         "model": "model.toml",
         "parameters": [
-            {
-                "name": "rig.factor",
-                "unit": "1",
-                "paths": ["line.laws.rubber.effective_fraction"],
-                "acts": "scales",
-                "tolerance_2sigma": 0.5,
-            }
+            {"name": name, "unit": unit, "paths": [f"line.laws.rubber.{key}"], "acts": "scales", **KNOWN}
+            for name, unit, key in known
         ],
         "sensors": [
             {"name": name, "body": name, "x_m": _place(i), "unit": "m/s2"}
             for i, (name, _) in enumerate(masses.values())
         ],
         "conditions": [
-            {"name": "dma", "kind": "table"},
+            *([{"name": "dma", "kind": "table"}] if tested else []),
             *(
                 {"name": f"shaker_{level}", "kind": "shaker", "temperature_C": ROOM_C, "note": "room, not logged"}
                 for level in levels
@@ -102,16 +119,50 @@ def _material(folder: Path, output: Path, *, copy: bool, law: str) -> Campaign:
         ],
         "records": records,
         "held_out": [
-            {"name": "shaker", "axis": "record", "members": [path.stem for path in shaken]},
-            *(
-                [{"name": "strain", "axis": "record", "members": [path.stem for path in strains]}]
-                if strains
-                else []
-            ),
+            {"name": name, "axis": "record", "members": [path.stem for path in left_out]}
+            for name, left_out in _held_out(shaken, strains, bool(tested))
         ],
     }
-    model = _model(folder.name, law_to_dict(found.law), list(masses.values()))
-    return write_campaign(output, campaign=campaign, model=model, sources=[sweep, *strains, *shaken], copy=copy)
+    model = _model(folder.name, rubber, list(masses.values()))
+    return write_campaign(output, campaign=campaign, model=model, sources=[*tested, *shaken], copy=copy)
+
+
+def _held_out(shaken: list[Path], strains: list[Path], tested: bool) -> Iterator[tuple[str, list[Path]]]:
+    """All that was shaken, and all that was strained; without a DMA each mass by itself."""
+    if not tested:
+        yield from ((path.stem, [path]) for path in shaken)
+        return
+    yield "shaker", shaken
+    if strains:
+        yield "strain", strains
+
+
+def _identified(table: DmaTable, law: str) -> tuple[dict[str, Any], Known]:
+    """The law of one ring of the rubber as its DMA knows it, and the rig's factor on it."""
+    found = identify(table, law=law, shift="wlf", reference_temperature_C=ROOM_C)
+    ring = {
+        "type": "pad",
+        "area_m2": AREA_M2,
+        "thickness_m": RIG.thickness_m,
+        "effective_fraction": 1.0,
+        "material": law_to_dict(found.law),
+    }
+    return ring, [("rig.factor", "1", "effective_fraction")]
+
+
+def _constant(table: DmaTable) -> tuple[dict[str, Any], Known]:
+    """One ring with the modulus and loss factor of the test nearest to 10 Hz and room temperature."""
+    away = np.abs(np.log(table.frequency_Hz / SHEET_HZ))
+    if table.temperature_C is not None:
+        away = away + np.abs(table.temperature_C - ROOM_C)
+    row = int(np.argmin(away))
+    storage, loss = float(table.storage_Pa[row]), float(table.loss_Pa[row])
+    ring = {
+        "type": "hysteretic",
+        "stiffness": storage * AREA_M2 / RIG.thickness_m,
+        "loss_factor": loss / storage,
+    }
+    return ring, [("rubber.k", "N/m", "stiffness"), ("rubber.eta", "1", "loss_factor")]
 
 
 def _dma(path: Path) -> dict[str, Any]:
@@ -147,15 +198,7 @@ def _model(name: str, law: dict[str, Any], masses: list[tuple[str, float]]) -> d
         "frequencies": {"from_Hz": 20.0, "to_Hz": 1000.0, "points": 100},
         "line": {
             "bodies": {body: {"type": "mass", "mass_kg": mass + RIG.moving_mass_kg} for body, mass in masses},
-            "laws": {
-                "rubber": {
-                    "type": "pad",
-                    "area_m2": RIG.shape_factor_m * RIG.thickness_m / RIG.rings,
-                    "thickness_m": RIG.thickness_m,
-                    "effective_fraction": 1.0,
-                    "material": law,
-                }
-            },
+            "laws": {"rubber": law},
             "joints": [
                 {"between": [body, "ground"], "law": "rubber", "at": [_place(i)], "scale": float(RIG.rings)}
                 for i, (body, _) in enumerate(masses)

@@ -46,6 +46,9 @@ LAYERS = ("pad", "mortar", "sliding", "bearing")
 SPEED_2SIGMA, SPEED_BOUND = 0.005, 0.01
 """How well a train's speed is usually noted, and beyond which it is wrong: wheelsets 20 m apart tell 0.05 %."""
 
+NOISE_2SIGMA = 0.4
+"""How far noise where the train is heard may be from what a quiet band tells, both of one recorder."""
+
 _SUFFIXES = (".uff", ".unv", ".mat", ".csv", ".npz", ".h5", ".nc", ".tdms", ".wav")
 _NODES = {1: "rail", 2: "slab", 3: "base", 4: "girder"}
 
@@ -232,7 +235,7 @@ def _train_parameters(sheet: Sheet, runs: Sequence[str]) -> list[dict[str, Any]]
             "unit": "(m/s2)2/Hz",
             "paths": [f"campaign.sensors.{channel}.chain.noise_floor"],
             "acts": "scales",
-            "tolerance_2sigma": 0.9,
+            "tolerance_2sigma": NOISE_2SIGMA,
             "prior": "log_normal",
         }
         for channel in (sheet.runs.channels if sheet.runs else ())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,6 +29,9 @@ BAND_HZ = (3.0, 400.0)
 QUIET_HZ = (470.0, 505.0)
 """Where the runs hold nothing but noise."""
 
+ALIKE = 4.0
+"""Times the median of all channels: one whose floor is higher is noisier than a recorder's channels are."""
+
 LINES_HZ = ((0.0, 0.5), (30.0, 1.0))
 """Where the transfer functions behind computed runs are exact, and between which they are interpolated.
 
@@ -50,7 +54,8 @@ class Runs:
     sources : list of Path
         One for each speed.
     noise : dict of channel to float
-        Floor, unit squared per hertz: the least over the runs of the median in the quiet band.
+        Floor, unit squared per hertz: the least over the runs of the median in the quiet band; of a channel that
+        is noisier than `ALIKE` times the median of all that median, for so much its owner would expect.
     interpolated : list of bool
         Whether each record was computed by interpolation between `LINES_HZ`.
     """
@@ -133,6 +138,15 @@ def read_runs(sheet: Sheet, sources: list[Path]) -> Runs:
             least = np.minimum(least, np.median(quiet, axis=1))
         interpolated.append(_is_interpolated(sheet, values, rate, speed / 3.6))
     known = np.where(np.isfinite(least) & (least > 0.0), least, 1e-12)
+    usual = float(np.median(known))
+    for channel, value in zip(sheet.runs.channels, known, strict=True):
+        if value > ALIKE * usual:
+            warnings.warn(
+                f"{channel}: {value / usual:.3g} times the noise of the other channels, in power; the campaign "
+                "says theirs, so that a diagnosis tells the difference",
+                stacklevel=2,
+            )
+    known = np.where(known > ALIKE * usual, usual, known)
     noise = {channel: float(f"{value:.4g}") for channel, value in zip(sheet.runs.channels, known, strict=True)}
     return Runs(sheet, sources, noise, interpolated)
 

@@ -20,6 +20,9 @@ LENGTH_M = 90.0
 ACCELEROMETER_M = 25.5 * SPACING_M
 """In the middle of a bay, far from the ends of the sleepers."""
 
+BAND_HZ = (250.0, 2500.0)
+"""Where the model holds: below, the ballast is more than a spring; above, so is the rail's section."""
+
 CONTINUOUS_M = 0.15
 """Spacing that stands for a continuous support: the rail is pinned between supports far above 5 kHz only."""
 
@@ -90,6 +93,7 @@ def import_track_decay(folder: Path, output: Path, *, copy: bool = False, suppor
                 "condition": name,
                 "statistic": "decay",
                 "spacing_m": SPACING_M,
+                "band_Hz": list(BAND_HZ),
                 "channels": {"rail": "rail lateral" if lateral else "rail vertical"},
                 "select": {"tdr_id": test},
             }

@@ -17,6 +17,10 @@ PER_LINE = 16
 REACH_LINES = 4
 """Lines on either side beyond which Hann's window lets nothing through (below 1e-5 of the power)."""
 
+FINE_LINES, FINER = 16.0, 4.0
+"""Lines of an estimate below which is solved so many times as finely: there resonances are narrower than a line,
+and the window brings the power of one to lines beside it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Grid:
@@ -174,11 +178,13 @@ def solved_lines(
 ) -> Reals:
     """Frequencies to solve at, so that the window's reach is covered, Hz.
 
-    They lie a line of the estimate apart, or where those lay between which the record was interpolated.
+    They lie a line of the estimate apart, and closer at low frequencies; or where those lay between which the
+    record was interpolated.
     """
     reach = REACH_LINES / segment_s
     low, high = float(estimate_Hz[0]) - reach, float(estimate_Hz[-1]) + reach
-    ranges = list(interpolated_Hz or [(0.0, 1.0 / segment_s)])
+    usual = [(0.0, 1.0 / (FINER * segment_s)), (FINE_LINES / segment_s, 1.0 / segment_s)]
+    ranges = list(interpolated_Hz or usual)
     parts = []
     for (start, step), stop in zip(ranges, [*(start for start, _ in ranges[1:]), np.inf], strict=True):
         first = int(np.floor((max(low, start) - start) / step + 1e-9))

@@ -61,22 +61,30 @@ def influence(model: Model, frequency_Hz: Reals, track: Complexes) -> Complexes:
 
 @lru_cache(maxsize=8)
 def _influence(vehicle: Vehicle, contact: float, lines: bytes, track: bytes) -> Complexes:
-    wheels = vehicle.wheel_indices
-    response = _pushed(vehicle, tuple(wheels), lines)
-    between = np.frombuffer(track, dtype=np.complex128).reshape(-1, len(wheels), len(wheels))
-    found = np.asarray(response @ np.linalg.inv(response[:, wheels, :] + between + contact * np.eye(len(wheels))))
+    response, wheel = _pushed(vehicle, lines)
+    between = np.frombuffer(track, dtype=np.complex128).reshape(wheel.shape)
+    found = np.asarray(response @ np.linalg.inv(wheel + between + contact * np.eye(wheel.shape[1])))
     found.flags.writeable = False
     return found
 
 
 @lru_cache(maxsize=8)
-def _pushed(vehicle: Vehicle, degrees: tuple[int, ...], lines: bytes) -> Complexes:
-    """Displacement of the free vehicle per force on some degrees, m/N, shape (F, all degrees, degrees)."""
-    stiffness = vehicle.dynamic_stiffness(np.frombuffer(lines))
-    push = np.eye(stiffness.shape[1])[:, list(degrees)]
-    found = np.asarray(np.linalg.solve(stiffness, np.broadcast_to(push, (stiffness.shape[0], *push.shape))))
-    found.flags.writeable = False
+def _pushed(vehicle: Vehicle, lines: bytes) -> tuple[Complexes, Complexes]:
+    """Displacement of the free vehicle's degrees and of its contacts per force on the contacts, m/N."""
+    found = vehicle.per_wheel_force(np.frombuffer(lines))
+    for values in found:
+        values.flags.writeable = False
     return found
+
+
+@lru_cache(maxsize=8)
+def _shaken(vehicle: Vehicle, degree: int, lines: bytes) -> Complexes:
+    """Displacement of the free vehicle per force on one degree, m/N, shape (F, degrees)."""
+    stiffness = vehicle.dynamic_stiffness(np.frombuffer(lines))
+    push = np.eye(stiffness.shape[1])[:, [degree]]
+    found = np.linalg.solve(stiffness, np.broadcast_to(push, (stiffness.shape[0], *push.shape)))[:, :, 0]
+    found.flags.writeable = False
+    return np.asarray(found)
 
 
 def amplitudes(
@@ -188,9 +196,11 @@ def _sources(
         yield [per_profile[:, :, wheel] for wheel in of], density
     for source in known.pushes:
         # The free vehicle moves by it, and the contacts answer as to a profile of the wheels' motion, reversed.
-        free = _pushed(vehicle, (vehicle.degrees.index(source.degree),), lines_Hz.tobytes())
-        answer = per_profile @ free[:, wheels, :]
-        yield [(free - answer)[:, :, 0]], excitation.push(source, grid.frequency_Hz)
+        lines, degree = lines_Hz.tobytes(), vehicle.degrees.index(source.degree)
+        # What the push moves the contacts by is, reversed, what forces on the contacts move the degree by.
+        at_contacts = _pushed(vehicle, lines)[0][:, degree, :]
+        answer = np.einsum("fdw,fw->fd", per_profile, at_contacts)
+        yield [_shaken(vehicle, degree, lines) - answer], excitation.push(source, grid.frequency_Hz)
 
 
 def _chains(sensors: Sequence[Sensor], frequency_Hz: Reals) -> Complexes:

@@ -10,8 +10,9 @@ from permway.errors import InputError
 from permway.recordings.readers import hdf5, mat, netcdf3, npz, table, tdms, text, text_frf, uff55, uff58, wav
 from permway.recordings.readers.formats import Format, recognise
 from permway.recordings.readers.limits import MOST_BYTES, check_size, existing_file, foreign
-from permway.recordings.readers.store import Store, as_time
+from permway.recordings.readers.store import as_time
 from permway.recordings.readers.store_frf import as_frf, as_table
+from permway.recordings.readers.stored import Store
 from permway.recordings.readers.timefile import (
     TimeFile,
     agreed_rate,

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from permway.errors import InputError
 from permway.recordings.readers import hdf5_trial
 from permway.recordings.readers.limits import MOST_CHANNELS
-from permway.recordings.readers.store import MOST_TEXT_BYTES, Store, Variable
+from permway.recordings.readers.stored import MOST_TEXT_BYTES, Store, Variable
 
 TRIAL_S = 2.0
 """Processor time that going through a file may take, s; and a second more for every :data:`BYTES_PER_S` of it."""

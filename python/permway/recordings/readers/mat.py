@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from permway.errors import InputError
 from permway.recordings.readers.limits import MOST_BYTES, MOST_CHANNELS, check_size
-from permway.recordings.readers.store import Store, Variable
+from permway.recordings.readers.stored import Store, Variable
 
 _MATRIX, _COMPRESSED = 14, 15
 _NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}

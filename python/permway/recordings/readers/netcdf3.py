@@ -13,7 +13,7 @@ from scipy import io
 
 from permway.errors import InputError
 from permway.recordings.readers.limits import MOST_BYTES, check_size
-from permway.recordings.readers.store import Store, Variable
+from permway.recordings.readers.stored import Store, Variable
 
 
 @contextmanager

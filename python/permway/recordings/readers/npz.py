@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from permway.errors import InputError
-from permway.recordings.readers.store import Store, Variable
+from permway.recordings.readers.stored import Store, Variable
 
 _MOST_MEMBERS = 10_000
 _KINDS = {"f": "real", "i": "real", "u": "real", "c": "complex", "U": "text", "S": "text"}

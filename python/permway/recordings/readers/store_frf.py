@@ -10,7 +10,7 @@ from permway.arrays import Reals
 from permway.errors import InputError
 from permway.recordings.readers.headers import clean_unit, split_header
 from permway.recordings.readers.limits import MOST_BYTES, check_size
-from permway.recordings.readers.store import UNITS, Store, Variable
+from permway.recordings.readers.stored import UNITS, Store, Variable
 from permway.recordings.record import Cells, FrfRecord, TableRecord
 
 FREQUENCIES = {"f", "freq", "freqs", "frequency", "frequencies", "frequency_hz", "freq_hz", "f_hz"}

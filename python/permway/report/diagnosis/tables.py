@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from permway.diagnosis.catalogue import entries
-from permway.diagnosis.compare import LEFT
+from permway.diagnosis.compare_tables import LEFT
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.verdict import Effect, HeldOutGain, Moved, Verdict
-from permway.diagnosis.verdict_words import DOMAIN, INCOMPLETE, STATUS, interval, probability, quantity, size
+from permway.diagnosis.verdict_words import DOMAIN, INCOMPLETE, STATUS, interval, probability, quantity, size, span
 from permway.report.compare.tables import NOTABLE_DB, BandTable, decibels, signed
 from permway.report.diagnosis.changes import Change
 
@@ -118,8 +118,8 @@ def candidate_rows(diagnosis: Diagnosis) -> list[dict[str, str]]:
 
 def _estimate(name: str, value: float, low: float, high: float, unit: str) -> str:
     """With its interval, if one is known."""
-    span = f" ({quantity(low)} to {quantity(high)})" if np.isfinite([low, high]).all() else ""
-    return f"{name} {quantity(value, unit)}{span}"
+    ends = f" ({span(low, high)})" if np.isfinite([low, high]).all() else ""
+    return f"{name} {quantity(value, unit)}{ends}"
 
 
 def _known(value: float) -> str:
@@ -231,8 +231,8 @@ def _went(before: Moved | None, after: Moved | None) -> str:
     return "went back" if abs(after.z) < abs(before.z) - WENT_BACK else ""
 
 
-def _span(span: tuple[float, float] | None) -> str:
-    return "" if span is None else f"{quantity(min(span))} to {quantity(max(span))}"
+def _span(ends: tuple[float, float] | None) -> str:
+    return "" if ends is None else span(min(ends), max(ends))
 
 
 def next_rows(verdict: Verdict) -> list[dict[str, str]]:

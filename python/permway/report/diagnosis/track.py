@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Colormap, Normalize
 
-from permway.diagnosis.locate import Found
+from permway.diagnosis.spot import Found
 from permway.model.bodies import Mass
 from permway.model.line import Line
 from permway.recordings.campaign import Campaign

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, MaxNLocator, NullLocator
 
 from permway.arrays import Reals
-from permway.diagnosis.locate import Found
 from permway.diagnosis.result import Diagnosis
+from permway.diagnosis.spot import Found
 from permway.report.compare.looks import FONT, edges, plain
 from permway.report.diagnosis.track import draw, drawing
 

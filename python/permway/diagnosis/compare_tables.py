@@ -1,0 +1,76 @@
+"""Parameters and sizes of smooth errors of a comparison, as labelled tables."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.fit import Fit
+from permway.recordings.campaign import Campaign
+from permway.recordings.compare import NEPER_DB, POWER_DB, POWERS, VARIABLE
+
+SAYS_NOTHING = 0.9
+"""A posterior that is wider than this share of the prior: the records say nothing of the parameter."""
+
+LEFT = 2.0
+"""Standard deviations of the prior beyond which a value has left its tolerance."""
+
+
+def parameters_of(campaign: Campaign, fit: Fit | None) -> xr.Dataset:
+    """Owner's value and tolerance of every parameter; recalibrated, beside them, what was found."""
+    known = list(campaign.parameters.known.values())
+    nominal = np.array([k.nominal for k in known])
+    columns: dict[str, Any] = {
+        "nominal": nominal,
+        "low_2sigma": np.array([k.value(-2.0) for k in known]),
+        "high_2sigma": np.array([k.value(2.0) for k in known]),
+    }
+    if fit is not None:
+        values, intervals = fit.values(), fit.intervals()
+        sigma = dict(zip((f.name for f in fit.free), np.sqrt(np.diag(fit.covariance)), strict=True))
+        z = dict(zip((f.name for f in fit.free), fit.z, strict=True))
+        names = [k.name for k in known]
+        columns |= {
+            "value": np.array([values[n] for n in names]),
+            "low": np.array([intervals[n][0] for n in names]),
+            "high": np.array([intervals[n][1] for n in names]),
+            "z": np.array([z[n] for n in names]),
+            "sigma_over_prior": np.array([sigma[n] for n in names]),
+        }
+        columns["left"] = np.abs(columns["z"]) > LEFT
+        columns["not_informed"] = columns["sigma_over_prior"] > SAYS_NOTHING
+    return xr.Dataset(
+        {name: ("parameter", values) for name, values in columns.items()},
+        coords={
+            "parameter": np.array([k.name for k in known], dtype=str),
+            "unit": ("parameter", np.array([k.parameter.unit for k in known], dtype=str)),
+        },
+        attrs={"interval": "low to high hold 90 %", "z": "standard deviations of the owner's prior"},
+    )
+
+
+def smooth_of(evidence: Evidence) -> xr.Dataset:
+    """Sizes of the smooth errors that were allowed, dB of the level they act on."""
+    decay = {f"record {d.record.name}" for d in evidence.datasets if VARIABLE[d.record.statistic] in POWERS}
+    sizes = {
+        origin: size * (POWER_DB if origin.startswith(("irregularity", "decay")) or origin in decay else NEPER_DB)
+        for origin, size in evidence.sizes.items()
+        if origin in {o.name for o in evidence.columns.origins}
+    }
+    for block in evidence.blocks:
+        if isinstance(block, FrfBlock):
+            sizes[f"pairs of {block.dataset.record.name}"] = block.pair * NEPER_DB
+    return xr.Dataset(
+        {
+            "size_dB": (
+                "origin",
+                np.array(list(sizes.values())),
+                {"long_name": "standard deviation", "units": "dB"},
+            )
+        },
+        coords={"origin": np.array(list(sizes), dtype=str)},
+    )

@@ -1,0 +1,71 @@
+"""What a name is credited with: little, where the model neither fits nor would be believed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from permway.diagnosis.decide import members
+from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather
+from permway.diagnosis.recalibrate import UNFIT, recalibrate
+from permway.diagnosis.rounds import BEYOND
+from permway.diagnosis.speak import _credit, _explains_little
+from simulated import simulate
+
+
+@pytest.fixture(scope="module")
+def fit(tmp_path_factory: pytest.TempPathFactory) -> Fit:
+    return recalibrate(gather(simulate(tmp_path_factory.mktemp("one") / "c", 4).campaign, threads=1))
+
+
+@pytest.mark.parametrize(
+    ("heat", "farthest", "credit"),
+    [
+        (1.0, 0.5, 1.0),
+        (1.0, BEYOND + 1.0, 1.0),
+        (30.0, 0.5, 1.0),
+        (30.0, -BEYOND - 1.0, UNFIT / 30.0),
+    ],
+)
+def test_a_name_is_credited_unless_its_model_neither_fits_nor_is_believed(
+    fit: Fit, heat: float, farthest: float, credit: float
+) -> None:
+    z = np.zeros(fit.z.size)
+    z[1] = farthest
+    assert _credit(replace(fit, heat=heat, z=z)) == pytest.approx(credit)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "little"),
+    [
+        (1.0, 1.0, False),
+        (1.2, 1.19, False),
+        (1.49, 1.48, True),
+        (1.49, 1.4, False),
+        (9.0, 5.0, True),
+        (9.0, 1.4, False),
+    ],
+)
+def test_what_leaves_a_misfit_as_it_was_explains_little(
+    fit: Fit, before: float, after: float, little: bool
+) -> None:
+    assert _explains_little(replace(fit, heat=before), replace(fit, heat=after)) is little
+
+
+def test_what_was_found_beside_an_effect_is_no_rival_of_it(fit: Fit) -> None:
+    def finalist(entry: str) -> Any:
+        quick = SimpleNamespace(gain=50.0, hypothesis=SimpleNamespace(entry=entry, free=()))
+        return SimpleNamespace(fit=fit, hypothesis=quick.hypothesis, quick=quick, correction=0.0)
+
+    found = cast(Any, SimpleNamespace(finalists=(finalist("a"), finalist("b")), followed=(), ring=None))
+    assert {m.name: m.probability for m in members(found, explained=1.0)} == pytest.approx(
+        {"a": 0.475, "b": 0.475, "novel": 0.05}
+    )
+    # It was found itself, in another round.
+    assert {m.name: m.probability for m in members(found, explained=1.0, beside=("a", "b"))} == pytest.approx(
+        {"a": 0.95, "novel": 0.05}
+    )
