@@ -54,17 +54,7 @@ class Section:
 
 def element(section: Section, length: float) -> tuple[Reals, Reals]:
     """Stiffness and consistent mass of an element, each (4, 4), for deflection and rotation of its two nodes."""
-    soft = section.bending / section.shear if np.isfinite(section.shear) else 0.0
-    # The deflection is a polynomial 1, x, x2, x3; of a constant shear force it takes E I w''' / (kappa G A).
-    at_ends = np.array(
-        [
-            [1.0, 0.0, 0.0, 0.0],
-            [0.0, 1.0, 0.0, 6.0 * soft],
-            [1.0, length, length**2, length**3],
-            [0.0, 1.0, 2.0 * length, 3.0 * length**2 + 6.0 * soft],
-        ]
-    )
-    polynomial = np.linalg.inv(at_ends)
+    soft, polynomial = _polynomial(section, length)
     points, weights = np.polynomial.legendre.leggauss(4)
     x = 0.5 * length * (points + 1.0)
     weights = 0.5 * length * weights
@@ -79,6 +69,41 @@ def element(section: Section, length: float) -> tuple[Reals, Reals]:
     mass = section.mass * np.einsum("p,pi,pj->ij", weights, deflection, deflection)
     mass = mass + section.rotary * np.einsum("p,pi,pj->ij", weights, rotation, rotation)
     return np.asarray(stiffness), np.asarray(mass)
+
+
+def shape(section: Section, length: float, x: Reals) -> Reals:
+    """Deflection at places of an element per deflection and rotation of its two nodes, shape (places, 4)."""
+    _, polynomial = _polynomial(section, length)
+    return np.asarray(np.stack([np.ones_like(x), x, x**2, x**3], axis=1) @ polynomial)
+
+
+def within(section: Section, length: float, x: Reals) -> Reals:
+    """How far a force within an element moves its place while the nodes are held, m/N.
+
+    An element's shape functions leave that out, so that a wheel would find the rail stiffer between its nodes.
+    """
+    found = np.zeros(x.shape)
+    for index, place in enumerate(x):
+        if 0.0 < place < length:
+            before, _ = element(section, float(place))
+            behind, _ = element(section, float(length - place))
+            found[index] = np.linalg.inv(before[2:, 2:] + behind[:2, :2])[0, 0]
+    return found
+
+
+def _polynomial(section: Section, length: float) -> tuple[float, Reals]:
+    """Bending over shear stiffness, and the coefficients of 1, x, x2, x3 per motion of the nodes."""
+    soft = section.bending / section.shear if np.isfinite(section.shear) else 0.0
+    # The deflection is a polynomial 1, x, x2, x3; of a constant shear force it takes E I w''' / (kappa G A).
+    at_ends = np.array(
+        [
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 6.0 * soft],
+            [1.0, length, length**2, length**3],
+            [0.0, 1.0, 2.0 * length, 3.0 * length**2 + 6.0 * soft],
+        ]
+    )
+    return soft, np.linalg.inv(at_ends)
 
 
 def dynamic(section: Section, length: float, frequency_Hz: Reals) -> Blocks:

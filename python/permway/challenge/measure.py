@@ -9,6 +9,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from permway.challenge.beams import Complexes, Reals
+from permway.challenge.contact import TAPER_HZ
 from permway.challenge.errors_of_measurement import struck, wander
 from permway.challenge.irregularity import deviation, profile
 from permway.challenge.mesh import Mesh
@@ -19,6 +20,10 @@ GRID_HZ = ((0.25, 0.125), (24.0, 0.25), (40.0, 0.5), (100.0, 1.0))
 """Where the track is solved: from, step. Between the lines its receptance, which holds no lag, is smooth."""
 
 TOP_HZ = 466.0
+
+WIDE_HZ = np.arange(470.0, TAPER_HZ[1] + 8.0, 8.0)
+"""Further lines, where wheels may leave the rail."""
+
 FILTER_HZ = (412.0, 462.0)
 """Where the recorder's filter goes from one to nothing."""
 
@@ -58,7 +63,8 @@ def measure(plan: Plan, random: np.random.Generator) -> tuple[list[HammerTest], 
     rows = list(dict.fromkeys([*tests.sensors, *wheels]))
     columns = list(dict.fromkeys([*tests.points, *wheels]))
     mesh = Mesh(plan.track, [*rows, *columns])
-    grid = np.unique(np.concatenate([_grid(), lines]))
+    wide = WIDE_HZ if plan.vehicle.hertz is not None else WIDE_HZ[:0]
+    grid = np.unique(np.concatenate([_grid(), lines, wide]))
     hammers = []
     under = np.empty(0, dtype=np.complex128)
     errors = _errors(plan, random, lines)
@@ -142,6 +148,7 @@ def _run(
     profiles = met[:, None] * late
     for extra in plan.wheel_profiles:
         profiles = profiles + np.fft.rfft(extra(times, speed), axis=1)[:, kept].T
+    profiles = plan.vehicle.leaving(lines, under, profiles, samples=samples)
     track = under(lines)
     moved = plan.vehicle.respond(lines, track, profiles, bins=np.flatnonzero(kept), samples=samples)
     rates = moved * (-((2.0 * np.pi * lines) ** 2) * _window(lines))[:, None]

@@ -63,7 +63,8 @@ class Mesh:
                         count += 2
         self.size = count
 
-    def _elements(self, body: str) -> list[tuple[NDIndex, float, float]]:
+    def elements(self, body: str) -> list[tuple[NDIndex, float, float]]:
+        """Degrees of freedom of each element of a body, from where to where, m."""
         nodes, found = self.nodes[body], []
         for column in sorted({column for column, _ in nodes})[:-1]:
             left = nodes.get((column, 1), nodes[column, 0])
@@ -80,7 +81,7 @@ class Mesh:
             if np.isfinite(beam.section.shear):
                 groups += self._fine(body, beam)
                 continue
-            for dofs, left, right in self._elements(body):
+            for dofs, left, right in self.elements(body):
                 stiffness, mass = element(beam.part(left, right), right - left)
                 if beam.tension:
                     stiffness = stiffness + cable_element(beam.tension, right - left)
@@ -91,7 +92,7 @@ class Mesh:
         self.law_groups: list[tuple[str, int, int]] = []
         for name in dict.fromkeys(link.law for link in self.track.links):
             links = [link for link in self.track.links if link.law == name]
-            dofs = np.array([self._dofs(link) for link in links])
+            dofs = np.array([self.tied(link) for link in links])
             scale = np.array([link.scale for link in links], dtype=complex)
             for i in range(dofs.shape[1]):
                 for j in range(dofs.shape[1]):
@@ -100,14 +101,14 @@ class Mesh:
         self.ends: dict[str, tuple[int, int]] = {}
         for body, beam in self.track.beams.items():
             if beam.endless:
-                elements = self._elements(body)
+                elements = self.elements(body)
                 self.ends[body] = int(elements[0][0][0]), int(elements[-1][0][2])
         self._pattern(groups)
 
     def _fine(self, body: str, beam: Beam) -> list[list[Entries]]:
         """Entries of a body of finer elements: a group for each length, section and place in a block."""
         alike: dict[tuple[Section, float], list[NDIndex]] = {}
-        for dofs, left, right in self._elements(body):
+        for dofs, left, right in self.elements(body):
             alike.setdefault((beam.part(left, right), round(right - left, 7)), []).append(dofs)
         groups: list[list[Entries]] = []
         for (section, length), found in alike.items():
@@ -134,7 +135,8 @@ class Mesh:
         at, group, value = (np.concatenate(part) for part in zip(*entries, strict=True))
         self.table = sparse.csr_array((value, (at, group)), shape=(self.filled.size, len(groups)))
 
-    def _dofs(self, link: Link) -> list[int]:
+    def tied(self, link: Link) -> list[int]:
+        """Degrees of freedom of a link's points."""
         after = link.after or (False,) * len(link.spots)
         return [self.at(spot, after=side) for spot, side in zip(link.spots, after, strict=True)]
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from permway.challenge.beams import Complexes, Reals
+from permway.challenge.contact import Hertz, as_profile
 from permway.challenge.layout import Values
 from permway.challenge.sliders import Slider, settle
 
@@ -18,6 +19,8 @@ Arm = dict[int, float]
 Law = Callable[[Reals], Complexes]
 
 BODY, PITCH, WHEELS = 0, 1, (6, 7, 8, 9)
+
+GRAVITY = 9.81
 
 
 @dataclass
@@ -39,6 +42,8 @@ class Vehicle:
         Stiffness of a wheel's contact, N/m.
     slider : Slider or None
         A force that no law describes.
+    hertz : Hertz or None
+        A contact that wheels may leave; linear contacts without it.
     """
 
     masses: list[float]
@@ -48,6 +53,7 @@ class Vehicle:
     channels: dict[str, Arm]
     contact: float
     slider: Slider | None = None
+    hertz: Hertz | None = None
 
     def add(self, mass: float) -> int:
         """Add a degree of freedom; its number."""
@@ -70,6 +76,34 @@ class Vehicle:
         ndarray of complex128, shape (F, channels, 4)
         """
         return np.asarray(self._rows(self.channels.values()) @ self._moved(frequency_Hz, track))
+
+    def pressed(self, frequency_Hz: Reals, track: Complexes) -> Complexes:
+        """Force of each linear contact per profile under each wheel, shape (F, wheels, wheels), N/m."""
+        under = np.linalg.inv(track + np.eye(len(self.wheels)) / self.contact)
+        moved = self._moved(frequency_Hz, track)[:, self.wheels]
+        return np.asarray(under @ (moved - np.eye(len(self.wheels))))
+
+    def leaving(
+        self,
+        frequency_Hz: Reals,
+        track: Callable[[Reals], Complexes],
+        profiles: Complexes,
+        *,
+        samples: int,
+    ) -> Complexes:
+        """Profiles under linear contacts that do what these do under contacts that wheels may leave.
+
+        Parameters
+        ----------
+        frequency_Hz : ndarray, shape (F,)
+        track : callable
+            Of frequencies: m/N under the wheels, shape (F, 4, 4).
+        profiles : ndarray of complex128, shape (F, 4)
+        samples : int
+        """
+        if self.hertz is None:
+            return profiles
+        return as_profile(self.hertz, lambda f: self.pressed(f, track(f)), frequency_Hz, profiles, samples=samples)
 
     def respond(
         self, frequency_Hz: Reals, track: Complexes, profiles: Complexes, *, bins: NDArray[np.int64], samples: int
@@ -160,6 +194,12 @@ def vehicle(values: Values, contact: float) -> Vehicle:
         channels=channels,
         contact=contact,
     )
+
+
+def wheel_load(values: Values) -> float:
+    """Of one wheel at rest, N."""
+    v = values["vehicle"]
+    return float(GRAVITY * v["half"] * (0.25 * v["Mc"] + 0.5 * v["Mt"] + v["Mw"]))
 
 
 def damped_spring(stiffness: float, damping: float) -> Law:

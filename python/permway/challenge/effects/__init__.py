@@ -6,6 +6,7 @@ from permway.challenge.effects import (
     bridge,
     fasteners,
     layers,
+    leaving,
     measuring,
     on_board,
     outside,
@@ -62,5 +63,5 @@ OUTSIDE: tuple[type[Effect], ...] = (
 )
 """Effects that no catalogue names."""
 
-NONLINEAR: tuple[type[Effect], ...] = (sliding.PrimaryFriction, sliding.BlowOffDamper)
+NONLINEAR: tuple[type[Effect], ...] = (sliding.PrimaryFriction, sliding.BlowOffDamper, leaving.DippedWelds)
 """Effects that depend on amplitude."""

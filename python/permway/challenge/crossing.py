@@ -1,0 +1,285 @@
+"""A train of several cars that runs over a line, integrated in time: wheels move, and may leave the rail.
+
+Where the runs of a campaign have the train stand while the profile moves under it, here it moves: over spans and
+fasteners, off one girder and onto the next. Losses are viscous, and are the hysteretic ones at one frequency.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.linalg import splu
+
+from permway.challenge.beams import Reals, shape, within
+from permway.challenge.contact import Hertz
+from permway.challenge.layout import Values
+from permway.challenge.mesh import Mesh
+from permway.challenge.newmark import Marched, line_matrices, train_matrices
+from permway.challenge.plan import CONTACT_N_PER_M
+from permway.challenge.track import Spot, Track
+from permway.challenge.vehicle import GRAVITY, WHEELS, vehicle, wheel_load
+from permway.errors import InputError, SolveError
+
+ROUNDS, CLOSE = 100, 1e-10
+"""Of Newton's method in a step, and the compression (m) to which contacts agree."""
+
+POINTS = 33
+"""Of an element, at which it is known how far it yields within."""
+
+PITCHING = (1, 3, 5)
+"""Degrees of a car that have no weight."""
+
+
+@dataclass(frozen=True)
+class Consist:
+    """A train of equal cars, half of each on one rail.
+
+    Parameters
+    ----------
+    values : Values
+        A sheet's; of the vehicle.
+    cars : int
+    car_m : float
+        From one car's middle to the next.
+    speed_m_per_s : float
+    """
+
+    values: Values
+    cars: int
+    car_m: float
+    speed_m_per_s: float
+
+    @property
+    def behind_m(self) -> Reals:
+        """How far each wheel is behind the first, shape (4 cars,)."""
+        v = self.values["vehicle"]
+        one = np.array([0.0, v["lt"], v["lc"], v["lc"] + v["lt"]])
+        return np.concatenate([one + car * self.car_m for car in range(self.cars)])
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """What a train did to a line.
+
+    Attributes
+    ----------
+    times, front_m : ndarray, shape (N,)
+        s; where the first wheel is.
+    contact_force : ndarray, shape (N, wheels)
+        N, with the load; 0 where a wheel has left the rail.
+    displacement : ndarray, shape (N, sensors)
+        m, down.
+    axlebox : ndarray, shape (N, wheels)
+        Accelerations of the wheelsets, m/s2, down.
+    """
+
+    times: Reals
+    front_m: Reals
+    contact_force: Reals
+    displacement: Reals
+    axlebox: Reals
+
+
+def cross(
+    track: Track,
+    train: Consist,
+    *,
+    from_m: float,
+    to_m: float,
+    leaves: bool = True,
+    profile: Callable[[Reals], Reals] | None = None,
+    sensors: Sequence[Spot] = (),
+    step_s: float = 2.5e-4,
+    viscous_at_Hz: float = 20.0,
+) -> Crossing:
+    """Let a train run.
+
+    Parameters
+    ----------
+    track : Track
+        Its stiffnesses are taken at `viscous_at_Hz`; the rail ends where its elements do.
+    train : Consist
+    from_m, to_m : float
+        Of the first wheel. The train is at rest on the line at `from_m`, and has its speed at once.
+    leaves : bool
+        Hertz's contact, which wheels may leave; else a linear one, which holds them down.
+    profile : callable, optional
+        Of x (m): how much lower the rail's surface is, m.
+    sensors : sequence of Spot
+    step_s : float
+    viscous_at_Hz : float
+        Where viscous losses are the hysteretic ones.
+
+    Raises
+    ------
+    InputError
+        If a wheel would run off the rail.
+    SolveError
+        If a step's contacts are not found.
+    """
+    mesh = Mesh(track, sensors)
+    rail = _Rail(mesh)
+    behind = train.behind_m
+    for where, x in (("from_m", from_m - behind[-1]), ("to_m", to_m)):
+        if not rail.ends[0] <= x <= rail.ends[1]:
+            remedy = f"the rail goes from {rail.ends[0]:g} to {rail.ends[1]:g} m"
+            raise InputError("runs a wheel off the rail", where=where, value=x, remedy=remedy)
+    surface = profile or np.zeros_like
+    law = _Contact(Hertz(wheel_load(train.values), CONTACT_N_PER_M), leaves)
+    car = vehicle(train.values, CONTACT_N_PER_M)
+    line = Marched(line_matrices(mesh, viscous_at_Hz=viscous_at_Hz), step_s)
+    cars = Marched(train_matrices(car, train.cars), step_s)
+    size = len(car.masses)
+    wheels = np.array([size * number + wheel for number in range(train.cars) for wheel in WHEELS])
+    weight = GRAVITY * cars.mass.diagonal()
+    weight[[size * number + degree for number in range(train.cars) for degree in PITCHING]] = 0.0
+    gives_rail, gives_car = line.flexibility(rail.degrees), cars.flexibility(wheels)
+    read = [mesh.at(spot) for spot in sensors]
+    steps = int((to_m - from_m) / train.speed_m_per_s / step_s)
+    times: Reals = step_s * np.arange(steps + 1, dtype=np.float64)
+    front: Reals = np.asarray(from_m + train.speed_m_per_s * times)
+    forces, moved, felt = (np.zeros((times.size, n)) for n in (wheels.size, len(read), wheels.size))
+    force = _rest(line, cars, rail, law, wheels, weight, front[0] - behind, surface)
+    for step in range(times.size):
+        at = front[step] - behind
+        under = rail.under(at)
+        if step:
+            free, hanging = line.free(np.zeros(mesh.size)), cars.free(weight)
+            between = under.weigh(gives_rail, rail.places) + gives_car
+            left = hanging[wheels] - under.read(free) - surface(at)
+            force = law.settle(left, between, forces[step - 1])
+            line.go_on(free + line.gives(under.press(force, mesh.size)))
+            pull = np.zeros(cars.moved.size)
+            pull[wheels] = -force
+            cars.go_on(hanging + cars.gives(pull))
+        forces[step] = force
+        moved[step], felt[step] = line.moved[read], cars.hurried[wheels]
+    return Crossing(times, front, forces, moved, felt)
+
+
+@dataclass(frozen=True)
+class _Contact:
+    """Whole force per compression from touch."""
+
+    hertz: Hertz
+    leaves: bool
+
+    @property
+    def rest(self) -> float:
+        """Compression under the load, m."""
+        return (1.5 if self.leaves else 1.0) * self.hertz.load_N / self.hertz.stiffness
+
+    def force(self, compression: Reals) -> Reals:
+        if self.leaves:
+            return self.hertz.load_N + self.hertz.force(compression - self.rest)
+        return np.asarray(self.hertz.stiffness * compression)
+
+    def closing(self, force: Reals) -> Reals:
+        """Compression under forces above zero."""
+        share = np.maximum(force / self.hertz.load_N, 0.0)
+        return np.asarray(self.rest * share ** (2.0 / 3.0 if self.leaves else 1.0))
+
+    def slope(self, compression: Reals) -> Reals:
+        if self.leaves:
+            return np.asarray(self.hertz.stiffness * np.sqrt(np.maximum(compression / self.rest, 0.0)))
+        return np.full(compression.shape, self.hertz.stiffness)
+
+    def settle(self, left: Reals, gives: Reals, force: Reals) -> Reals:
+        """Forces F of compressions `left` - `gives` F, by Newton's method."""
+        compression = left - gives @ force
+        for _ in range(ROUNDS):
+            slope = self.slope(compression)
+            off = compression - left + gives @ self.force(compression)
+            by = np.linalg.solve(np.eye(left.size) + gives * slope, off)
+            compression = compression - by
+            if np.abs(by).max() < CLOSE:
+                return self.force(compression)
+        raise SolveError("the contacts of a step are not found; take a shorter step")
+
+
+class _Rail:
+    """Elements of the rail, and where a wheel is on them."""
+
+    def __init__(self, mesh: Mesh) -> None:
+        found = mesh.elements("rail")
+        self.dofs = np.array([dofs for dofs, _, _ in found])
+        self.left = np.array([left for _, left, _ in found])
+        self.ends = float(self.left[0]), float(found[-1][2])
+        self.length = np.array([right - left for _, left, right in found])
+        self.section = mesh.track.beams["rail"].section
+        # Alike for all elements of a length.
+        self.share = np.linspace(0.0, 1.0, POINTS)
+        tables = {h: within(self.section, h, h * self.share) for h in set(self.length.round(6).tolist())}
+        self.yielding = np.array([tables[h] for h in self.length.round(6).tolist()])
+        self.degrees: NDArray[np.int64] = np.unique(self.dofs)
+        self.places = np.full(mesh.size, -1)
+        self.places[self.degrees] = np.arange(self.degrees.size)
+
+    def under(self, at: Reals) -> _Under:
+        """What a wheel at each place touches."""
+        number = np.clip(np.searchsorted(self.left, at, side="right") - 1, 0, self.left.size - 1)
+        shares = np.concatenate(
+            [
+                shape(self.section, float(self.length[i]), np.array([x - self.left[i]]))
+                for i, x in zip(number, at, strict=True)
+            ]
+        )
+        along = (at - self.left[number]) / self.length[number]
+        yielding = [np.interp(share, self.share, self.yielding[i]) for i, share in zip(number, along, strict=True)]
+        return _Under(self.dofs[number], shares, np.array(yielding))
+
+
+@dataclass(frozen=True)
+class _Under:
+    """Degrees of freedom under wheels, shares of each, (wheels, 4); what elements yield inside, (wheels,)."""
+
+    dofs: NDArray[np.int64]
+    shares: Reals
+    yielding: Reals
+
+    def read(self, moved: Reals, force: Reals | None = None) -> Reals:
+        """Deflection under the wheels; without what their forces do within elements if these are not given."""
+        nodal = (self.shares * moved[self.dofs]).sum(axis=1)
+        return np.asarray(nodal if force is None else nodal + self.yielding * force)
+
+    def press(self, force: Reals, size: int) -> Reals:
+        pressed = np.zeros(size)
+        np.add.at(pressed, self.dofs, self.shares * force[:, None])
+        return pressed
+
+    def weigh(self, flexibility: Reals, places: NDArray[np.int64]) -> Reals:
+        at = places[self.dofs]
+        block = flexibility[at[:, :, None, None], at[None, None]]
+        between = np.einsum("wi,wivj,vj->wv", self.shares, block, self.shares)
+        return np.asarray(between + np.diag(self.yielding))
+
+
+def _rest(
+    line: Marched,
+    cars: Marched,
+    rail: _Rail,
+    law: _Contact,
+    wheels: NDArray[np.int64],
+    weight: Reals,
+    at: Reals,
+    surface: Callable[[Reals], Reals],
+) -> Reals:
+    """Line and cars as they are while the train stands; the forces between them."""
+    held, under = splu(line.stiffness), rail.under(at)
+    stiffness = cars.stiffness.toarray()
+    others = np.setdiff1d(np.arange(weight.size), wheels)
+    above = stiffness[np.ix_(others, others)]
+    force = np.full(wheels.size, law.hertz.load_N)
+    for _ in range(ROUNDS):
+        line.moved = held.solve(under.press(force, line.moved.size))
+        stands = under.read(line.moved, force) + surface(at) + law.closing(force)
+        hangs = np.linalg.solve(above, weight[others] - stiffness[np.ix_(others, wheels)] @ stands)
+        cars.moved = np.zeros(weight.size)
+        cars.moved[wheels], cars.moved[others] = stands, hangs
+        last, force = force, weight[wheels] - (stiffness @ cars.moved)[wheels]
+        if np.abs(force - last).max() < 1e-6 * law.hertz.load_N:
+            break
+    return force

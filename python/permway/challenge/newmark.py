@@ -1,0 +1,119 @@
+"""Structures marched in time, step by step: Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from permway.challenge.beams import Reals, element
+from permway.challenge.mesh import Mesh
+from permway.challenge.vehicle import Vehicle
+
+GAMMA = 0.52
+"""A little above one half, so that what steps are too long for is damped: by 0.4 % at w dt = 0.4."""
+
+BETA = 0.25 * (GAMMA + 0.5) ** 2
+
+COLUMNS = 512
+"""Forces solved for at once."""
+
+Matrices = tuple[sparse.csc_array, sparse.csc_array, sparse.csc_array]
+"""Mass, damping, stiffness."""
+
+
+class Marched:
+    """A structure's motion, a step at a time.
+
+    Parameters
+    ----------
+    matrices : Matrices
+    step_s : float
+
+    Attributes
+    ----------
+    moved, speed, hurried : ndarray, shape (n,)
+        Displacement, velocity, acceleration.
+    """
+
+    def __init__(self, matrices: Matrices, step_s: float) -> None:
+        self.mass, self.damping, self.stiffness = matrices
+        self.step_s = step_s
+        h = step_s
+        effective = self.stiffness + GAMMA / (BETA * h) * self.damping + 1.0 / (BETA * h**2) * self.mass
+        self._solve = splu(sparse.csc_array(effective)).solve
+        size = self.mass.shape[0]
+        self.moved, self.speed, self.hurried = np.zeros(size), np.zeros(size), np.zeros(size)
+
+    def free(self, force: Reals) -> Reals:
+        """Where it would be a step later under forces at its end."""
+        h, u, v, a = self.step_s, self.moved, self.speed, self.hurried
+        inert = u / (BETA * h**2) + v / (BETA * h) + (0.5 / BETA - 1.0) * a
+        lost = GAMMA / (BETA * h) * u + (GAMMA / BETA - 1.0) * v + 0.5 * h * (GAMMA / BETA - 2.0) * a
+        return np.asarray(self._solve(force + self.mass @ inert + self.damping @ lost))
+
+    def gives(self, force: Reals) -> Reals:
+        """How much further forces at a step's end move it."""
+        return np.asarray(self._solve(force))
+
+    def flexibility(self, degrees: NDArray[np.int64]) -> Reals:
+        """How much forces along some degrees move these within a step, shape (n, n)."""
+        found = np.empty((degrees.size, degrees.size))
+        for first in range(0, degrees.size, COLUMNS):
+            columns = np.arange(first, min(first + COLUMNS, degrees.size))
+            forces = np.zeros((self.mass.shape[0], columns.size))
+            forces[degrees[columns], np.arange(columns.size)] = 1.0
+            found[:, columns] = self._solve(forces)[degrees]
+        return found
+
+    def go_on(self, moved: Reals) -> None:
+        """Take a step to where it is."""
+        h, by = self.step_s, moved - self.moved
+        hurried = by / (BETA * h**2) - self.speed / (BETA * h) - (0.5 / BETA - 1.0) * self.hurried
+        self.speed = self.speed + h * ((1.0 - GAMMA) * self.hurried + GAMMA * hurried)
+        self.moved, self.hurried = moved, hurried
+
+
+def line_matrices(mesh: Mesh, *, viscous_at_Hz: float, temperature_C: float = 20.0) -> Matrices:
+    """A track's, with viscous losses that are the hysteretic ones at a frequency."""
+    omega = 2.0 * np.pi * viscous_at_Hz
+    parts: dict[str, list[tuple[Reals, NDArray[np.int64]]]] = {"mass": [], "damping": [], "stiffness": []}
+    for body, beam in mesh.track.beams.items():
+        for dofs, left, right in mesh.elements(body):
+            section = beam.part(left, right)
+            stiffness, mass = element(section, right - left)
+            parts["mass"].append((mass, dofs))
+            parts["stiffness"].append((stiffness, dofs))
+            parts["damping"].append((section.loss / omega * stiffness, dofs))
+    at = np.array([viscous_at_Hz])
+    laws = {name: law(at, temperature_C)[0] for name, law in mesh.track.laws.items()}
+    for link in mesh.track.links:
+        tied, dofs = link.scale * laws[link.law], np.array(mesh.tied(link))
+        parts["stiffness"].append((tied.real, dofs))
+        parts["damping"].append((tied.imag / omega, dofs))
+    put = {name: _put_together(entries, mesh.size) for name, entries in parts.items()}
+    return put["mass"], put["damping"], put["stiffness"]
+
+
+def _put_together(parts: list[tuple[Reals, NDArray[np.int64]]], size: int) -> sparse.csc_array:
+    rows = np.concatenate([np.repeat(dofs, dofs.size) for _, dofs in parts])
+    columns = np.concatenate([np.tile(dofs, dofs.size) for _, dofs in parts])
+    values = np.concatenate([matrix.ravel() for matrix, _ in parts])
+    return sparse.csc_array((values, (rows, columns)), shape=(size, size))
+
+
+def train_matrices(car: Vehicle, cars: int) -> Matrices:
+    """Of equal cars one behind the other, with springs and dampers alone."""
+    at = 1.0 / (2.0 * np.pi)
+    found = [np.diag(np.array(car.masses, dtype=float)), np.zeros((len(car.masses),) * 2)]
+    found.append(np.zeros_like(found[1]))
+    for arm, name in car.ties:
+        row = np.zeros(len(car.masses))
+        row[list(arm)] = list(arm.values())
+        # At 1 rad/s the imaginary part is what a damper does.
+        law = complex(car.laws[name](np.array([at]))[0])
+        found[1] += law.imag * np.outer(row, row)
+        found[2] += law.real * np.outer(row, row)
+    mass, damping, stiffness = (sparse.csc_array(np.kron(np.eye(cars), one)) for one in found)
+    return mass, damping, stiffness
