@@ -1,4 +1,4 @@
-"""A train that runs, integrated in time: against the solver's pass-by, its coupling in time, and laws of mechanics."""
+"""A train that runs, integrated in time: against the solver's pass-by and coupling in time, and mechanics."""
 
 from __future__ import annotations
 
@@ -30,12 +30,9 @@ ONE = Layout(spans=1, bays=26, spacing_m=0.64, approach_bays=70)
 
 def with_loss(concrete: float, pad: float) -> dict[str, dict[str, float]]:
     """What is usual, but for losses."""
-    beams = {name: {**NOMINAL[name], "eta": concrete} for name in ("slab", "base", "girder")}
-    return {
-        **{name: dict(table) for name, table in NOMINAL.items()},
-        **beams,
-        "pad": {**NOMINAL["pad"], "eta": pad},
-    }
+    values = {name: dict(table) for name, table in NOMINAL.items()}
+    losses = {"slab": concrete, "base": concrete, "girder": concrete, "pad": pad}
+    return {**values, **{name: {**values[name], "eta": loss} for name, loss in losses.items()}}
 
 
 def viscous(layout: Layout, values: Values, folder: Path, at_Hz: float) -> Model:
@@ -52,7 +49,7 @@ def viscous(layout: Layout, values: Values, folder: Path, at_Hz: float) -> Model
 
 
 def test_five_spans_under_two_cars_move_as_the_solver_s_do(tmp_path: Path) -> None:
-    """Loads are all but constant: wheels of 5 kg on soft springs. Left are the rail's ends, and beams' viscous loss."""
+    """Loads are all but constant: light wheels, soft springs. Left are the rail's ends and beams' viscous loss."""
     values = with_loss(0.02, 0.12)
     light = {**values["vehicle"], "Mw": 10.0, "kp": 2e5, "cp": 1e3, "Mc": values["vehicle"]["Mc"] + 4 * 1770.0}
     train = Consist({**values, "vehicle": light}, cars=2, car_m=25.0, speed_m_per_s=60.0)
