@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from permway.challenge.effects import CATALOGUE, NONLINEAR, OUTSIDE, TWINS
-from permway.challenge.parameters import _TRANSLATED, in_catalogue
+from permway.challenge.layout import NOMINAL
+from permway.challenge.parameters import _TRANSLATED, HALF, in_catalogue
 from permway.diagnosis.catalogue import entries
 from permway.recordings.channel import Chain
 
@@ -45,6 +46,15 @@ def test_a_mount_with_a_dashpot_swings_most_at_the_catalogues_frequency() -> Non
     ours = np.abs(chain.transfer(frequency))
     assert frequency[np.argmax(ours)] == pytest.approx(frequency[np.argmax(true)], rel=1e-5)
     assert ours.max() == pytest.approx(true.max(), rel=0.01)
+
+
+def test_a_mass_on_board_is_of_the_whole_vehicle() -> None:
+    """What the generator hangs on its half of a wheelset, the catalogue hangs twice on the whole of it."""
+    assert NOMINAL["vehicle"]["half"] == HALF
+    true = {"mass_kg": 20.0, "tuned_Hz": 70.0, "loss": 0.1, "wheelsets": (1, 2)}
+    found = in_catalogue("axlebox_absorber", true)
+    assert found == {"mass_kg": 40.0, "frequency_Hz": 70.0, "loss_factor": 0.1}
+    assert in_catalogue("rail_absorber", true)["mass_kg"] == 20.0
 
 
 def test_what_needs_no_translation_stays_and_what_is_no_number_goes() -> None:

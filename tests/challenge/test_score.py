@@ -124,6 +124,21 @@ def test_of_several_effects_each_is_looked_for_and_the_strongest_counts(tmp_path
     ]
 
 
+def test_of_two_effects_of_one_name_the_one_at_the_place_is_held_against_the_truth(tmp_path: Path) -> None:
+    there, elsewhere = effect("fastener_loss"), effect("fastener_loss", x=(20.0, 22.0))
+    elsewhere["parameters"] = {"factor": {"value": 0.7, "low": 0.6, "high": 0.8}}
+    second = {**there, "parameters": {"factor": {"value": 0.9, "low": 0.85, "high": 0.95}}}
+    cases = {
+        "single-1": (truth(LOST), verdict("named", there, elsewhere)),
+        "single-2": (truth(LOST), verdict("named", elsewhere, there)),
+        "single-3": (truth(LOST), verdict("named", there, second)),
+        "single-4": (truth(LOST), verdict("named", second, there)),
+    }
+    found = score(folder(tmp_path, cases), FAMILIES)
+    # Of two at its place the stronger, which comes first.
+    assert [one.covered for one in found] == [(True,), (True,), (True,), (False,)]
+
+
 def test_words_of_what_no_catalogue_holds(tmp_path: Path) -> None:
     hidden = {**LOST, "id": None, "family": "inertia", "words": ["inertance"]}
     said = effect(None, "novel")

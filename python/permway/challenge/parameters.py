@@ -9,6 +9,9 @@ import numpy as np
 
 Numbers = Mapping[str, Any]
 
+HALF = 0.5
+"""Share of a vehicle that the generator has on its rail."""
+
 
 def in_catalogue(kind: str, true: Numbers) -> dict[str, float]:
     """Parameters by the names of the catalogue, SI; those that it does not have are left out.
@@ -30,6 +33,11 @@ def _resonator(true: Numbers) -> Numbers:
     return {**kept, "frequency_Hz": true["tuned_Hz"], "loss_factor": true["loss"]}
 
 
+def _on_board(true: Numbers) -> Numbers:
+    """Of whole wheelsets: the generator's vehicle is the half of one."""
+    return {**_resonator(true), "mass_kg": true["mass_kg"] / HALF}
+
+
 def _parted(true: Numbers) -> Numbers:
     """Boxes of a share of the mass on a spring to the wheels, as a mode of the free wheelset."""
     wheels = 1.0 - true["share"]
@@ -47,7 +55,7 @@ def _viscous(true: Numbers) -> Numbers:
 _TRANSLATED: dict[str, Callable[[Numbers], Numbers]] = {
     "attached_resonator": _resonator,
     "rail_absorber": _resonator,
-    "axlebox_absorber": _resonator,
+    "axlebox_absorber": _on_board,
     "wheelset_bending": _parted,
     "damper_series": lambda t: {"relaxation_time_s": 1.0 / (2.0 * np.pi * t["corner_Hz"])},
     "baseplate_mass": lambda t: {

@@ -191,11 +191,14 @@ def _there(true: Mapping[str, Any], said: Mapping[str, Any], domain: str | None,
 
 
 def _covered(concealed: Iterable[Mapping[str, Any]], effects: Iterable[Mapping[str, Any]]) -> list[bool]:
-    by_name = {e["name"]: e["parameters"] for e in effects if e["name"]}
     found = []
     for effect in concealed:
+        named = [e for e in effects if e["name"] and e["name"] == effect["id"]]
+        # Of several of one name the one at its place, and of these the first, which is the strongest.
+        named.sort(key=lambda e: not _there(effect["place"], e["place"]))
+        parameters = named[0]["parameters"] if named else {}
         for key, value in in_catalogue(effect["kind"], effect.get("parameters", {})).items():
-            said = by_name.get(effect["id"], {}).get(key)
+            said = parameters.get(key)
             if said is not None and said["low"] is not None:
                 found.append(bool(said["low"] <= value <= said["high"]))
     return found
