@@ -195,7 +195,7 @@ def _covered(concealed: Iterable[Mapping[str, Any]], effects: Iterable[Mapping[s
     for effect in concealed:
         named = [e for e in effects if e["name"] and e["name"] == effect["id"]]
         # Of several of one name the one at its place, and of these the first, which is the strongest.
-        named.sort(key=lambda e: not _there(effect["place"], e["place"]))
+        named.sort(key=lambda e: not _there(effect["place"], e["place"], effect.get("domain"), e["domain"]))
         parameters = named[0]["parameters"] if named else {}
         for key, value in in_catalogue(effect["kind"], effect.get("parameters", {})).items():
             said = parameters.get(key)
