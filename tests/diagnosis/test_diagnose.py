@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.diagnosis import decide
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._interval import weakened
+from permway.diagnosis.decide import Conditions
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.result import Diagnosis
+from permway.diagnosis.speak import _of_another_form
+from permway.diagnosis.verdict_parts import Domain, Effect, Mechanics, Place
+from permway.diagnosis.verdict_words import sentence
 from permway.errors import InputError
 from permway.model.file import read_model
 from permway.recordings.campaign import Campaign, read_campaign
@@ -49,6 +55,39 @@ def test_lost_fasteners_are_named_and_proved(hung_loose: Diagnosis) -> None:
     # Fewer decibels are gained elsewhere with as many parameters.
     best = max(g.gain_nats for g in verdict.held_out.values())
     assert max(g.gain_nats for g in verdict.placebo.values()) < 0.5 * best
+
+
+def test_what_foretells_some_records_worse_is_located_and_not_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As if some records that were left out had been foretold worse: its form is wrong, not that it is there."""
+    monkeypatch.setattr(decide, "_harmed", lambda gain: True)
+    verdict = diagnose(simulate(tmp_path / "c", 3, amend=lost).campaign, threads=1).verdict
+    assert verdict.status == "located"
+    (effect,) = verdict.effects
+    assert (effect.domain, effect.name, effect.parameters, effect.law.words) == ("path", None, {}, "")
+    assert effect.place.x is not None
+    assert effect.place.x[0] == pytest.approx(7.2, abs=0.35)
+    assert "physics is missing that these records cannot describe" in sentence(verdict)
+
+
+@pytest.mark.parametrize("domain", ["path", "vehicle"])
+def test_outside_the_track_a_place_is_a_form(domain: Domain) -> None:
+    where = Place(body="bogies", channels=("bogie1",))
+    effect = Effect(
+        domain=domain, place=where, bands=((20.0, 40.0),), name="bogie_modes", law=Mechanics(words="a")
+    )
+    left = _of_another_form(effect)
+    assert (left.domain, left.bands, left.name, left.law.words) == (domain, effect.bands, None, "")
+    assert left.place == (where if domain == "path" else Place())
+
+
+@pytest.mark.parametrize("fails", ["bic", "e_value", "helps", "placebo"])
+def test_something_is_missing_only_if_all_but_harm_is_well(fails: str) -> None:
+    harmed = Conditions(bic=True, e_value=True, held_out=False, placebo=True, helps=True)
+    assert harmed.something
+    assert not harmed.hold
+    assert not replace(harmed, **{fails: False}).something
 
 
 def test_the_stiffness_that_stays_free_at_the_place_agrees_with_the_law(hung_loose: Diagnosis) -> None:

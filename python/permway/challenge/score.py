@@ -122,7 +122,8 @@ def _scored(
     effects = list(verdict["effects"]) if verdict["status"] in FOUND else []
     harmed = (
         any(g["gain_nats"] < -2.0 * (g["standard_error"] or 0.0) for g in verdict["held_out"].values())
-        if effects
+        # Where nothing but a place is said, no amended model is offered.
+        if any(e["parameters"] for e in effects)
         else False
     )
     said = tuple(e["name"] or "|".join(m["name"] for m in e["class"]) or "not named" for e in effects)

@@ -63,12 +63,20 @@ class Conditions:
         The gain on records left out is above two standard errors on some axis, and none is predicted worse.
     placebo : bool
         As many parameters elsewhere do not do half as well.
+    helps : bool
+        The gain on records left out is above two standard errors on some axis, whatever it is on the others.
     """
 
     bic: bool
     e_value: bool
     held_out: bool
     placebo: bool
+    helps: bool = True
+
+    @property
+    def something(self) -> bool:
+        """Whether something is missing, be it not what was found: all hold, but that it harms somewhere."""
+        return self.bic and self.e_value and self.helps and self.placebo
 
     @property
     def hold(self) -> bool:
@@ -97,6 +105,7 @@ def conditions(
         e_value=log_e > np.log(E_VALUE),
         held_out=not held_out or (helps and not harms),
         placebo=placebo < PLACEBO_SHARE * gain,
+        helps=helps,
     )
 
 

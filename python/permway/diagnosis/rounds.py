@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -60,23 +61,20 @@ def effects(
     fit = base
     screened: tuple[Quick, ...] = ()
     for order in range(MOST_EFFECTS):
-        result = None
+        look = partial(search, learnt_base=fit, prefix=f"{order + 1}.", threshold=least, progress=clock)
+        result, start, offered = None, fit, []
         for start in [fit] if rough is fit else [rough, fit]:
             offered = _of_the_owners(base, hypotheses(Situation(start, found), ruled_out), start)
-            prefix = f"{order + 1}."
-            result = search(
-                start,
-                offered,
-                learnt_base=fit,
-                prefix=prefix,
-                threshold=least,
-                before=screened,
-                progress=clock,
-            )
+            result = look(start, offered, before=screened)
             screened = result.screened
             if result.finalists:
                 break
         assert result is not None
+        if accepted and result.finalists and _mends(base, accepted, result.finalists[0]):
+            # What mends the first says nothing of other domains, which may show something smaller.
+            domain = result.finalists[0].hypothesis.domain
+            others = look(start, [h for h in offered if h.domain != domain], before=screened)
+            result = replace(others if others.finalists else result, screened=screened)
         rounds.append(result)
         if not result.finalists:
             break

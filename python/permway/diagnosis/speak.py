@@ -9,16 +9,19 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.diagnosis import decide
+from permway.diagnosis.catalogue import irregularity_level
 from permway.diagnosis.decide import Conditions
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.heldout import Gain
 from permway.diagnosis.labels import Mislabelled
+from permway.diagnosis.level import beyond
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.rounds import BEYOND
 from permway.diagnosis.search import Finalist, Round, lines
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL, Status, Verdict
 from permway.diagnosis.verdict_parts import (
+    ClassMember,
     Effect,
     Estimate,
     HeldOutGain,
@@ -32,6 +35,9 @@ from permway.diagnosis.verdict_parts import (
 
 LABELS = "sensor_labels"
 """Name of the fault that channels carry each other's labels."""
+
+SURE: tuple[Status, ...] = ("named", "measurement")
+"""Statuses whose effects have names."""
 
 REASON = 0.5
 """Share of a misfit that a free stiffness at a place has to explain, or else nothing is said to be there."""
@@ -97,6 +103,9 @@ def verdict_of(
     recalibrated = Recalibrated(before=_moved(base))
     if not accepted or proof is None:
         status, effects = _nothing(base, first, found)
+        level = beyond(base, first.threshold) if status == "recalibrated" else None
+        if level is not None:
+            status, effects = "named", (level,)
         return Verdict(
             status=status, effects=effects, evidence=weight, recalibrated=recalibrated, detectable=sizes
         )
@@ -111,8 +120,17 @@ def verdict_of(
     effects = tuple(
         _effect(one, by_prefix[one.prefix], proof.weighed, base, explained, ends, names) for one in accepted
     )
+    status = _status(effects, proof, gap)
+    if status == "insufficient" and proof.conditions.something and not proof.conditions.hold:
+        # What foretells most records and harms others is missing, and has another form.
+        status, effects = "located", (_of_another_form(effects[0]),)
+    if status in SURE and fits and irregularity_level.ID not in names:
+        level = beyond(proof.weighed, first.threshold)
+        if level is not None:
+            # It is physics, whatever else is a fault of the measurement.
+            status, effects = "named", (*effects, level)
     return Verdict(
-        status=_status(effects, proof, gap),
+        status=status,
         effects=effects,
         evidence=Weight(
             bic_gain=proof.bic_gain,
@@ -129,6 +147,13 @@ def verdict_of(
         next=advice,
         detectable=sizes,
     )
+
+
+def _of_another_form(effect: Effect) -> Effect:
+    """Where an effect acts, without what it was taken for: outside the track its place is its form."""
+    place = effect.place if effect.domain == "path" else Place()
+    member = ClassMember(name=NOVEL, probability=1.0)
+    return Effect(domain=effect.domain, place=place, bands=effect.bands, class_=(member,))
 
 
 def _explains_little(base: Fit, amended: Fit) -> bool:

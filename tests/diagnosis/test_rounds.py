@@ -1,0 +1,72 @@
+"""Effects one after another: what mends the first is passed over, and other domains are searched."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+from permway.diagnosis import rounds
+from permway.diagnosis.search import Round
+
+FITS = SimpleNamespace(heat=1.0)
+EVERY = [SimpleNamespace(domain=domain) for domain in ("path", "vehicle", "irregularity")]
+
+
+def finalist(name: str, domain: str) -> Any:
+    return SimpleNamespace(name=name, hypothesis=SimpleNamespace(domain=domain), fit=FITS, rough=FITS)
+
+
+def run(
+    monkeypatch: pytest.MonkeyPatch, best: dict[tuple[str, ...], list[Any]]
+) -> tuple[list[str], list[int], Any]:
+    """Searches by what they were offered give what they have left; small track effects mend the first."""
+    offered: list[int] = []
+
+    def search(start: object, among: Iterable[Any], **_: object) -> Round:
+        domains = tuple(h.domain for h in among)
+        offered.append(len(domains))
+        left = best.get(domains, [])
+        return Round(
+            cast(Any, None), cast(Any, domains), (), tuple(left[:1]) if not left else (left.pop(0),), 10.0
+        )
+
+    monkeypatch.setattr(rounds, "search", search)
+    monkeypatch.setattr(rounds, "Situation", lambda *_: None)
+    monkeypatch.setattr(rounds, "hypotheses", lambda *_: EVERY)
+    monkeypatch.setattr(rounds, "_of_the_owners", lambda base, every, fit: list(every))
+    monkeypatch.setattr(rounds, "_mends", lambda base, accepted, last: last.name == "small")
+    monkeypatch.setattr(rounds, "_stands", lambda *_: True)
+    monkeypatch.setattr(rounds, "_without_needless", lambda base, accepted, *_: accepted)
+    description = SimpleNamespace(instead=lambda result: False, left=lambda fit: ())
+    base = cast(Any, FITS)
+    every, accepted = rounds.effects(base, base, (), 0, cast(Any, lambda *_: None), cast(Any, description))
+    return [cast(Any, one).name for one in accepted], offered, every
+
+
+ALL, ELSEWHERE = ("path", "vehicle", "irregularity"), ("vehicle", "irregularity")
+
+
+def test_what_mends_the_first_effect_hides_none_of_another_domain(monkeypatch: pytest.MonkeyPatch) -> None:
+    large, small, other = finalist("large", "path"), finalist("small", "path"), finalist("other", "irregularity")
+    names, offered, every = run(monkeypatch, {ALL: [large, small], ELSEWHERE: [other]})
+    assert names == ["large", "other"]
+    assert offered == [3, 3, 2, 3]
+    # Sizes that would have been seen are told of all that was tried.
+    assert all(one.screened == ALL for one in every)
+
+
+def test_without_another_the_search_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    large, small = finalist("large", "path"), finalist("small", "path")
+    names, offered, every = run(monkeypatch, {ALL: [large, small]})
+    assert names == ["large"]
+    assert offered == [3, 3, 2]
+    assert every[-1].finalists == (small,)
+
+
+def test_what_mends_it_elsewhere_is_no_effect_either(monkeypatch: pytest.MonkeyPatch) -> None:
+    large, small, also = finalist("large", "path"), finalist("small", "path"), finalist("small", "vehicle")
+    names, offered, _ = run(monkeypatch, {ALL: [large, small], ELSEWHERE: [also]})
+    assert names == ["large"]
+    assert offered == [3, 3, 2]
