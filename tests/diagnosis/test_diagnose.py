@@ -119,6 +119,25 @@ def test_nothing_missing_is_called_recalibrated_whatever_the_seed_of_nulls(tmp_p
     assert again.to_json() == verdicts[0].to_json()
 
 
+def test_a_gain_that_would_have_been_seen_is_seen_on_every_channel(tmp_path: Path) -> None:
+    """Half as far again from 1 as said, for the size is known to first order; a third as far is not seen."""
+    smallest = diagnose(simulate(tmp_path / "plain", 3).campaign, threads=1).verdict.detectable["sensor_gain"]
+    assert smallest.value is not None
+    for name, times in (("rail@6", 1.5), ("deck@3", 1.5), ("rail@6", 0.33), ("deck@3", 0.33)):
+        gain = 1.0 + times * (smallest.value - 1.0)
+
+        def louder(campaign: Campaign, name: str = name, gain: float = gain) -> Campaign:
+            chain = campaign.sensor(name).chain
+            return with_chain(campaign, name, chain.model_copy(update={"gain": gain * chain.gain}))
+
+        verdict = diagnose(simulate(tmp_path / f"{name}{times}", 3, amend=louder).campaign, threads=1).verdict
+        found = [(effect.name, effect.place.channels) for effect in verdict.effects]
+        if times > 1.0:
+            assert (verdict.status, found) == ("measurement", [("sensor_gain", (name,))])
+        else:
+            assert verdict.status == "recalibrated"
+
+
 def test_one_channel_times_1_26_is_a_fault_of_the_measurement(tmp_path: Path) -> None:
     verdict = diagnose(simulate(tmp_path / "c", 3, amend=loud).campaign, threads=1).verdict
     assert verdict.status == "measurement"

@@ -7,16 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from permway.diagnosis.compete import Ring
-from permway.diagnosis.felt import FELT
-from permway.diagnosis.fit import Fit, Free
+from permway.diagnosis.fit import Fit
 from permway.diagnosis.heldout import Gain
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.search import Finalist, Round, lines, penalty
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL
-from permway.diagnosis.verdict_parts import ClassMember, Smallest
-from permway.errors import InputError, SolveError
+from permway.diagnosis.verdict_parts import ClassMember
 
 E_VALUE = 20.0
 STANDARD_ERRORS = 2.0
@@ -38,9 +35,6 @@ NAMED = 0.9
 
 NOVEL_PRIOR = 0.05
 """Of physics that the catalogue does not hold, before anything was seen."""
-
-MOST_TIMES = 5.0
-"""Times a usual size beyond which an effect is not said to be detectable."""
 
 DISCREPANCY = 0.03
 """Share of an effect's gain that its idealisation may leave to a free description: none is quite its model."""
@@ -177,52 +171,3 @@ def _twins(found: Round, best: Finalist) -> list[Quick]:
         for q in found.followed
         if q.hypothesis.entry != best.hypothesis.entry and best.quick.gain - q.gain < CLASS_DEVIANCE
     ]
-
-
-def detectable(ring: Ring, screened: Sequence[Quick], threshold: float) -> dict[str, Smallest]:
-    """The smallest size of every effect that these records would have shown.
-
-    Its deviance, which grows with the square of its size, must pass the threshold and what BIC asks, and its
-    change of predictions what is felt; both are known at the size that the effect was screened at.
-
-    Returns
-    -------
-    dict
-        By effect, in the unit of the parameter that says how strong it is; those that no plausible size would show
-        are left out.
-    """
-    found: dict[str, Smallest] = {}
-    shown: dict[str, float] = {}
-    for quick in screened:
-        hypothesis = quick.hypothesis
-        if quick.direction is None or quick.start is None or not hypothesis.size:
-            continue
-        index = [f.name for f in hypothesis.free].index(hypothesis.size)
-        column = np.asarray(quick.direction[:, None], dtype=np.float64)
-        deviance = float(ring.projected(column, column)[0, 0])
-        if deviance <= 0.0:
-            continue
-        needed = float(np.sqrt((threshold + penalty(quick, ring)) / deviance))
-        if hypothesis.domain != "measurement":
-            try:
-                # However sure, what nobody would feel is not called.
-                needed = max(needed, FELT / max(ring.felt(hypothesis, quick.start), 1e-12))
-            except (InputError, SolveError):
-                # It was screened about an earlier base, and cannot stand beside what was found since.
-                continue
-        size = _size(hypothesis.free[index], float(quick.start[index]), hypothesis.none, needed)
-        if size is not None and needed < shown.get(hypothesis.entry, MOST_TIMES):
-            shown[hypothesis.entry], found[hypothesis.entry] = needed, size
-    return found
-
-
-def _size(free: Free, start: float, none: float, times: float) -> Smallest | None:
-    """So many times as far from nothing as a start is; None beyond what the effect can be."""
-    usual = free.value(start)
-    if np.isinf(none):
-        return Smallest(parameter=free.name, value=usual / float(np.sqrt(times)), unit=free.unit, none=None)
-    value = none + times * (usual - none)
-    ends = sorted(free.value(z) for z in free.limits)
-    if usual == none or not ends[0] <= value <= ends[1]:
-        return None
-    return Smallest(parameter=free.name, value=value, unit=free.unit, none=none)

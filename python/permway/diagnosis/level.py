@@ -1,7 +1,7 @@
 """The irregularity's level where its owner's word does not hold: an effect that recalibration takes up by itself.
 
-The base has that level free, within the owner's tolerance. So a line that is much rougher fits, and no effect gains
-anything beside it: what tells is how far the level goes from what was said.
+The base has that level free, within the owner's tolerance. So a line that is much rougher fits, and no effect
+gains anything beside it: what tells is how far the level goes from what was said.
 """
 
 from __future__ import annotations

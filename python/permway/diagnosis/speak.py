@@ -11,6 +11,7 @@ from permway.arrays import Reals
 from permway.diagnosis import decide
 from permway.diagnosis.catalogue import irregularity_level
 from permway.diagnosis.decide import Conditions
+from permway.diagnosis.detectable import detectable
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.heldout import Gain
 from permway.diagnosis.labels import Mislabelled
@@ -98,7 +99,7 @@ def verdict_of(
     # Where no model fits, nobody knows what would have been seen.
     fits = (accepted[-1].fit if accepted else base).heat < UNFIT
     last = rounds[-1]
-    sizes = decide.detectable(last.ring, last.screened, last.threshold) if fits else {}
+    sizes = detectable(last.ring, last.screened, last.threshold) if fits else {}
     weight = Weight(false_alarm_threshold=first.threshold, misfit_before=base.heat)
     recalibrated = Recalibrated(before=_moved(base))
     if not accepted or proof is None:
