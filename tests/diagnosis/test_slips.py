@@ -1,4 +1,4 @@
-"""What a further effect must gain, by the records that tell of it."""
+"""How much of a further effect may be how the first was idealised, where the further one shows."""
 
 from __future__ import annotations
 
@@ -9,31 +9,32 @@ import pytest
 from permway.diagnosis.gather import gather
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.refit import moved
-from permway.diagnosis.slips import SLIP, gain_by_record, slip
+from permway.diagnosis.slips import SLIP, gain_by_cell, mended
 from simulated import simulate
 
 
 @pytest.mark.parametrize(
-    ("further", "least"),
+    ("further", "share"),
     [
         # It shows where the first shows, where the first does not, and half and half.
-        ([50.0, 0.0], SLIP * 1000.0),
-        ([0.0, 50.0], SLIP * 10.0),
-        ([25.0, 25.0], SLIP * 505.0),
+        ([20.0, 0.0], 1.0),
+        ([50.0, 0.0], SLIP * 1000.0 / 50.0),
+        ([0.0, 50.0], SLIP * 10.0 / 50.0),
+        ([25.0, 25.0], (25.0 + SLIP * 10.0) / 50.0),
         # What a record loses tells nothing.
-        ([-20.0, 50.0], SLIP * 10.0),
+        ([-20.0, 50.0], SLIP * 10.0 / 50.0),
         # By priors alone.
-        ([0.0, -3.0], SLIP * 1010.0),
+        ([0.0, -3.0], 1.0),
     ],
 )
-def test_a_further_effect_is_held_against_the_first_where_it_shows(further: list[float], least: float) -> None:
-    assert slip(np.array([1000.0, 10.0]), np.array(further)) == pytest.approx(least)
+def test_a_further_effect_is_held_against_the_first_where_it_shows(further: list[float], share: float) -> None:
+    assert mended(np.array([1000.0, 10.0]), np.array(further)) == pytest.approx(share)
 
 
 def test_what_records_gain_adds_up_to_what_the_quadratic_form_gains(tmp_path: Path) -> None:
     fit = recalibrate(gather(simulate(tmp_path / "c", 4).campaign, threads=1))
     off = moved(fit, {fit.free[0].name: float(fit.z[0]) + 1.0})
-    found = gain_by_record(off, fit)
-    assert found.shape == (len(fit.evidence.blocks),)
+    found = gain_by_cell(off, fit)
+    assert found.size > len(fit.evidence.blocks)
     assert found.sum() == pytest.approx(off.chi2 - fit.chi2, rel=1e-6)
     assert found.sum() > 0.0

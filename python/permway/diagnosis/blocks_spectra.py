@@ -12,6 +12,7 @@ from scipy.special import digamma, polygamma
 
 from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks import SURE, Rows
+from permway.diagnosis.blocks_shared import apart, covariance
 from permway.diagnosis.smooth import Origin, Smooth, SparseColumns
 from permway.diagnosis.wander import Wander
 from permway.errors import InputError
@@ -49,6 +50,9 @@ class SpectraBlock:
     scatter : sequence of float, optional
         Of each part, by how much its lines scatter more than so many averages of a stationary record would: the
         level of a track changes from place to place.
+    shared : ndarray, optional
+        Covariance of kinds of rows at one line: of powers, remainders, real and imaginary parts of transfers, in
+        the order of the parts. By default they are independent.
     span : (float, float), optional
         Hz, over which chains' errors wander, where other records of the same channels reach further.
     """
@@ -64,10 +68,11 @@ class SpectraBlock:
         floor: float = 0.01,
         noise: Reals,
         scatter: Sequence[float] = (),
+        shared: Reals | None = None,
         span: tuple[float, float] | None = None,
     ) -> None:
         self.dataset, self._expected, self._floor, self._noise = dataset, expected, floor, noise
-        self._scatter = tuple(scatter)
+        self._scatter, self._shared = tuple(scatter), shared
         data = dataset.data
         known_Hz, segment_s = data["frequency"].values, dataset.record.segment_s
         lines = np.flatnonzero(known_Hz * segment_s >= REACH_LINES - 1e-9)
@@ -131,9 +136,18 @@ class SpectraBlock:
             np.concatenate(scale),
         )
         self._span = span or (float(self.frequency[0]), float(self.frequency[-1]))
+        self._apart: sparse.csr_array | None = None
+        if shared is not None:
+            rows = self._by_kind(np.arange(text.size, dtype=np.float64))
+            self._apart, more = apart(np.isfinite(rows), np.nan_to_num(rows).astype(int), shared)
+            self.log_determinant += more
 
     def deviations(self, predicted: xr.Dataset) -> Reals:
-        """Part by part, transfers as real then imaginary."""
+        """Part by part, transfers as real then imaginary; each less what earlier ones at its line say of it."""
+        found = self._deviations(predicted)
+        return found if self._apart is None else np.asarray(self._apart @ found)
+
+    def _deviations(self, predicted: xr.Dataset) -> Reals:
         model = predicted["csd"].values[:, :, self._lines]
         found = []
         for what, c, o, at, sigma in self._parts:
@@ -160,10 +174,21 @@ class SpectraBlock:
             parts.append(np.ones(at.size))
             if what == "transfer":
                 parts.append(np.full(at.size, np.nan))
-        return np.asarray(self.deviations(predicted) * self.rows.scale_dB * np.concatenate(parts))
+        return np.asarray(self._deviations(predicted) * self.rows.scale_dB * np.concatenate(parts))
+
+    def _by_kind(self, values: Reals) -> Reals:
+        """Values of rows by kind and line, shape (kinds, F): one kind a power or a remainder, two a transfer."""
+        found, start = [], 0
+        for what, _, _, at, _ in self._parts:
+            for _ in range(2 if what == "transfer" else 1):
+                kind = np.full(self.frequency.size, np.nan)
+                kind[at] = values[start : start + at.size]
+                found.append(kind)
+                start += at.size
+        return np.array(found)
 
     def scattered(self, predicted: xr.Dataset) -> SpectraBlock:
-        """The same with the scatter of each part learnt from how its lines differ from their neighbours."""
+        """The same with scatter and correlations of its parts, by how lines differ from their neighbours."""
         plain = self.expecting(self._expected, self._noise)
         deviations, scatter, start = plain.deviations(predicted), [], 0
         for what, _, _, at, _ in plain._parts:
@@ -174,7 +199,13 @@ class SpectraBlock:
             scatter.append(max(1.0, typical))
             start += size
         return SpectraBlock(
-            self.dataset, self._expected, noise=self._noise, floor=self._floor, scatter=scatter, span=self._span
+            self.dataset,
+            self._expected,
+            noise=self._noise,
+            floor=self._floor,
+            scatter=scatter,
+            shared=covariance(plain._by_kind(deviations)),
+            span=self._span,
         )
 
     def expecting(self, expected: xr.Dataset, noise: Reals) -> SpectraBlock:
@@ -184,7 +215,13 @@ class SpectraBlock:
     def of(self, dataset: Dataset) -> SpectraBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
         return SpectraBlock(
-            dataset, self._expected, noise=self._noise, floor=self._floor, scatter=self._scatter, span=self._span
+            dataset,
+            self._expected,
+            noise=self._noise,
+            floor=self._floor,
+            scatter=self._scatter,
+            shared=self._shared,
+            span=self._span,
         )
 
     def _answers(self, gains: Reals) -> list[Reals]:
@@ -245,7 +282,10 @@ class SpectraBlock:
                 level.extend([values, np.zeros_like(values)] if what == "transfer" else [values])
             origins.append(Origin("irregularity", LEVEL, 1, chain=False))
             columns.append(sparse.csr_array(np.vstack(level)))
-        return Smooth(tuple(origins), SparseColumns(sparse.csr_array(sparse.hstack(columns))))
+        whole = sparse.csr_array(sparse.hstack(columns))
+        if self._apart is not None:
+            whole = sparse.csr_array(self._apart @ whole)
+        return Smooth(tuple(origins), SparseColumns(whole))
 
 
 LEVEL = Wander(0.005, 20.0, shortest=1.4)

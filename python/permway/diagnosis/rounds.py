@@ -22,7 +22,7 @@ from permway.diagnosis.quick import Quick, stacked
 from permway.diagnosis.recalibrate import UNFIT, recalibrate
 from permway.diagnosis.refit import settled, weighed_anew
 from permway.diagnosis.search import Finalist, Round, lines, penalty, search
-from permway.diagnosis.slips import gain_by_record, slip
+from permway.diagnosis.slips import MOST, gain_by_cell, mended
 from permway.diagnosis.spot import Found
 from permway.errors import InputError, SolveError
 
@@ -107,8 +107,8 @@ def _mends(base: Fit, accepted: Sequence[Finalist], last: Finalist) -> bool:
     own = zip(accepted[-1].fit.free, accepted[-1].fit.z, strict=True)
     if any(abs(z) > BEYOND and known[f.name] < BELIEVED for f, z in own if f.name in known):
         return False
-    further = gain_by_record(accepted[-1].fit, last.fit)
-    return last.gain < slip(gain_by_record(base, accepted[0].fit), further)
+    further = gain_by_cell(accepted[-1].fit, last.fit)
+    return mended(gain_by_cell(base, accepted[0].fit), further) > MOST
 
 
 def _stands(before: Finalist, result: Round, clock: Clock) -> bool:
@@ -142,7 +142,7 @@ def _without_needless(base: Fit, accepted: list[Finalist], least: float, clock: 
     kept = list(accepted)
     before = [base, *(f.fit for f in accepted)]
     index = int(np.argmax([f.gain for f in accepted]))
-    largest = gain_by_record(before[index], accepted[index].fit)
+    largest = gain_by_cell(before[index], accepted[index].fit)
     for one in accepted[:-1]:
         rest = [f for f in kept if f is not one]
         whole = kept[-1].fit
@@ -160,8 +160,8 @@ def _without_needless(base: Fit, accepted: list[Finalist], least: float, clock: 
             # A later effect stands on this one.
             continue
         asked = len(one.hypothesis.free) * float(np.log(lines(base)))
-        needed = max(least + asked, slip(largest, gain_by_record(without, whole)))
-        if without.objective - whole.objective < needed:
+        small = without.objective - whole.objective < least + asked
+        if small or mended(largest, gain_by_cell(without, whole)) > MOST:
             kept = [*rest[:-1], _with_fit(rest[-1], without)]
     return kept
 

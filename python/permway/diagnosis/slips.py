@@ -1,4 +1,4 @@
-"""What an effect may leave for how it was idealised: a share of its gain in the records that tell of another."""
+"""What an effect may leave for how it was idealised: a share of its gain in each record and octave."""
 
 from __future__ import annotations
 
@@ -11,9 +11,14 @@ from permway.diagnosis.fit import Fit
 SLIP = 0.03
 """Share of an effect's gain that its idealisation may leave for another to take up."""
 
+MOST = 0.8
+"""Share of another's gain from which it is no more than that."""
 
-def gain_by_record(before: Fit, after: Fit) -> Reals:
-    """By how much each record's part of the quadratic form is lower after, both with the sizes of errors of after.
+LOWEST_HZ = 0.5
+
+
+def gain_by_cell(before: Fit, after: Fit) -> Reals:
+    """By how much the quadratic form is lower after, by record and octave, both with the sizes of errors of after.
 
     Parameters
     ----------
@@ -22,36 +27,41 @@ def gain_by_record(before: Fit, after: Fit) -> Reals:
 
     Returns
     -------
-    ndarray, shape (blocks,)
+    ndarray, shape (cells,)
+        The same cells for all fits of the same records.
     """
     evidence = after.evidence
-    return _by_record(evidence, _deviations(evidence, before)) - _by_record(evidence, _deviations(evidence, after))
+    return _by_cell(evidence, _deviations(evidence, before)) - _by_cell(evidence, _deviations(evidence, after))
 
 
-def slip(first: Reals, further: Reals) -> float:
-    """Gain that a further effect must exceed to be no mending of the first.
+def mended(first: Reals, further: Reals) -> float:
+    """Share of a further effect's gain that may be how the first was idealised, 0 to 1.
 
-    Held against what the first gained in the records that tell of the further one: a large effect in hammer tests
-    says nothing of a small one in the runs.
+    Held against what the first gained in the records and octaves that tell of the further one: a large effect in
+    hammer tests says nothing of a small one in the runs, and a stiffness at low frequencies nothing of a resonance
+    at high ones.
 
     Parameters
     ----------
-    first, further : ndarray, shape (blocks,)
-        Gains by record.
+    first, further : ndarray, shape (cells,)
+        Gains.
     """
     told = np.clip(further, 0.0, None)
     if not told.any():
-        return SLIP * float(np.clip(first, 0.0, None).sum())
-    return SLIP * float(told @ np.clip(first, 0.0, None) / told.sum())
+        return 1.0
+    return float(np.minimum(told, SLIP * np.clip(first, 0.0, None)).sum() / told.sum())
 
 
 def _deviations(evidence: Evidence, fit: Fit) -> Reals:
     return evidence.deviations(evidence.predicted(fit.campaign).datasets)
 
 
-def _by_record(evidence: Evidence, deviations: Reals) -> Reals:
+def _by_cell(evidence: Evidence, deviations: Reals) -> Reals:
     """The quadratic form's parts: deviations times what smooth errors leave of them."""
     whitener = evidence.whitener
     left = deviations - whitener.smooth(whitener.explained(deviations), deviations.size)
-    found = np.bincount(evidence.block_of, weights=deviations * left, minlength=len(evidence.blocks))
+    octave = np.round(np.log2(np.maximum(evidence.rows.frequency_Hz, LOWEST_HZ) / LOWEST_HZ)).astype(int)
+    octaves = int(octave.max(initial=0)) + 1
+    cells = evidence.block_of * octaves + octave
+    found = np.bincount(cells, weights=deviations * left, minlength=len(evidence.blocks) * octaves)
     return np.asarray(found, dtype=np.float64)
