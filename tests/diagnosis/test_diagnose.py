@@ -13,7 +13,7 @@ from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.decide import Conditions
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.result import Diagnosis
-from permway.diagnosis.speak import _of_another_form
+from permway.diagnosis.speak_effect import of_another_form
 from permway.diagnosis.verdict_parts import Domain, Effect, Mechanics, Place
 from permway.diagnosis.verdict_words import sentence
 from permway.errors import InputError
@@ -77,7 +77,7 @@ def test_outside_the_track_a_place_is_a_form(domain: Domain) -> None:
     effect = Effect(
         domain=domain, place=where, bands=((20.0, 40.0),), name="bogie_modes", law=Mechanics(words="a")
     )
-    left = _of_another_form(effect)
+    left = of_another_form(effect)
     assert (left.domain, left.bands, left.name, left.law.words) == (domain, effect.bands, None, "")
     assert left.place == (where if domain == "path" else Place())
 

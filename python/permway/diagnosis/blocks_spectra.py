@@ -8,12 +8,13 @@ from functools import cached_property
 import numpy as np
 import xarray as xr
 from scipy import sparse
-from scipy.special import digamma, polygamma
+from scipy.special import polygamma
 
 from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks import SURE, Rows
 from permway.diagnosis.blocks_shared import apart, covariance
 from permway.diagnosis.smooth import Origin, Smooth, SparseColumns
+from permway.diagnosis.spectra_parts import coherence, mean_of_logarithm, remainder, transfer, tree_of
 from permway.diagnosis.wander import Wander
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
@@ -97,9 +98,9 @@ class SpectraBlock:
             )
         names, everywhere = data["channel"].values.astype(str), np.arange(self.frequency.size)
         whole = expected["csd"].values[:, :, self._lines]
-        coherence = _coherence(whole)
-        self.root, self.tree = _tree(np.nanmean(coherence, axis=-1))
-        self._transfers = {(c, o): _transfer(whole, c, o, everywhere) for c, o in self.tree}
+        coherent = coherence(whole)
+        self.root, self.tree = tree_of(np.nanmean(coherent, axis=-1))
+        self._transfers = {(c, o): transfer(whole, c, o, everywhere) for c, o in self.tree}
         labels, frequency, scale, kind = [], [], [], []
         self._parts: list[tuple[str, int, int, np.ndarray, Reals]] = []
         self.log_determinant = 0.0
@@ -121,7 +122,7 @@ class SpectraBlock:
 
         add("power", self.root, self.root, everywhere, np.full(everywhere.size, single))
         for child, parent in self.tree:
-            g2 = np.clip(coherence[child, parent], 1e-6, 1.0 - 1e-9)
+            g2 = np.clip(coherent[child, parent], 1e-6, 1.0 - 1e-9)
             at = np.flatnonzero(g2 >= self.LEAST_COHERENCE)
             relative = np.sqrt((1.0 - g2[at]) / (2.0 * (self.averages - 1.0) * g2[at]) + floor**2)
             add("transfer", child, parent, at, relative)
@@ -153,9 +154,9 @@ class SpectraBlock:
         for what, c, o, at, sigma in self._parts:
             if what == "power":
                 power = (self.measured[c, c, at] / model[c, c, at]).real
-                found.append((np.log(np.maximum(power, 1e-12)) - _low(self.averages)) / sigma)
+                found.append((np.log(np.maximum(power, 1e-12)) - mean_of_logarithm(self.averages)) / sigma)
             elif what == "transfer":
-                measured, predicted_so = (_transfer(csd, c, o, at) for csd in (self.measured, model))
+                measured, predicted_so = (transfer(csd, c, o, at) for csd in (self.measured, model))
                 # Gains multiply; where noise is large, their logarithm is biased, and it scatters as was expected:
                 # a model that says more does not scatter more.
                 straight = (measured - predicted_so) / self._transfers[c, o][at]
@@ -163,8 +164,8 @@ class SpectraBlock:
                 found.extend([off.real / sigma, off.imag / sigma])
             else:
                 left = 1.0 - 1.0 / self.averages
-                rest = _remainder(self.measured, c, o, at) / _remainder(model, c, o, at, left)
-                found.append((np.log(np.maximum(rest, 1e-12)) - _low(self.averages - 1.0)) / sigma)
+                rest = remainder(self.measured, c, o, at) / remainder(model, c, o, at, left)
+                found.append((np.log(np.maximum(rest, 1e-12)) - mean_of_logarithm(self.averages - 1.0)) / sigma)
         return np.concatenate(found)
 
     def levels_dB(self, predicted: xr.Dataset) -> Reals:
@@ -250,7 +251,7 @@ class SpectraBlock:
             elif what == "transfer":
                 found.append(np.log(np.abs(csd[c, o, at]) / csd[o, o, at].real))
             else:
-                found.append(np.log(_remainder(csd, c, o, at)))
+                found.append(np.log(remainder(csd, c, o, at)))
         return found
 
     @cached_property
@@ -290,38 +291,6 @@ class SpectraBlock:
 
 LEVEL = Wander(0.005, 20.0, shortest=1.4)
 """Of the irregularity, over cycles per metre."""
-
-
-def _coherence(csd: Complexes) -> Reals:
-    power = np.einsum("ccf->cf", csd).real
-    return np.asarray(np.abs(csd) ** 2 / (power[:, None] * power[None, :]))
-
-
-def _transfer(csd: Complexes, c: int, o: int, at: np.ndarray) -> Complexes:
-    """From one channel to another."""
-    return np.asarray(csd[c, o, at] / csd[o, o, at].real)
-
-
-def _low(averages: float) -> float:
-    """Mean of the logarithm of a power by so many averages, less the logarithm of its mean."""
-    return float(digamma(averages) - np.log(averages))
-
-
-def _remainder(csd: Complexes, c: int, o: int, at: np.ndarray, left: float = 1.0) -> Reals:
-    """Power of c that o does not share, as much as is left of it, and a thousandth of all: none is clean below."""
-    own = csd[c, c, at].real
-    return np.asarray(left * (own - np.abs(csd[c, o, at]) ** 2 / csd[o, o, at].real) + 1e-3 * own)
-
-
-def _tree(coherence: Reals) -> tuple[int, list[tuple[int, int]]]:
-    """A root and (child, parent) pairs, most coherent first (Prim); the root is the first channel."""
-    inside, tree = [0], []
-    while len(inside) < coherence.shape[0]:
-        outside = [c for c in range(coherence.shape[0]) if c not in inside]
-        child, parent = max(((c, p) for c in outside for p in inside), key=lambda pair: coherence[pair])
-        tree.append((child, parent))
-        inside.append(child)
-    return 0, tree
 
 
 def noise_of(campaign: Campaign, dataset: Dataset) -> Reals:

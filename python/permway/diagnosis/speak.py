@@ -19,12 +19,11 @@ from permway.diagnosis.level import beyond
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.rounds import BEYOND
 from permway.diagnosis.search import Finalist, Round, lines
+from permway.diagnosis.speak_effect import bands_of, effect_of, of_another_form
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL, Status, Verdict
 from permway.diagnosis.verdict_parts import (
-    ClassMember,
     Effect,
-    Estimate,
     HeldOutGain,
     Mechanics,
     Moved,
@@ -48,9 +47,6 @@ LEFT, LITTLE = 1.3, 0.1
 to explain then."""
 
 LARGEST_E = 1e300
-SHOWN = 0.8
-"""Share of an effect's gain that its bands hold."""
-
 WIDTH = 1.6449
 """Standard deviations on either side that hold 90 %."""
 
@@ -119,12 +115,12 @@ def verdict_of(
     explained = gap * _credit(proof.weighed)
     names = [one.hypothesis.entry for one in accepted]
     effects = tuple(
-        _effect(one, by_prefix[one.prefix], proof.weighed, base, explained, ends, names) for one in accepted
+        effect_of(one, by_prefix[one.prefix], proof.weighed, base, explained, ends, names) for one in accepted
     )
     status = _status(effects, proof, gap)
     if status == "insufficient" and proof.conditions.something and not proof.conditions.hold:
         # What foretells most records and harms others is missing, and has another form.
-        status, effects = "located", (_of_another_form(effects[0]),)
+        status, effects = "located", (of_another_form(effects[0]),)
     if status in SURE and fits and irregularity_level.ID not in names:
         level = beyond(proof.weighed, first.threshold)
         if level is not None:
@@ -148,13 +144,6 @@ def verdict_of(
         next=advice,
         detectable=sizes,
     )
-
-
-def _of_another_form(effect: Effect) -> Effect:
-    """Where an effect acts, without what it was taken for: outside the track its place is its form."""
-    place = effect.place if effect.domain == "path" else Place()
-    member = ClassMember(name=NOVEL, probability=1.0)
-    return Effect(domain=effect.domain, place=place, bands=effect.bands, class_=(member,))
 
 
 def _explains_little(base: Fit, amended: Fit) -> bool:
@@ -213,7 +202,9 @@ def _nothing(base: Fit, first: Round, found: Sequence[Found]) -> tuple[Status, t
                 x=best.spot.x_m,
                 within=_alike(found),
             )
-            return "located", (Effect(domain="path", place=place, bands=_spans(best.frequency_Hz, best.by_band)),)
+            return "located", (
+                Effect(domain="path", place=place, bands=bands_of(best.frequency_Hz, best.by_band)),
+            )
     return ("insufficient" if base.heat > UNFIT else "recalibrated"), ()
 
 
@@ -233,74 +224,6 @@ def _ends(proof: Proof) -> dict[str, tuple[float, float]]:
         further = [float(np.hypot(end - z, more) - abs(end - z)) for end in (low, high)]
         found[f.name] = (low - further[0], high + further[1])
     return found
-
-
-def _effect(
-    one: Finalist,
-    found: Round,
-    amended: Fit,
-    base: Fit,
-    explained: float,
-    ends_z: Mapping[str, tuple[float, float]],
-    names: Sequence[str],
-) -> Effect:
-    members = decide.members(found, explained=explained, beside=names)
-    hypothesis, fit = one.hypothesis, amended
-    index = {f.name: i for i, f in enumerate(fit.free)}
-    z = np.array([fit.z[index[one.prefix + f.name]] for f in hypothesis.free])
-    values = {f.name: f.value(float(v)) for f, v in zip(hypothesis.free, z, strict=True)}
-    estimates = {}
-    for f, name in zip(hypothesis.free, one.own, strict=True):
-        ends = sorted(f.value(float(np.clip(end, *f.limits))) for end in ends_z[name])
-        estimates[f.name] = Estimate(value=values[f.name], unit=f.unit, low=ends[0], high=ends[1])
-    where = hypothesis.locate(values)
-    within = None
-    if where.x_m is not None:
-        ends = list(where.x_m)
-        for f, estimate in zip(hypothesis.free, estimates.values(), strict=True):
-            for end in (estimate.low, estimate.high):
-                moved = hypothesis.locate({**values, f.name: float(end if end is not None else values[f.name])})
-                ends.extend(moved.x_m or ())
-        for other in found.followed:
-            # The same form elsewhere, which does as well: the records do not tell the two places apart.
-            alike = (
-                other.hypothesis.form == hypothesis.form and one.quick.gain - other.gain < decide.CLASS_DEVIANCE
-            )
-            ends.extend((other.hypothesis.locate(other.values).x_m or ()) if alike else ())
-        within = (min(ends), max(ends))
-    named = members[0].name != NOVEL and members[0].probability >= decide.NAMED
-    base_square = base.clean**2
-    amended_square = one.fit.clean**2
-    return Effect(
-        domain=hypothesis.domain,
-        place=Place.of(where, amended.campaign.model.line, within=within),
-        bands=_spans(base.evidence.rows.frequency_Hz, base_square - amended_square),
-        name=members[0].name if named else None,
-        class_=tuple(members),
-        law=Mechanics(words=hypothesis.law(values)),
-        parameters=estimates,
-    )
-
-
-def _spans(frequency_Hz: Reals, shown: Reals) -> tuple[tuple[float, float], ...]:
-    """Bands, of whole third octaves, that hold most of what an effect shows."""
-    cell = np.floor(3.0 * np.log2(frequency_Hz)).astype(np.int64)
-    cells = np.arange(cell.min(), cell.max() + 1)
-    share = np.bincount(cell - cell.min(), weights=np.maximum(shown, 0.0), minlength=cells.size)
-    if share.sum() <= 0.0:
-        return ()
-    order = np.argsort(-share)
-    needed = int(np.searchsorted(np.cumsum(share[order]) / share.sum(), SHOWN)) + 1
-    chosen = np.zeros(cells.size, dtype=bool)
-    chosen[order[:needed]] = True
-    spans, start = [], None
-    for index, inside in enumerate([*chosen, False]):
-        if inside and start is None:
-            start = index
-        elif not inside and start is not None:
-            spans.append((float(2.0 ** (cells[start] / 3.0)), float(2.0 ** ((cells[index - 1] + 1) / 3.0))))
-            start = None
-    return tuple(spans)
 
 
 def _moved(fit: Fit) -> dict[str, Moved]:
