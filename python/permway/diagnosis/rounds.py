@@ -108,7 +108,14 @@ def _mends(base: Fit, accepted: Sequence[Finalist], last: Finalist) -> bool:
     if any(abs(z) > BEYOND and known[f.name] < BELIEVED for f, z in own if f.name in known):
         return False
     further = gain_by_cell(accepted[-1].fit, last.fit)
-    return mended(gain_by_cell(base, accepted[0].fit), further) > MOST
+    first = gain_by_cell(base, accepted[0].fit)
+    return mended(first, further, one_place=_at_one_place(accepted[0], last)) > MOST
+
+
+def _at_one_place(first: Finalist, further: Finalist) -> bool:
+    """Whether two effects are of one joint or body, or of one channel."""
+    one, other = (f.hypothesis.locate(f.values) for f in (first, further))
+    return bool(set(one.channels) & set(other.channels)) or (one.what != "" and one.what == other.what)
 
 
 def _stands(before: Finalist, result: Round, clock: Clock) -> bool:
@@ -161,7 +168,8 @@ def _without_needless(base: Fit, accepted: list[Finalist], least: float, clock: 
             continue
         asked = len(one.hypothesis.free) * float(np.log(lines(base)))
         small = without.objective - whole.objective < least + asked
-        if small or mended(largest, gain_by_cell(without, whole)) > MOST:
+        beside = _at_one_place(accepted[index], one)
+        if small or mended(largest, gain_by_cell(without, whole), one_place=beside) > MOST:
             kept = [*rest[:-1], _with_fit(rest[-1], without)]
     return kept
 

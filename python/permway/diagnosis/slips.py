@@ -27,25 +27,28 @@ def gain_by_cell(before: Fit, after: Fit) -> Reals:
 
     Returns
     -------
-    ndarray, shape (cells,)
-        The same cells for all fits of the same records.
+    ndarray, shape (blocks, octaves)
     """
     evidence = after.evidence
     return _by_cell(evidence, _deviations(evidence, before)) - _by_cell(evidence, _deviations(evidence, after))
 
 
-def mended(first: Reals, further: Reals) -> float:
+def mended(first: Reals, further: Reals, *, one_place: bool = False) -> float:
     """Share of a further effect's gain that may be how the first was idealised, 0 to 1.
 
     Held against what the first gained in the records and octaves that tell of the further one: a large effect in
     hammer tests says nothing of a small one in the runs, and a stiffness at low frequencies nothing of a resonance
-    at high ones.
+    at high ones. At one place octaves do not tell them apart: a law that is not quite right is so in all of them.
 
     Parameters
     ----------
-    first, further : ndarray, shape (cells,)
+    first, further : ndarray, shape (blocks, octaves)
         Gains.
+    one_place : bool
+        Whether both are at one joint, body or channel.
     """
+    if one_place:
+        first, further = (gain.sum(axis=1) for gain in (first, further))
     told = np.clip(further, 0.0, None)
     if not told.any():
         return 1.0
@@ -64,4 +67,4 @@ def _by_cell(evidence: Evidence, deviations: Reals) -> Reals:
     octaves = int(octave.max(initial=0)) + 1
     cells = evidence.block_of * octaves + octave
     found = np.bincount(cells, weights=deviations * left, minlength=len(evidence.blocks) * octaves)
-    return np.asarray(found, dtype=np.float64)
+    return np.asarray(found, dtype=np.float64).reshape(-1, octaves)
