@@ -151,6 +151,24 @@ def test_a_train_at_rest_stays_at_rest_but_for_the_supports_it_passes() -> None:
     assert np.abs(run.contact_force[before] - load).max() < 0.15 * load
 
 
+@pytest.mark.parametrize(
+    ("wrong", "where"),
+    [
+        ({"step_s": 0.0}, "step_s"),
+        ({"viscous_at_Hz": np.nan}, "viscous_at_Hz"),
+        ({"to_m": -1.0}, "from_m"),
+        ({"speed_m_per_s": -70.0}, "speed_m_per_s"),
+        ({"cars": 0}, "cars"),
+    ],
+)
+def test_a_train_that_does_not_run_is_refused(wrong: dict[str, float], where: str) -> None:
+    train = {"cars": 1, "car_m": 25.0, "speed_m_per_s": 70.0, **wrong}
+    of_train = {key: train.pop(key) for key in ("cars", "car_m", "speed_m_per_s")}
+    run = {"from_m": 0.0, "to_m": 10.0, **{key: wrong[key] for key in wrong if key not in of_train}}
+    with pytest.raises(InputError, match=where):
+        cross(assemble(ONE, NOMINAL), Consist(NOMINAL, **of_train), **run)
+
+
 @pytest.mark.parametrize(("key", "value"), [("from_m", -40.0), ("to_m", 80.0)])
 def test_a_wheel_off_the_rail_is_refused(key: str, value: float) -> None:
     train = Consist(NOMINAL, cars=1, car_m=25.0, speed_m_per_s=70.0)

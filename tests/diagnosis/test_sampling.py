@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 from permway.diagnosis.catalogue import layer_damping, sensor_gain
 from permway.diagnosis.compete import Ring
-from permway.diagnosis.fit import Fit
+from permway.diagnosis.fit import WIDTH, Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.sampling import ENDS, Posterior, sampled
-from permway.diagnosis.speak import WIDTH
 from scipy import stats
 from simulated import simulate
 

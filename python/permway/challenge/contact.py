@@ -18,7 +18,7 @@ RATE_HZ = 8192.0
 """Of the steps."""
 
 TAPER_HZ = (3000.0, 4000.0)
-"""Where the response to an impact is cut: at half of that a landing's peak is 10 % off, here 3 (a test)."""
+"""Where the response to an impact is cut: from 2 to 3 kHz a landing's peak was 10 % off, here 3 (a test)."""
 
 LASTING_S, LINE_HZ = 1.0, 0.25
 """How long an impact is felt, and the lines that its response is made of."""

@@ -26,6 +26,9 @@ from permway.errors import InputError, SolveError
 ROUNDS, CLOSE = 100, 1e-10
 """Of Newton's method in a step, and the compression (m) to which contacts agree."""
 
+AT_REST = 1e-6
+"""Change of a force over the load at which the train stands."""
+
 POINTS = 33
 """Of an element, at which it is known how far it yields within."""
 
@@ -116,10 +119,11 @@ def cross(
     Raises
     ------
     InputError
-        If a wheel would run off the rail.
+        If a wheel would run off the rail, or not at all.
     SolveError
         If a step's contacts are not found.
     """
+    _check(train, from_m, to_m, step_s, viscous_at_Hz)
     mesh = Mesh(track, sensors)
     rail = _Rail(mesh)
     behind = train.behind_m
@@ -158,6 +162,15 @@ def cross(
         forces[step] = force
         moved[step], felt[step] = line.moved[read], cars.hurried[wheels]
     return Crossing(times, front, forces, moved, felt)
+
+
+def _check(train: Consist, from_m: float, to_m: float, step_s: float, viscous_at_Hz: float) -> None:
+    positive = {"step_s": step_s, "viscous_at_Hz": viscous_at_Hz, "train.speed_m_per_s": train.speed_m_per_s}
+    for where, value in {**positive, "train.cars": train.cars, "train.car_m": train.car_m}.items():
+        if not (np.isfinite(value) and value > 0):
+            raise InputError("must be above zero", where=where, value=value)
+    if not to_m > from_m:
+        raise InputError("must lie before to_m", where="from_m", value=[from_m, to_m])
 
 
 @dataclass(frozen=True)
@@ -280,6 +293,6 @@ def _rest(
         cars.moved = np.zeros(weight.size)
         cars.moved[wheels], cars.moved[others] = stands, hangs
         last, force = force, weight[wheels] - (stiffness @ cars.moved)[wheels]
-        if np.abs(force - last).max() < 1e-6 * law.hertz.load_N:
-            break
-    return force
+        if np.abs(force - last).max() < AT_REST * law.hertz.load_N:
+            return force
+    raise SolveError(f"the train at rest is not found in {ROUNDS} rounds; give another from_m")

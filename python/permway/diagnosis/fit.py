@@ -14,6 +14,9 @@ from permway.recordings.campaign import Campaign
 Z_LIMIT = 8.0
 """Beyond which no parameter is sought, in standard deviations of the prior."""
 
+WIDTH = 1.6449
+"""Half of a 90 % interval, in standard deviations."""
+
 Build = Callable[[Mapping[str, float]], Campaign]
 """From values of the free parameters to a campaign."""
 
@@ -101,7 +104,7 @@ class Fit:
         """Values by name."""
         return {f.name: f.value(float(z)) for f, z in zip(self.free, self.z, strict=True)}
 
-    def intervals(self, width: float = 1.6449) -> dict[str, tuple[float, float]]:
+    def intervals(self, width: float = WIDTH) -> dict[str, tuple[float, float]]:
         """90 % intervals by name, by default."""
         sigma = np.sqrt(np.diag(self.covariance))
         return {

@@ -9,18 +9,14 @@ from __future__ import annotations
 import numpy as np
 
 from permway.diagnosis.catalogue import irregularity_level
-from permway.diagnosis.fit import Fit
+from permway.diagnosis.decide import NOVEL_PRIOR
+from permway.diagnosis.fit import WIDTH, Fit
 from permway.diagnosis.hypothesis import Where
 from permway.diagnosis.search import lines
 from permway.diagnosis.verdict import NOVEL
 from permway.diagnosis.verdict_parts import ClassMember, Effect, Estimate, Mechanics, Place
 
 PATH = "campaign.irregularity.level_dB"
-
-WIDTH = 1.645
-"""Half of a 90 % interval, in standard deviations."""
-
-NOVEL_SHARE = 0.05
 
 
 def beyond(fit: Fit, threshold: float) -> Effect | None:
@@ -57,8 +53,8 @@ def beyond(fit: Fit, threshold: float) -> Effect | None:
             place=Place.of(Where("irregularity"), line),
             name=irregularity_level.ID,
             class_=(
-                ClassMember(name=irregularity_level.ID, probability=1.0 - NOVEL_SHARE),
-                ClassMember(name=NOVEL, probability=NOVEL_SHARE),
+                ClassMember(name=irregularity_level.ID, probability=1.0 - NOVEL_PRIOR),
+                ClassMember(name=NOVEL, probability=NOVEL_PRIOR),
             ),
             law=Mechanics(words=f"{value:+.3g} dB from what its owner says"),
             parameters={"level_dB": Estimate(value=value, unit="dB", low=low, high=high)},

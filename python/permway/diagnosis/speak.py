@@ -12,7 +12,7 @@ from permway.diagnosis import decide
 from permway.diagnosis.catalogue import irregularity_level
 from permway.diagnosis.decide import Conditions
 from permway.diagnosis.detectable import detectable
-from permway.diagnosis.fit import Fit
+from permway.diagnosis.fit import WIDTH, Fit
 from permway.diagnosis.heldout import Gain
 from permway.diagnosis.labels import Mislabelled
 from permway.diagnosis.level import beyond
@@ -47,8 +47,6 @@ LEFT, LITTLE = 1.3, 0.1
 to explain then."""
 
 LARGEST_E = 1e300
-WIDTH = 1.6449
-"""Standard deviations on either side that hold 90 %."""
 
 
 @dataclass(frozen=True)
