@@ -56,7 +56,7 @@ def beyond(fit: Fit, threshold: float) -> Effect | None:
                 ClassMember(name=irregularity_level.ID, probability=1.0 - NOVEL_PRIOR),
                 ClassMember(name=NOVEL, probability=NOVEL_PRIOR),
             ),
-            law=Mechanics(words=f"{value:+.3g} dB from what its owner says"),
+            law=Mechanics(words=f"{value:+.3g} dB from what its owner says, by the records alone"),
             parameters={"level_dB": Estimate(value=value, unit="dB", low=low, high=high)},
         )
     return None
