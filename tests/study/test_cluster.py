@@ -47,19 +47,15 @@ def files(folder):
 
 
 def assert_same(folder, expected):
-    """All files to the byte; of the first that is another, which numbers differ, or else which bytes."""
+    """All numbers, names and attributes. HDF5 may lay the same out otherwise in another process: seen in CI."""
     found = files(folder)
     assert found.keys() == expected.keys()
     for name in sorted(found):
-        if found[name] != expected[name]:
-            with (
-                xr.open_dataset(io.BytesIO(found[name]), engine="h5netcdf") as one,
-                xr.open_dataset(io.BytesIO(expected[name]), engine="h5netcdf") as other,
-            ):
-                xr.testing.assert_identical(one, other)
-            pairs = enumerate(zip(found[name], expected[name], strict=False))
-            differ = [(i, a, b) for i, (a, b) in pairs if a != b]
-            raise AssertionError(f"{name}: the same numbers in other bytes: {differ[:20]}, {len(differ)} in all")
+        with (
+            xr.open_dataset(io.BytesIO(found[name]), engine="h5netcdf") as one,
+            xr.open_dataset(io.BytesIO(expected[name]), engine="h5netcdf") as other,
+        ):
+            xr.testing.assert_identical(one, other)
 
 
 def test_the_same_numbers_as_here_also_when_a_worker_is_killed(cluster, here, tmp_path):

@@ -25,7 +25,7 @@ _lock = Lock()
 def to_netcdf(data: xr.Dataset) -> bytes:
     """A dataset as the content of a NetCDF file, as :func:`permway.response.solve.write_dataset` writes it.
 
-    The same dataset gives the same bytes.
+    The same dataset gives the same numbers, names and attributes; within a process, the same bytes.
     """
     values = {str(name): v.values for name, v in data.data_vars.items() if v.dtype.kind in "fc"}
     empty = data.drop_attrs(deep=False).assign({name: xr.zeros_like(data[name]) for name in values})
