@@ -2,37 +2,18 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
-import scipy.linalg
 from numpy.typing import ArrayLike
 from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from permway.arrays import Complexes, Reals, check_frequency
 from permway.errors import InputError
+from permway.model import vehicle_car as car
 from permway.model.vehicle_additions import AnyAddition, check_additions, hung_mass_kg
 from permway.model.vehicle_condensed import Condensed, condensed
 from permway.records import FrozenModel
 
 STANDARD_GRAVITY = 9.80665
-
-_CAR_DEGREES = (
-    "body.bounce",
-    "body.pitch",
-    "bogie1.bounce",
-    "bogie1.pitch",
-    "bogie2.bounce",
-    "bogie2.pitch",
-    "wheelset1",
-    "wheelset2",
-    "wheelset3",
-    "wheelset4",
-)
-_N = len(_CAR_DEGREES)
-_WHEELS = slice(6, 10)
-_FREE = 1e-12
-"""Squares under this share of the largest are the free vehicle's zeros in rounding, not slow modes."""
 
 
 class Vehicle(FrozenModel):
@@ -107,12 +88,13 @@ class Vehicle(FrozenModel):
     @property
     def degrees(self) -> list[str]:
         """Labels of the 10 n degrees of freedom, as "car1.body.bounce" or "car2.wheelset3"."""
-        return [f"car{car + 1}.{degree}" for car in range(self.cars) for degree in _CAR_DEGREES]
+        return [f"car{index + 1}.{degree}" for index in range(self.cars) for degree in car.DEGREES]
 
     @property
     def wheel_indices(self) -> list[int]:
         """Places of the 4 n wheelsets among the degrees of freedom, leading wheel first."""
-        return [_N * car + wheel for car in range(self.cars) for wheel in range(_N)[_WHEELS]]
+        wheels = range(car.N)[car.WHEELS]
+        return [car.N * index + wheel for index in range(self.cars) for wheel in wheels]
 
     @property
     def static_wheel_load_N(self) -> float:
@@ -123,8 +105,8 @@ class Vehicle(FrozenModel):
 
     def lags_m(self) -> Reals:
         """Distance (m) of each wheel behind the first, shape (4 n,), ascending (paper, equation (18))."""
-        car = np.array([0.0, self.wheelbase_m, self.bogie_distance_m, self.bogie_distance_m + self.wheelbase_m])
-        return np.concatenate([car + index * self.car_length_m for index in range(self.cars)])
+        own = np.array([0.0, self.wheelbase_m, self.bogie_distance_m, self.bogie_distance_m + self.wheelbase_m])
+        return np.concatenate([own + index * self.car_length_m for index in range(self.cars)])
 
     def wheel_positions_m(self) -> Reals:
         """Positions x (m) of the wheels about the middle of the train, shape (4 n,), wheel 1 foremost.
@@ -271,11 +253,8 @@ class Vehicle(FrozenModel):
         InputError
             For a contact stiffness that is not above zero, and for a vehicle with additions.
         """
-        mass, _, stiffness = self._car_on(on_contact)
-        squares = scipy.linalg.eigh(stiffness, mass, eigvals_only=True)
-        if on_contact is None:
-            squares = np.where(squares < _FREE * squares[-1], 0.0, squares)
-        return np.sort(np.tile(np.sqrt(squares) / (2.0 * np.pi), self.cars))
+        found = car.natural_frequencies_Hz(self._car_on(on_contact), free=on_contact is None)
+        return np.sort(np.tile(found, self.cars))
 
     def damped_poles(self, on_contact: float | None = None) -> Complexes:
         """Poles s of s^2 M + s C + K, rad/s, by ascending modulus.
@@ -296,11 +275,7 @@ class Vehicle(FrozenModel):
         InputError
             For a contact stiffness that is not above zero, and for a vehicle with additions.
         """
-        mass, damping, stiffness = self._car_on(on_contact)
-        n = mass.shape[0]
-        weight = np.diag(mass)[:, None]
-        companion = np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness / weight, -damping / weight]])
-        poles = np.tile(np.linalg.eigvals(companion).astype(np.complex128), self.cars)
+        poles = np.tile(car.damped_poles(self._car_on(on_contact)), self.cars)
         return poles[np.lexsort((poles.imag, np.abs(poles)))]
 
     def _check_rigid(self) -> None:
@@ -317,7 +292,7 @@ class Vehicle(FrozenModel):
         masses = [self.car_body_mass_kg, self.car_body_inertia_kg_m2, *bogie, *bogie]
         return np.array([*masses, *[self.wheelset_mass_kg] * 4])
 
-    def _car_matrices(self) -> tuple[Reals, Reals, Reals]:
+    def _car_matrices(self) -> car.Matrices:
         mass = np.diag(self._car_masses())
         secondary, primary = self._stretches()
         secondary, primary = secondary.T @ secondary, primary.T @ primary
@@ -326,35 +301,11 @@ class Vehicle(FrozenModel):
         return self.share * mass, self.share * damping, self.share * stiffness
 
     def _stretches(self) -> tuple[Reals, Reals]:
-        """Rows that give each suspension's compression from the degrees of freedom: (2, 10), (4, 10)."""
-        secondary, primary = np.zeros((2, _N)), np.zeros((4, _N))
-        ahead = (1.0, -1.0)
-        for bogie in range(2):
-            bounce, pitch = 2 + 2 * bogie, 3 + 2 * bogie
-            secondary[bogie, [0, 1, bounce]] = 1.0, 0.5 * ahead[bogie] * self.bogie_distance_m, -1.0
-            for axle in range(2):
-                wheel = 2 * bogie + axle
-                primary[wheel, [bounce, pitch, 6 + wheel]] = 1.0, 0.5 * ahead[axle] * self.wheelbase_m, -1.0
-        return secondary, primary
+        return car.stretches(self.bogie_distance_m, self.wheelbase_m)
 
-    def _car_on(self, on_contact: float | None) -> tuple[Reals, Reals, Reals]:
+    def _car_on(self, on_contact: float | None) -> car.Matrices:
         self._check_rigid()
-        mass, damping, stiffness = self._car_matrices()
-        if on_contact is None:
-            return mass, damping, stiffness
-        if not on_contact > 0.0:
-            raise InputError(
-                "a contact stiffness must be above 0 N/m",
-                where="on_contact",
-                value=on_contact,
-                remedy="None for the free vehicle, infinity for wheelsets held fast",
-            )
-        if math.isinf(on_contact):
-            held = _WHEELS.start
-            return mass[:held, :held], damping[:held, :held], stiffness[:held, :held]
-        wheels = np.arange(_N)[_WHEELS]
-        stiffness[wheels, wheels] += on_contact
-        return mass, damping, stiffness
+        return car.on_contact(self._car_matrices(), on_contact)
 
     def _condensed(self, frequency_Hz: ArrayLike) -> Condensed:
         omega = 2.0 * np.pi * np.atleast_1d(check_frequency(frequency_Hz))
@@ -367,16 +318,16 @@ class Vehicle(FrozenModel):
             whole = condensed(omega, masses, stretches, springs, dashpots, self.additions)
             return Condensed(self.share * whole.stiffness, whole.push, whole.give / self.share)
         mass, damping, stiffness = self._car_matrices()
-        push = np.broadcast_to(np.eye(_N, dtype=np.complex128)[:, _WHEELS], (omega.size, _N, 4))
+        push = np.broadcast_to(np.eye(car.N, dtype=np.complex128)[:, car.WHEELS], (omega.size, car.N, 4))
         give = np.zeros((omega.size, 4, 4), dtype=np.complex128)
         omega = omega[:, None, None]
         return Condensed(np.asarray(stiffness + 1j * omega * damping - omega**2 * mass), push, give)
 
     def _car_per_force(self, frequency_Hz: ArrayLike) -> tuple[Complexes, Complexes]:
         """Of one car, (F, 10, 4) and (F, 4, 4)."""
-        car = self._condensed(frequency_Hz)
-        degrees = np.asarray(np.linalg.solve(car.stiffness, car.push), dtype=np.complex128)
-        return degrees, np.swapaxes(car.push, 1, 2) @ degrees + car.give
+        own = self._condensed(frequency_Hz)
+        degrees = np.asarray(np.linalg.solve(own.stiffness, own.push), dtype=np.complex128)
+        return degrees, np.swapaxes(own.push, 1, 2) @ degrees + own.give
 
 
 def _blocks(block: Complexes, count: int) -> Complexes:
