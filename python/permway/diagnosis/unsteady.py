@@ -1,18 +1,35 @@
-"""How much less a parameter is known than its fit says, by how it moves when records are left out."""
+"""How much less a parameter is known than its fit says: by records left out, and by octaves that disagree."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 import numpy as np
+from scipy import stats
 
 from permway.arrays import Reals
-from permway.diagnosis.fit import Fit
+from permway.diagnosis.fit import WIDTH, Fit
 from permway.diagnosis.heldout import Gain
+
+FEWEST_OCTAVES = 4
+"""With fewer, nothing is told of how they disagree."""
 
 
 def unsteady(fit: Fit, found: Sequence[Gain]) -> Reals:
-    """Variance of the parameters (p,) beyond the fit's own: what they move by more than they should.
+    """Variance of the parameters (p,) beyond the fit's own: the more of what parts and what octaves tell.
+
+    Parameters
+    ----------
+    fit : Fit
+        To all records.
+    found : sequence of Gain
+        Of it as the amended model, part by part.
+    """
+    return np.maximum(by_parts(fit, found), by_octaves(fit))
+
+
+def by_parts(fit: Fit, found: Sequence[Gain]) -> Reals:
+    """What parameters move by more than they should when records are left out, squared (p,).
 
     If the model is right, the fit to the rest differs from that to all by the difference of their variances in the
     mean square (Hausman 1978). What moves more, because a law is not quite the true one, is no better known.
@@ -29,3 +46,30 @@ def unsteady(fit: Fit, found: Sequence[Gain]) -> Reals:
         should = np.maximum(gain.sigma**2 - own, 0.0)
         more = np.maximum(more, (gain.z - fit.z) ** 2 - should)
     return more
+
+
+def by_octaves(fit: Fit) -> Reals:
+    """What octaves pull parameters by beyond what noise does, as a variance (p,).
+
+    If the model is right, what an octave's records would move a parameter by has the variance that its slopes say.
+    Where idealisations differ, neighbouring lines err alike and one octave pulls against another: the variance
+    is then the sum of squares of their pulls (Liang and Zeger 1986; with few octaves Student's quantiles, Cameron
+    and Miller 2015).
+
+    Parameters
+    ----------
+    fit : Fit
+        To all records.
+    """
+    hertz = fit.evidence.rows.frequency_Hz
+    octaves, octave_of = np.unique(np.floor(np.log2(hertz)), return_inverse=True)
+    own, count = np.diag(fit.covariance), octaves.size
+    if count < FEWEST_OCTAVES:
+        return np.zeros(own.size)
+    pulls = np.zeros((count, own.size))
+    np.add.at(pulls, octave_of, fit.jacobian * fit.clean[:, None] / fit.heat)
+    # At the best fit they pull against the prior together, which is no disagreement.
+    moves = (pulls - pulls.mean(axis=0)) @ fit.covariance
+    wider = (float(stats.t.ppf(stats.norm.cdf(WIDTH), count - 1)) / WIDTH) ** 2
+    variance = wider * count / (count - 1.0) * np.sum(moves**2, axis=0)
+    return np.asarray(np.maximum(variance - own, 0.0))

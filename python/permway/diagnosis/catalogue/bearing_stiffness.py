@@ -16,7 +16,7 @@ ID = "bearing_stiffness"
 DOMAIN: Domain = "path"
 FAMILY = "bearing and pier"
 SUMMARY = "The stiffness of the bearings at one station times a factor, the others as they are."
-PARAMETERS = {"factor": "1, 0.005 to 200: on the stiffness"}
+PARAMETERS = {"factor": "1, 0.01 to 98: on the stiffness"}
 SIGNATURE = "Responses of the girder over one bearing, up to its second bending frequency, and little elsewhere."
 CONFUSED_WITH = {
     "pier_soil": "both ends are alike there, and the stiffness falls with frequency",

@@ -17,7 +17,7 @@ SUMMARY = (
     "Equivalent linear: the contact stiffness times a factor. What a non-linear contact adds at sums and "
     "differences of frequencies, and any loss of contact, is left out."
 )
-PARAMETERS = {"factor": "1, 0.1 to 5: stiffness at work over that about the static load"}
+PARAMETERS = {"factor": "1, 0.13 to 7.6: stiffness at work over that about the static load"}
 SIGNATURE = "Axle boxes near the resonance of wheelset and rail on the contact, coherent; no frequency response."
 CONFUSED_WITH = {
     "contact_filter": "what shifts with the speed",

@@ -20,7 +20,7 @@ SUMMARY = "A share of the girder's mass per metre once more, on springs of one f
 PARAMETERS = {
     "mass_share": "1, 0.001 to 10: of the girder's own mass per metre",
     "frequency_Hz": "Hz, 2 to 1000: of the part, the girder held",
-    "loss_factor": "1, 0.002 to 1.6",
+    "loss_factor": "1, 0.0024 to 1.5",
 }
 SIGNATURE = "A dip and a peak in responses of the girder and the track on it around one frequency, at all places."
 CONFUSED_WITH = {

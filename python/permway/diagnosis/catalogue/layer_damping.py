@@ -19,7 +19,7 @@ FAMILY = "damping law"
 SUMMARY = "A share s of a layer's loss is that of a dashpot, eta f / f0, for a constant eta; or the reverse."
 PARAMETERS = {
     "share": "1, 0 to 1: share s of the loss that goes the other way over frequency",
-    "equal_at_Hz": "Hz, 1 to 4000: f0, where both ways are the same loss",
+    "equal_at_Hz": "Hz, 0.93 to 3860: f0, where both ways are the same loss",
 }
 SIGNATURE = (
     "All channels that the layer reaches, by phase and by the width of resonances more than by their frequency: "

@@ -21,7 +21,7 @@ SUMMARY = (
     "under a bogie's load P that moves along it. Wheelbase, the other bogie and the beam's inertia are left out "
     "and stand in c."
 )
-PARAMETERS = {"factor": "1, 0.1 to 20: c; 1 is the beam's own law"}
+PARAMETERS = {"factor": "1, 0.07 to 14: c; 1 is the beam's own law"}
 SIGNATURE = "Lines at V / L and 2 V / L of all on-board channels, the car body's first."
 CONFUSED_WITH = {
     "span_camber": "nothing on board at one axle load: the two differ by how fast lines fall (n^-4 here); a run "

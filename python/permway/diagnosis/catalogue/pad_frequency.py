@@ -19,7 +19,7 @@ SUMMARY = (
     "beside a spring, c + c r i f / (f1 + i f), for the constant stiffness k; of its constant loss a part stays."
 )
 PARAMETERS = {
-    "stiffness_factor": "1, 0.3 to 3: stiffness at 60 Hz over the constant one",
+    "stiffness_factor": "1, 0.33 to 3.05: stiffness at 60 Hz over the constant one",
     "order": "1, 0.02 to 0.8: order a of the springpot",
     "share": "1, 0 to 0.98: share s of the springpot",
     "rise": "1, 0.02 to 10: r, what the stiffness rises by through the relaxation, over that below it",

@@ -14,7 +14,7 @@ DOMAIN: Domain = "path"
 FAMILY = "load-dependent pad"
 SUMMARY = "The pads' stiffness under the load L is r^(L/L0) times that without; L0 is the train's mean."
 PARAMETERS = {
-    "stiffness_ratio": "1, 0.5 to 4: r, stiffness under the train over that without load",
+    "stiffness_ratio": "1, 0.41 to 3.8: r, stiffness under the train over that without load",
     "unloaded_factor": "1, 0.4 to 2.5: stiffness without load over the base's, which fits both at once",
 }
 SIGNATURE = (

@@ -36,7 +36,7 @@ PARAMETERS = {
     "softening_per_K": "1/K, -0.02 to 0.1: a",
     "reference_factor": "1, 0.4 to 2.5: stiffness at T0 over the base's, which fits all temperatures at once",
     "loss_ratio": "1, -2 to 5: q, of the loss factor's logarithm over the stiffness's",
-    "stiffness_factor": "1, 0.3 to 3: stiffness at 60 Hz and T0 over the constant one",
+    "stiffness_factor": "1, 0.33 to 3.05: stiffness at 60 Hz and T0 over the constant one",
     "order": "1, 0.02 to 0.8: order b of the springpot",
     "share": "1, 0 to 0.98: share s of the springpot",
     "rest": "1, 0 to 1: part of the constant loss that stays beside",

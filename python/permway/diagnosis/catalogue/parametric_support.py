@@ -18,7 +18,7 @@ SUMMARY = (
     "the wheel passes over fasteners. How the stiffness itself varies under the wheel is left out."
 )
 PARAMETERS = {
-    "amplitude_m": "m, 1e-8 to 1e-3: a, of the first line",
+    "amplitude_m": "m, 2.1e-8 to 1.2e-3: a, of the first line",
     "decay": "1, 1 to 5: p",
 }
 SIGNATURE = (

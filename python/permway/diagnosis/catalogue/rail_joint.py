@@ -19,7 +19,7 @@ FAMILY = "tied to speed over length"
 SUMMARY = "Lines a n^-p in the profile at all multiples n of V / L, L the length of a rail."
 PARAMETERS = {
     "length_m": "m, 5 to 120, and no longer than a run resolves: L",
-    "amplitude_m": "m, 1e-8 to 1e-2: a, of the first line",
+    "amplitude_m": "m, 4.1e-8 to 2.4e-3: a, of the first line",
     "decay": "1, 0 to 2: p; 0 for short dips, 2 for a kink",
 }
 SIGNATURE = "A comb of lines of all on-board channels that goes with the speed; no frequency response."
@@ -50,7 +50,7 @@ def _longest(situation: Situation) -> float:
 
 
 def _length(longest: float) -> Free:
-    made = log_free("length_m", "m", CENTRE_M, LENGTH_FACTOR, lowest=1.0)
+    made = log_free("length_m", "m", CENTRE_M, LENGTH_FACTOR, lowest=SHORTEST_M)
     return replace(made, limits=(made.limits[0], coordinate(longest, CENTRE_M, LENGTH_FACTOR)))
 
 

@@ -15,7 +15,7 @@ DOMAIN: Domain = "path"
 FAMILY = "girder"
 SUMMARY = "A mass per metre on the girder, of which a share stands on springs of one frequency."
 PARAMETERS = {
-    "mass_kg_per_m": "kg/m, 30 to 60000: of the second track, the model's share",
+    "mass_kg_per_m": "kg/m, 47 to 48000: of the second track, the model's share",
     "sprung": "1, 0.01 to 0.9: of it that stands on springs",
     "frequency_Hz": "Hz, 10 to 1500: of that part",
 }

@@ -13,7 +13,7 @@ ID = "sensor_gain"
 DOMAIN: Domain = "measurement"
 FAMILY = "level"
 SUMMARY = "What one sensor reads is a constant factor off."
-PARAMETERS = {"gain": "1, 0.3 to 3: read over true"}
+PARAMETERS = {"gain": "1, 0.13 to 7.6: read over true"}
 SIGNATURE = "One row of all frequency responses, or one channel of all runs, by one factor at all frequencies."
 CONFUSED_WITH = {
     "irregularity_level": "all channels of a run move together there",
@@ -38,10 +38,10 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             entry=ID,
             domain=DOMAIN,
             family=FAMILY,
-            free=(log_free("gain", "1", 1.0, 1.2),),
+            free=(log_free("gain", "1", 1.0, 1.5),),
             amend=amend,
             locate=partial(_at, sensor.name),
-            starts=((0.3,), (-0.3,)),
+            starts=((0.13,), (-0.13,)),
             law=lambda v: f"reads {v['gain']:.3f} of what is there",
             size="gain",
             none=1.0,

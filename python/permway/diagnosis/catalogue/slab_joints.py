@@ -27,7 +27,7 @@ SUMMARY = (
     "bends as easily as so many metres of slab."
 )
 PARAMETERS = {
-    "length_m": "m, 1.5 to 26: from joint to joint",
+    "length_m": "m, 1.44 to 25: from joint to joint",
     "offset": "1, -0.5 to 0.5: place of the joints, in lengths from the slab's start",
     "dowels_N_per_m": "N/m, 1e3 to 1e13: shear stiffness of the dowels of one cut",
     "flexibility_m": "m: of slab, that bend as much as one joint",

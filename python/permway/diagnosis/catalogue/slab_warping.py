@@ -18,7 +18,7 @@ DOMAIN: Domain = "path"
 FAMILY = "slab"
 SUMMARY = "The bed's stiffness falls linearly to a factor over a length at both ends of every slab."
 PARAMETERS = {
-    "length_m": "m, 0.1 to 40: over which the bed carries less, at each end",
+    "length_m": "m, 0.1 to 37: over which the bed carries less, at each end",
     "factor": "1, 0 to 1: what is left of the stiffness at the very end",
 }
 SIGNATURE = "Responses of slab and rail near slab ends, as of a cantilever's; grows and falls with the day's heat."

@@ -14,7 +14,7 @@ DOMAIN: Domain = "irregularity"
 FAMILY = "tied to speed over length"
 SUMMARY = "Lines a n^-p in the profile at all multiples n of V / L, L the length of a span."
 PARAMETERS = {
-    "amplitude_m": "m, 1e-6 to 2e-2: a, of the first line; of a parabola of rise h it is 0.41 h",
+    "amplitude_m": "m, 1.2e-6 to 7.3e-2: a, of the first line; of a parabola of rise h it is 0.41 h",
     "decay": "1, 1 to 4: p; 2 for a parabola with kinks at the bearings",
 }
 SIGNATURE = "Lines below some 30 Hz of all on-board channels, car body first, that go with the speed."

@@ -19,7 +19,7 @@ DOMAIN: Domain = "irregularity"
 FAMILY = "tonal roughness"
 SUMMARY = "Lines a n^-p at all multiples n of one wheel's turn, V / (2 pi R)."
 PARAMETERS = {
-    "amplitude_m": "m, 1e-8 to 1e-3: a, of the first line; of a dip of depth d and length l about d l / (2 pi R)",
+    "amplitude_m": "m, 8.2e-9 to 4.9e-4: a, of the first line; of a dip d deep, l long about d l / (2 pi R)",
     "decay": "1, 0 to 2: p; 0 for a dip much shorter than the wavelengths on record",
 }
 SIGNATURE = "A comb of lines of one axle box that goes with the speed, far up in frequency; no frequency response."

@@ -19,7 +19,7 @@ FAMILY = "tonal roughness"
 SUMMARY = "A line of amplitude a in the roughness of one wheel, or of every wheel for itself, at n V / (2 pi R)."
 PARAMETERS = {
     "order": "1, 1 to 60: n, waves per turn; no whole number where the wheel is worn below its radius on paper",
-    "amplitude_m": "m, 1e-8 to 1e-3: of the wave",
+    "amplitude_m": "m, 2.1e-8 to 1.2e-3: of the wave",
 }
 SIGNATURE = "One line of axle boxes that goes with the speed, incoherent between wheelsets; no frequency response."
 CONFUSED_WITH = {

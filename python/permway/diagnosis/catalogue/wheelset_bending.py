@@ -18,8 +18,8 @@ SUMMARY = "A free bending mode of every wheelset, 1 at its axle boxes: its mass,
 PARAMETERS = {
     "ratio": "1, 0.01 to 98: the wheelset's mass over the mode's",
     "contact": "1, -3 to 1: the mode at the contact; of boxes on springs to wheels -1 over the ratio",
-    "frequency_Hz": "Hz, 8 to 1700: of the free wheelset",
-    "loss_factor": "1, 0.001 to 1.3",
+    "frequency_Hz": "Hz, 8.5 to 1704: of the free wheelset",
+    "loss_factor": "1, 0.00125 to 1.28",
 }
 SIGNATURE = (
     "All axle boxes alike, a peak, or a dip and a peak above it, at frequencies that speed does not move; the "
