@@ -57,7 +57,10 @@ def octave_fit(shift: float, seed: int, octaves: int = 7) -> tuple[float, float,
     values = random.standard_normal(hertz.size) + shift * np.repeat(random.standard_normal(octaves), 40)
     own = 1.0 / hertz.size
     fit = SimpleNamespace(
-        evidence=SimpleNamespace(rows=SimpleNamespace(frequency_Hz=hertz)),
+        evidence=SimpleNamespace(
+            rows=SimpleNamespace(frequency_Hz=hertz),
+            whitener=SimpleNamespace(reduce=lambda slopes: np.zeros((1, slopes.shape[1]))),
+        ),
         covariance=np.array([[own]]),
         jacobian=-np.ones((hertz.size, 1)),
         clean=values - values.mean(),
@@ -76,4 +79,4 @@ def test_intervals_hold_the_truth_whether_octaves_agree_or_not(shift: float) -> 
 
 
 def test_few_octaves_tell_nothing_of_how_they_disagree() -> None:
-    assert octave_fit(3.0, 1, octaves=3)[1] == 0.0
+    assert octave_fit(3.0, 1, octaves=5)[1] == 0.0

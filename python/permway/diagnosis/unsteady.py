@@ -11,8 +11,8 @@ from permway.arrays import Reals
 from permway.diagnosis.fit import WIDTH, Fit
 from permway.diagnosis.heldout import Gain
 
-FEWEST_OCTAVES = 4
-"""With fewer, nothing is told of how they disagree."""
+FEWEST_OCTAVES = 6
+"""With fewer, next to nothing is told of how they disagree."""
 
 
 def unsteady(fit: Fit, found: Sequence[Gain]) -> Reals:
@@ -49,12 +49,12 @@ def by_parts(fit: Fit, found: Sequence[Gain]) -> Reals:
 
 
 def by_octaves(fit: Fit) -> Reals:
-    """What octaves pull parameters by beyond what noise does, as a variance (p,).
+    """What octaves pull parameters by beyond what noise and smooth errors do, as a variance (p,).
 
-    If the model is right, what an octave's records would move a parameter by has the variance that its slopes say.
-    Where idealisations differ, neighbouring lines err alike and one octave pulls against another: the variance
-    is then the sum of squares of their pulls (Liang and Zeger 1986; with few octaves Student's quantiles, Cameron
-    and Miller 2015).
+    If the model is right, what an octave's records pull a parameter by has the variance that its slopes say. Where
+    idealisations differ, neighbouring lines err alike and one octave pulls against another: what records add to the
+    variance is then as much larger as the squares of their pulls are (after Liang and Zeger 1986; with few octaves
+    Student's quantiles, Cameron and Miller 2015).
 
     Parameters
     ----------
@@ -66,10 +66,22 @@ def by_octaves(fit: Fit) -> Reals:
     own, count = np.diag(fit.covariance), octaves.size
     if count < FEWEST_OCTAVES:
         return np.zeros(own.size)
-    pulls = np.zeros((count, own.size))
-    np.add.at(pulls, octave_of, fit.jacobian * fit.clean[:, None] / fit.heat)
+    covariance, reduce = fit.covariance, fit.evidence.whitener.reduce
+    pulls, expected = np.zeros((count, own.size)), np.zeros(own.size)
+    for index in range(count):
+        slopes = fit.jacobian * (octave_of == index)[:, None]
+        pulls[index] = fit.clean @ slopes / fit.heat
+        # Smooth errors reach from octave to octave: of a right model, too, pulls add up to more than the whole.
+        expected += _spread(slopes, reduce(slopes), covariance) / fit.heat
     # At the best fit they pull against the prior together, which is no disagreement.
-    moves = (pulls - pulls.mean(axis=0)) @ fit.covariance
-    wider = (float(stats.t.ppf(stats.norm.cdf(WIDTH), count - 1)) / WIDTH) ** 2
-    variance = wider * count / (count - 1.0) * np.sum(moves**2, axis=0)
-    return np.asarray(np.maximum(variance - own, 0.0))
+    moves = (pulls - pulls.mean(axis=0)) @ covariance
+    wider = (float(stats.t.ppf(stats.norm.cdf(WIDTH), count - 1)) / WIDTH) ** 2 * count / (count - 1.0)
+    apart = np.sum(moves**2, axis=0) / np.maximum(expected, np.finfo(float).tiny)
+    told = _spread(fit.jacobian, reduce(fit.jacobian), covariance) / fit.heat
+    return np.asarray(told * np.maximum(wider * apart - 1.0, 0.0))
+
+
+def _spread(slopes: Reals, reduced: Reals, covariance: Reals) -> Reals:
+    """Variance of what deviations with these slopes move the parameters by, (p,)."""
+    information = slopes.T @ slopes - reduced.T @ reduced
+    return np.asarray(np.einsum("ij,jk,ki->i", covariance, information, covariance))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
@@ -39,7 +41,7 @@ class Vehicle(FrozenModel):
     share : float
         Share of everything that the model carries: 1 for the whole vehicle on two rails, 0.5 for the half
         model on one rail.
-    additions : sequence of Resonator, FlexibleMode, DamperSeries and AirSpring
+    additions : sequence of Resonator, FlexibleMode, DamperSeries, AirSpring and Slider
         What the ten degrees do not hold, the same in every car; see :mod:`permway.model.vehicle_additions`. They
         act in the dynamic stiffness over frequency. Matrices, natural frequencies and poles are refused with
         them, and with the matrices every march in time.
@@ -115,6 +117,11 @@ class Vehicle(FrozenModel):
         """
         lags = self.lags_m()
         return np.asarray(0.5 * lags[-1] - lags)
+
+    def stretches(self, suspension: Literal["primary", "secondary"]) -> Reals:
+        """Rows that give each suspension's compression from the degrees, shape (4 n or 2 n, 10 n), 1 and m."""
+        secondary, primary = self._stretches()
+        return np.asarray(np.kron(np.eye(self.cars), primary if suspension == "primary" else secondary))
 
     def matrices(self) -> tuple[Reals, Reals, Reals]:
         """Mass, damping and stiffness matrices, each (10 n, 10 n) (paper, equation (2)).

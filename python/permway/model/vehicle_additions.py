@@ -131,7 +131,39 @@ class AirSpring(FrozenModel):
     transition_Hz: PositiveFloat
 
 
-AnyAddition = Annotated[Resonator | FlexibleMode | DamperSeries | AirSpring, Field(discriminator="type")]
+class Slider(FrozenModel):
+    """A force along each suspension of a kind that saturates: F erf(v / (sqrt(2) v0)), dry friction or a blow-off.
+
+    Over frequency it is the dashpot that does the same work on a motion of a normal distribution, which
+    :mod:`permway.response.sliding` finds; at rest its slope there.
+
+    Parameters
+    ----------
+    suspension : "primary" or "secondary"
+    force_N : float
+        F, the most it gives, of both sides, as the damping is.
+    velocity_m_per_s : float
+        v0, at which it gives two thirds of that.
+    alone : bool
+        Whether it stands for the damper of that suspension: one that blows off. Else it acts beside it.
+    rms_m_per_s : float
+        Root mean square of the velocity at work; 0 at rest.
+    """
+
+    type: Literal["slider"] = "slider"
+    suspension: Literal["primary", "secondary"]
+    force_N: PositiveFloat
+    velocity_m_per_s: PositiveFloat
+    alone: bool = False
+    rms_m_per_s: NonNegativeFloat = 0.0
+
+    @property
+    def damping_Ns_per_m(self) -> float:
+        """Of the dashpot that it works as (Booton 1954)."""
+        return self.force_N * math.sqrt(2.0 / math.pi) / math.hypot(self.velocity_m_per_s, self.rms_m_per_s)
+
+
+AnyAddition = Annotated[Resonator | FlexibleMode | DamperSeries | AirSpring | Slider, Field(discriminator="type")]
 """Any addition, told apart by its `type`."""
 
 
@@ -147,11 +179,15 @@ def check_additions(additions: Sequence[AnyAddition]) -> None:
     for index, addition in enumerate(additions):
         if isinstance(addition, Resonator | FlexibleMode):
             continue
-        kind = addition.suspension if isinstance(addition, DamperSeries) else "air"
-        if kind in seen:
+        if isinstance(addition, Slider):
+            # One that stands for the damper leaves nothing for a spring in series.
+            kinds = {f"{addition.suspension} slider", *([addition.suspension] if addition.alone else [])}
+        else:
+            kinds = {addition.suspension if isinstance(addition, DamperSeries) else "air"}
+        if kinds & seen:
             what = "there is another of that kind: its suspension would be described twice"
             raise fault(what, "additions", index)
-        seen.add(kind)
+        seen |= kinds
 
 
 def hung_mass_kg(additions: Sequence[AnyAddition]) -> float:

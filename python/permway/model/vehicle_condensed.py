@@ -16,6 +16,7 @@ from permway.model.vehicle_additions import (
     DamperSeries,
     FlexibleMode,
     Resonator,
+    Slider,
 )
 
 
@@ -111,12 +112,15 @@ def _suspensions(
     """Complex stiffness of one secondary and of one primary suspension, N/m, each (F,)."""
     found = []
     for name, spring, dashpot in zip(("secondary", "primary"), springs, dashpots, strict=True):
-        elastic, viscous = np.full(omega.size, spring, dtype=np.complex128), 1j * omega * dashpot
+        sliders = [a for a in additions if isinstance(a, Slider) and a.suspension == name]
+        elastic = np.full(omega.size, spring, dtype=np.complex128)
+        viscous = 1j * omega * (0.0 if any(slider.alone for slider in sliders) else dashpot)
         for addition in additions:
             if isinstance(addition, DamperSeries) and addition.suspension == name:
                 viscous = viscous / (1.0 + viscous / addition.stiffness_N_per_m)
             elif isinstance(addition, AirSpring) and name == "secondary":
                 late = 1j * omega / (2.0 * np.pi * addition.transition_Hz)
                 elastic = elastic * (1.0 + addition.rise * late / (1.0 + late))
-        found.append(elastic + viscous)
+        slid = sum(slider.damping_Ns_per_m for slider in sliders)
+        found.append(elastic + viscous + 1j * omega * slid)
     return found

@@ -14,6 +14,8 @@ from permway.recordings.campaign_factors import campaign_under, factors_of
 from permway.recordings.campaign_load import Dataset
 from permway.recordings.campaign_parts import Condition
 from permway.recordings.predict import decay, hammer, material, run, shaker
+from permway.recordings.predict.grid import grid_of
+from permway.recordings.predict.sliding import worked
 from permway.recordings.predict.sweeps import Answer, Need, State, Sweep, plan, solve
 
 __all__ = [
@@ -147,16 +149,20 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
             return found.assign(noise_factor=("sensor", np.array(noise)))
         case "csd" | "psd":
             sensors = [campaign.sensor(name) for name in _names(data, "channel")]
+            grid = grid_of(need.frequency_Hz, _frequency(data), record.segment_s)
+            known = campaign.said.irregularity
+            work = worked(campaign.model, known, condition, grid, need.frequency_Hz, values)
             matrix = run.expected_csd(
-                campaign.model,
-                campaign.said.irregularity,
+                work.model,
+                known,
                 condition,
                 sensors,
                 need.frequency_Hz,
-                run.influence(campaign.model, need.frequency_Hz, values),
+                run.influence(work.model, need.frequency_Hz, values),
                 _frequency(data),
                 segment_s=record.segment_s,
                 interpolated=record.interpolated_Hz is not None,
+                left=work.left,
             )
             power = np.einsum("fcc->cf", matrix).real
             return data[["csd", "psd"]].copy(data={"csd": np.moveaxis(matrix, 0, -1), "psd": power})

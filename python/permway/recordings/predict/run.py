@@ -8,83 +8,17 @@ from functools import lru_cache
 import numpy as np
 
 from permway.arrays import Complexes, Reals
-from permway.errors import InputError
 from permway.model.file import Model
-from permway.model.vehicle import Vehicle
 from permway.recordings.campaign_parts import Condition, IrregularityKnown
 from permway.recordings.channel import Sensor
 from permway.recordings.predict import excitation
 from permway.recordings.predict.excitation import speed_of
 from permway.recordings.predict.grid import Grid, grid_of, solved_lines
+from permway.recordings.predict.motion import influence, pushed, wheels_of
+from permway.recordings.predict.sliding import shares
+from permway.response.sliding import Remainder
 
 __all__ = ["amplitudes", "expected_csd", "influence", "solved_lines", "wheels_of"]
-
-
-def wheels_of(model: Model, condition: Condition) -> Reals:
-    """Where the wheels stand, the leading one first, m.
-
-    Raises
-    ------
-    InputError
-        If the model has no train.
-    """
-    if model.train is None:
-        raise InputError("the model has no train", where="train", remedy="give the model file a [train]")
-    if condition.wheels_m is not None:
-        return np.array(condition.wheels_m, dtype=np.float64)
-    centre = model.train.centre_m if condition.centre_m is None else condition.centre_m
-    return np.asarray(centre + model.train.vehicle.wheel_positions_m())
-
-
-def influence(model: Model, frequency_Hz: Reals, track: Complexes) -> Complexes:
-    """Displacement of every degree of the vehicle per profile under every wheel.
-
-    With wheel, track and contact receptances B: P = -(B_wheel + B_track + 1/k_c)^-1 R, and -P pushes the wheels
-    (paper, equation (19)).
-
-    Parameters
-    ----------
-    model : Model
-    frequency_Hz : ndarray, shape (F,)
-    track : ndarray of complex128, shape (F, wheels, wheels)
-        Receptance at the contacts, m/N.
-
-    Returns
-    -------
-    ndarray of complex128, shape (F, degrees, wheels)
-    """
-    assert model.train is not None
-    vehicle = model.train.vehicle
-    contact = model.train.contact.receptance(vehicle.share)
-    return _influence(vehicle, contact, frequency_Hz.tobytes(), np.ascontiguousarray(track).tobytes())
-
-
-@lru_cache(maxsize=8)
-def _influence(vehicle: Vehicle, contact: float, lines: bytes, track: bytes) -> Complexes:
-    response, wheel = _pushed(vehicle, lines)
-    between = np.frombuffer(track, dtype=np.complex128).reshape(wheel.shape)
-    found = np.asarray(response @ np.linalg.inv(wheel + between + contact * np.eye(wheel.shape[1])))
-    found.flags.writeable = False
-    return found
-
-
-@lru_cache(maxsize=8)
-def _pushed(vehicle: Vehicle, lines: bytes) -> tuple[Complexes, Complexes]:
-    """Displacement of the free vehicle's degrees and of its contacts per force on the contacts, m/N."""
-    found = vehicle.per_wheel_force(np.frombuffer(lines))
-    for values in found:
-        values.flags.writeable = False
-    return found
-
-
-@lru_cache(maxsize=8)
-def _shaken(vehicle: Vehicle, degree: int, lines: bytes) -> Complexes:
-    """Displacement of the free vehicle per force on one degree, m/N, shape (F, degrees)."""
-    stiffness = vehicle.dynamic_stiffness(np.frombuffer(lines))
-    push = np.eye(stiffness.shape[1])[:, [degree]]
-    found = np.linalg.solve(stiffness, np.broadcast_to(push, (stiffness.shape[0], *push.shape)))[:, :, 0]
-    found.flags.writeable = False
-    return np.asarray(found)
 
 
 def amplitudes(
@@ -122,6 +56,7 @@ def expected_csd(
     *,
     segment_s: float,
     interpolated: bool,
+    left: Sequence[Remainder] = (),
 ) -> Complexes:
     """Expectation of Welch's cross-spectral matrix with Hann's window, and the noise of the channels.
 
@@ -138,6 +73,8 @@ def expected_csd(
     segment_s : float
     interpolated : bool
         Whether the record was computed by interpolating transfer functions, lags and all, between `lines_Hz`.
+    left : sequence of Remainder
+        Forces of suspensions that slide, as :func:`permway.recordings.predict.sliding.worked` gives them.
 
     Returns
     -------
@@ -167,6 +104,13 @@ def expected_csd(
         upper = grid.expected(amplitudes(model, condition, sensors, grid.frequency_Hz, spread) * chains, power)
     for moved, density in _sources(model, known, condition, grid, lines_Hz, per_profile):
         upper += expected([source[:, chosen] * _there(sensors, lines_Hz) for source in moved], density)
+    for remainder in left:
+        per_force = pushed(model.train.vehicle, lines_Hz, remainder.rows, per_profile)[:, :, chosen]
+        per_force = per_force * _there(sensors, lines_Hz)[:, None, :]
+        fine = grid.spread(per_force.reshape(lines_Hz.size, -1)).reshape(-1, *per_force.shape[1:])
+        fine *= chains[:, None, :]
+        mixed = np.einsum("ntk,ntc->knc", shares(remainder, grid.frequency_Hz), fine)
+        upper += np.sum([grid.expected(one, np.ones(grid.frequency_Hz.size)) for one in mixed], axis=0)
     rows, columns = np.triu_indices(len(sensors))
     if any(sensor.chain.mains is not None for sensor in sensors):
         for density, size in excitation.hum(sensors, grid):
@@ -191,16 +135,11 @@ def _sources(
     """Sources beside the profile: how each moves the vehicle's degrees, (L, degrees), and their density, (N,)."""
     assert model.train is not None
     vehicle = model.train.vehicle
-    wheels = vehicle.wheel_indices
-    for of, density in excitation.wheels(known, condition, len(wheels), grid):
+    for of, density in excitation.wheels(known, condition, len(vehicle.wheel_indices), grid):
         yield [per_profile[:, :, wheel] for wheel in of], density
     for source in known.pushes:
-        # The free vehicle moves by it, and the contacts answer as to a profile of the wheels' motion, reversed.
-        lines, degree = lines_Hz.tobytes(), vehicle.degrees.index(source.degree)
-        # What the push moves the contacts by is, reversed, what forces on the contacts move the degree by.
-        at_contacts = _pushed(vehicle, lines)[0][:, degree, :]
-        answer = np.einsum("fdw,fw->fd", per_profile, at_contacts)
-        yield [_shaken(vehicle, degree, lines) - answer], excitation.push(source, grid.frequency_Hz)
+        row = np.eye(len(vehicle.degrees))[[vehicle.degrees.index(source.degree)]]
+        yield [pushed(vehicle, lines_Hz, row, per_profile)[:, 0]], excitation.push(source, grid.frequency_Hz)
 
 
 def _chains(sensors: Sequence[Sensor], frequency_Hz: Reals) -> Complexes:

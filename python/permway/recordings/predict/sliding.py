@@ -1,0 +1,105 @@
+"""Trains whose suspensions slide or blow off: the model at work in one run, and what shakes it beside."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from permway.arrays import Complexes, Reals
+from permway.model.file import Model
+from permway.model.vehicle import Vehicle
+from permway.recordings.campaign_parts import Condition, IrregularityKnown
+from permway.recordings.predict import excitation
+from permway.recordings.predict.excitation import speed_of
+from permway.recordings.predict.grid import Grid
+from permway.recordings.predict.motion import influence, wheels_of
+from permway.response.sliding import Remainder, at_work, remainders, sliders_of
+
+STEP_HZ = 0.125
+"""Of the spectra of velocities: a lag of 0.4 s turns by a third of a radian from one to the next."""
+
+
+@dataclass(frozen=True, eq=False)
+class Work:
+    """A model at work in one run.
+
+    Attributes
+    ----------
+    model : Model
+        Its sliders moving as fast as they do.
+    left : list of Remainder
+        Over multiples of `STEP_HZ`.
+    """
+
+    model: Model
+    left: list[Remainder]
+
+
+def worked(
+    model: Model, known: IrregularityKnown, condition: Condition, grid: Grid, lines_Hz: Reals, track: Complexes
+) -> Work:
+    """The model at work in a run; itself where nothing slides.
+
+    Parameters
+    ----------
+    grid : Grid
+        Of the record.
+    lines_Hz : ndarray, shape (L,)
+    track : ndarray of complex128, shape (L, wheels, wheels)
+        Receptance at the contacts, m/N.
+
+    Raises
+    ------
+    SolveError
+        If no velocity at work is found.
+    """
+    train = model.train
+    assert train is not None
+    if not sliders_of(train.vehicle):
+        return Work(model, [])
+    uniform = np.asarray(STEP_HZ * np.arange(int(lines_Hz[-1] / STEP_HZ) + 1), dtype=np.float64)
+    wheels = wheels_of(model, condition)
+    late = np.exp(-2j * np.pi * np.outer(uniform, (wheels[0] - wheels) / speed_of(condition)))
+    rough = np.sqrt(_resampled(excitation.profile(model, known, condition, grid), grid.frequency_Hz, uniform))
+    rough[uniform < lines_Hz[0]] = 0.0
+    left = np.clip(np.searchsorted(lines_Hz, uniform, side="right") - 1, 0, lines_Hz.size - 2)
+    share = np.clip((uniform - lines_Hz[left]) / (lines_Hz[left + 1] - lines_Hz[left]), 0.0, 1.0)
+
+    def motion(vehicle: Vehicle) -> Complexes:
+        per_profile = influence(with_vehicle(model, vehicle), lines_Hz, track)
+        between = per_profile[left] + share[:, None, None] * (per_profile[left + 1] - per_profile[left])
+        return np.asarray(rough[:, None] * np.einsum("fdw,fw->fd", between, late))
+
+    vehicle = at_work(train.vehicle, uniform, motion)
+    return Work(with_vehicle(model, vehicle), remainders(vehicle, STEP_HZ, motion(vehicle)))
+
+
+def shares(left: Remainder, frequency_Hz: Reals) -> Complexes:
+    """Independent sources of unit density that make up the forces left over.
+
+    Returns
+    -------
+    ndarray of complex128, shape (F, ties, sources)
+        N per root of hertz.
+    """
+    place = np.clip(frequency_Hz / STEP_HZ, 0.0, len(left.density) - 1.001)
+    at = place.astype(np.int64)
+    away = (place - at)[:, None, None]
+    density = (1.0 - away) * left.density[at] + away * left.density[at + 1]
+    power, modes = np.linalg.eigh(density)
+    return np.asarray(modes * np.sqrt(np.maximum(power, 0.0))[:, None, :])
+
+
+def with_vehicle(model: Model, vehicle: Vehicle) -> Model:
+    """The model with another vehicle."""
+    assert model.train is not None
+    return model.model_copy(update={"train": model.train.model_copy(update={"vehicle": vehicle})})
+
+
+def _resampled(density: Reals, frequency_Hz: Reals, onto_Hz: Reals) -> Reals:
+    """A density on another grid, its power kept from each to the next."""
+    power = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(frequency_Hz))])
+    half = 0.5 * STEP_HZ
+    found = np.interp(onto_Hz + half, frequency_Hz, power) - np.interp(onto_Hz - half, frequency_Hz, power)
+    return np.asarray(found / STEP_HZ)
