@@ -58,6 +58,9 @@ _TRANSLATED: dict[str, Callable[[Numbers], Numbers]] = {
     "axlebox_absorber": _on_board,
     "wheelset_bending": _parted,
     "damper_series": lambda t: {"relaxation_time_s": 1.0 / (2.0 * np.pi * t["corner_Hz"])},
+    # Of both sides; the velocity rounds off two different laws.
+    "primary_friction": lambda t: {"force_N": t["friction_N"] / HALF},
+    "blow_off_damper": lambda t: {"force_N": t["most_N"] / HALF},
     "baseplate_mass": lambda t: {
         "mass_kg": t["mass_kg"],
         "share": t["lower_over_upper"] / (1.0 + t["lower_over_upper"]),

@@ -52,9 +52,9 @@ def by_octaves(fit: Fit) -> Reals:
     """What octaves pull parameters by beyond what noise and smooth errors do, as a variance (p,).
 
     If the model is right, what an octave's records pull a parameter by has the variance that its slopes say. Where
-    idealisations differ, neighbouring lines err alike and one octave pulls against another: what records add to the
-    variance is then as much larger as the squares of their pulls are (after Liang and Zeger 1986; with few octaves
-    Student's quantiles, Cameron and Miller 2015).
+    idealisations differ, neighbouring lines err alike and one octave pulls against another: what records add to
+    the variance is then as much larger as the squares of their pulls are (after Liang and Zeger 1986; with few
+    octaves Student's quantiles, Cameron and Miller 2015).
 
     Parameters
     ----------

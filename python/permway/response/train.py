@@ -31,6 +31,7 @@ from permway.response.receptance import (
     frequency_coordinate,
     receptance,
 )
+from permway.response.sliding import at_work
 
 
 class Train(FrozenModel):
@@ -83,6 +84,9 @@ def train_response(
 ) -> xr.Dataset:
     """Random response of train and line to a moving irregularity (paper, equations (16) to (20)).
 
+    Suspensions that slide act as the dashpots that do the same work in the motion over these frequencies; what
+    their forces are beside that is left out.
+
     Parameters
     ----------
     line, train, irregularity
@@ -130,19 +134,24 @@ def train_response(
     )
     to_places = line_response["receptance"].values
     track = to_places[:, : len(wheels), :]
-    vehicle = train.vehicle
-    contact = train.contact.receptance(vehicle.share)
-    # What overflows is found below, with its frequency.
-    with np.errstate(all="ignore"):
-        try:
-            wheel = vehicle.wheel_receptance(frequency)
-        except np.linalg.LinAlgError as error:
-            raise SolveError(f"the vehicle alone is singular between {_band(frequency)}") from error
-        density = irregularity.density(frequency, train.speed_m_per_s, conversion)
-        excitation = pseudo_excitation(frequency, density, vehicle.lags_m(), train.speed_m_per_s)
+    contact = train.contact.receptance(train.vehicle.share)
+
+    def on(vehicle: Vehicle) -> tuple[Complexes, Complexes, Complexes]:
+        """Receptance of the wheels, forces between wheels and rail, motion of the vehicle."""
+        wheel = vehicle.wheel_receptance(frequency)
         force = wheel_rail_forces(wheel, track, contact, excitation, frequency_Hz=frequency)
         # Compression pushes the rail down and the wheel up.
-        on_vehicle = vehicle.response_to_wheel_force(frequency, -force)
+        return wheel, force, vehicle.response_to_wheel_force(frequency, -force)
+
+    # What overflows is found below, with its frequency.
+    with np.errstate(all="ignore"):
+        density = irregularity.density(frequency, train.speed_m_per_s, conversion)
+        excitation = pseudo_excitation(frequency, density, train.vehicle.lags_m(), train.speed_m_per_s)
+        try:
+            vehicle = at_work(train.vehicle, frequency, lambda moving: on(moving)[2])
+            wheel, force, on_vehicle = on(vehicle)
+        except np.linalg.LinAlgError as error:
+            raise SolveError(f"the vehicle alone is singular between {_band(frequency)}") from error
         on_line = np.einsum("fsw,fw->fs", to_places, force)
         total = wheel + track + contact * np.eye(len(wheels))
 

@@ -28,6 +28,7 @@ INJECTED: dict[str, tuple[str, tuple[float, float, float], dict[str, float]]] = 
     "bogie_modes": ("bogies", (-0.02, -0.06, -0.15), {"frequency_Hz": 40.0, "loss_factor": 0.04}),
     "body_bending": ("body", (-0.05, -0.15, -0.4), {"frequency_Hz": 11.0, "loss_factor": 0.04}),
     "damper_series_stiffness": ("primary dampers", (0.0005, 0.001, 0.003), {}),
+    "suspension_friction": ("primary suspension", (30.0, 100.0, 500.0), {"velocity_m_per_s": 0.01}),
     "air_spring": ("secondary springs", (0.5, 1.5, 4.0), {"transition_Hz": 8.0}),
     "pad_preload": ("pad", (1.05, 1.2, 1.6), {"unloaded_factor": 1.0}),
     "pad_amplitude": (

@@ -18,6 +18,7 @@ class PrimaryFriction(Effect):
     """Dry friction beside the primary suspension."""
 
     KIND = "primary_friction"
+    ID = "suspension_friction"
     FAMILY = "friction"
     DOMAIN = "vehicle"
 
@@ -53,6 +54,7 @@ class BlowOffDamper(Effect):
     """Primary dampers that give way above some force."""
 
     KIND = "blow_off_damper"
+    ID = "suspension_friction"
     FAMILY = "friction"
     DOMAIN = "vehicle"
 

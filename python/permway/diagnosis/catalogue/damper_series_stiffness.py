@@ -8,7 +8,7 @@ from typing import Literal
 
 from permway.diagnosis.catalogue._vehicle import vehicle_of, with_addition
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
-from permway.model.vehicle_additions import DamperSeries
+from permway.model.vehicle_additions import DamperSeries, Slider
 from permway.recordings.campaign import Campaign
 
 ID = "damper_series_stiffness"
@@ -32,7 +32,8 @@ Suspension = Literal["primary", "secondary"]
 SUSPENSIONS: tuple[Suspension, ...] = ("primary", "secondary")
 
 
-def _damping(campaign: Campaign, suspension: Suspension) -> float:
+def damping_of(campaign: Campaign, suspension: Suspension) -> float:
+    """Of a vehicle's dampers of a kind, N s/m; 0 where none passes."""
     vehicle = vehicle_of(campaign)
     if vehicle is None:
         return 0.0
@@ -40,7 +41,7 @@ def _damping(campaign: Campaign, suspension: Suspension) -> float:
 
 
 def _amend(suspension: Suspension, campaign: Campaign, values: Mapping[str, float]) -> Campaign:
-    time, damping = values["relaxation_time_s"], _damping(campaign, suspension)
+    time, damping = values["relaxation_time_s"], damping_of(campaign, suspension)
     if time == 0.0 or damping == 0.0:
         return campaign
     return with_addition(campaign, DamperSeries(suspension=suspension, stiffness_N_per_m=damping / time))
@@ -54,9 +55,9 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """One for each suspension that has dampers, and none in series with them yet."""
     vehicle = vehicle_of(situation.campaign)
     for suspension in SUSPENSIONS:
-        if vehicle is None or _damping(situation.campaign, suspension) == 0.0:
+        if vehicle is None or damping_of(situation.campaign, suspension) == 0.0:
             continue
-        if any(isinstance(a, DamperSeries) and a.suspension == suspension for a in vehicle.additions):
+        if any(isinstance(a, DamperSeries | Slider) and a.suspension == suspension for a in vehicle.additions):
             continue
         yield Hypothesis(
             entry=ID,

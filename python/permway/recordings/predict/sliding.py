@@ -19,6 +19,9 @@ from permway.response.sliding import Remainder, at_work, remainders, sliders_of
 STEP_HZ = 0.125
 """Of the spectra of velocities: a lag of 0.4 s turns by a third of a radian from one to the next."""
 
+ROUNDING = 1e-6
+"""Share of the forces' power that is added to each of them, so that their density has a root."""
+
 
 @dataclass(frozen=True, eq=False)
 class Work:
@@ -87,8 +90,9 @@ def shares(left: Remainder, frequency_Hz: Reals) -> Complexes:
     at = place.astype(np.int64)
     away = (place - at)[:, None, None]
     density = (1.0 - away) * left.density[at] + away * left.density[at + 1]
-    power, modes = np.linalg.eigh(density)
-    return np.asarray(modes * np.sqrt(np.maximum(power, 0.0))[:, None, :])
+    size = np.einsum("fii->f", density).real + np.finfo(float).tiny
+    # Forces that are all but one another leave eigenvalues that rounding may put below zero.
+    return np.asarray(np.linalg.cholesky(density + (ROUNDING * size)[:, None, None] * np.eye(density.shape[1])))
 
 
 def with_vehicle(model: Model, vehicle: Vehicle) -> Model:
