@@ -16,8 +16,9 @@ from permway.recordings.predict.grid import Grid
 from permway.recordings.predict.motion import influence, wheels_of
 from permway.response.sliding import Remainder, at_work, remainders, sliders_of
 
-STEP_HZ = 0.125
-"""Of the spectra of velocities: a lag of 0.4 s turns by a third of a radian from one to the next."""
+STEP_HZ = 0.25
+"""Of the spectra of velocities: a lag of 0.4 s turns them by 0.6 rad from one to the next, of which interpolating
+loses less than 5 %, and of what two bogies have in common alone."""
 
 ROUNDING = 1e-6
 """Share of the forces' power that is added to each of them, so that their density has a root."""
