@@ -6,14 +6,14 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
+from permway.diagnosis.choose import BEYOND, elsewhere, finalists_of
 from permway.diagnosis.hypothesis import Hypothesis, Where, linear_free
 from permway.diagnosis.quick import Quick
-from permway.diagnosis.search import _finalists
 
 RING = cast(Any, SimpleNamespace(fit=SimpleNamespace(deviations=np.zeros(2000))))
 
 
-def quick(entry: str, gain: float, *names: str) -> Quick:
+def quick(entry: str, gain: float, *names: str, at_m: float = 0.0) -> Quick:
     free = tuple(linear_free(name, "1", 0.0, 1.0, -5.0, 5.0) for name in names)
     hypothesis = Hypothesis(
         entry=entry,
@@ -21,14 +21,14 @@ def quick(entry: str, gain: float, *names: str) -> Quick:
         family=f"family of {entry}",
         free=free,
         amend=lambda campaign, _: campaign,
-        locate=lambda _: Where(),
+        locate=lambda _: Where(x_m=(at_m, at_m)),
         starts=((0.0,) * len(free),),
     )
     return Quick(hypothesis, np.zeros(len(free)), np.zeros(0), gain)
 
 
 def said(*followed: Quick) -> list[tuple[str, float]]:
-    return [(q.hypothesis.entry, q.gain) for q in _finalists(followed, RING, 10.0)]
+    return [(q.hypothesis.entry, q.gain) for q in finalists_of(followed, RING, 10.0)]
 
 
 def test_of_one_form_the_best_and_of_a_second_form_what_does_nearly_as_well() -> None:
@@ -48,3 +48,20 @@ def test_three_effects_at_most_and_none_far_behind_or_below_the_threshold() -> N
     ]
     assert said(quick("a", 900.0, "size"), quick("b", 200.0, "size")) == [("a", 900.0)]
     assert said(quick("a", 15.0, "size")) == []
+
+
+def test_another_place_is_fitted_where_the_first_asks_for_what_nobody_would_believe() -> None:
+    first, other = quick("bearing", 900.0, "factor"), quick("bearing", 700.0, "factor", at_m=32.0)
+    third = quick("bearing", 600.0, "factor", at_m=64.0)
+    followed = [first, quick("bearing", 880.0, "factor"), quick("crack", 800.0, "factor", at_m=9.0), other, third]
+
+    def fit(z: float, name: str = "bearing.k") -> Any:
+        parameters = SimpleNamespace(known={"bearing.k": None})
+        evidence = SimpleNamespace(campaign=SimpleNamespace(parameters=parameters))
+        return SimpleNamespace(free=(SimpleNamespace(name=name),), z=np.array([z]), evidence=evidence)
+
+    assert elsewhere([(first, fit(-BEYOND - 1.0))], followed) == [other]
+    assert elsewhere([(first, fit(BEYOND - 1.0))], followed) == []
+    # The effect's own size may be what it likes.
+    assert elsewhere([(first, fit(9.0, "1.factor"))], followed) == []
+    assert elsewhere([], followed) == []

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from permway.diagnosis.choose import penalty
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.result import Candidate, Stage
-from permway.diagnosis.search import Round, penalty
+from permway.diagnosis.search import Round
 
 
 def candidates(found: Round) -> list[Candidate]:

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from permway.diagnosis.choose import lines, penalty
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.heldout import Gain
 from permway.diagnosis.quick import Quick
-from permway.diagnosis.search import Finalist, Round, lines, penalty
+from permway.diagnosis.search import Finalist, Round
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL
 from permway.diagnosis.verdict_parts import ClassMember

@@ -7,13 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from permway.diagnosis import decide, grammar
+from permway.diagnosis.choose import lines, penalty
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Situation, Where
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.recovered import same_place
-from permway.diagnosis.search import Finalist, Round, lines, penalty, search
+from permway.diagnosis.search import Finalist, Round, search
 from permway.diagnosis.spot import Found, Spot
 from permway.model.bodies import Beam
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from permway.diagnosis.catalogue import irregularity_level
+from permway.diagnosis.choose import lines
 from permway.diagnosis.decide import NOVEL_PRIOR
 from permway.diagnosis.fit import WIDTH, Fit
 from permway.diagnosis.hypothesis import Where
-from permway.diagnosis.search import lines
 from permway.diagnosis.verdict import NOVEL
 from permway.diagnosis.verdict_parts import ClassMember, Effect, Estimate, Mechanics, Place
 

@@ -13,9 +13,9 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
+from permway.diagnosis.choose import penalty
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.quick import Quick
-from permway.diagnosis.search import penalty
 
 DRAWS = 2000
 LEVEL = 0.95

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from permway.diagnosis import decide
+from permway.diagnosis.choose import lines
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.e_value import log_e_value
 from permway.diagnosis.fit import Fit, gained
@@ -12,7 +13,7 @@ from permway.diagnosis.heldout import Rest, at_fault, gains, parts
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.refit import weighed_anew
-from permway.diagnosis.search import Finalist, Round, lines
+from permway.diagnosis.search import Finalist, Round
 from permway.diagnosis.speak import Proof
 from permway.diagnosis.unsteady import unsteady
 

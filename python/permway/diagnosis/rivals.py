@@ -17,6 +17,7 @@ import numpy as np
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue import hypotheses
+from permway.diagnosis.choose import lines
 from permway.diagnosis.classifier import Classifier
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.discrepancy import Discrepancy, discrepancy
@@ -26,7 +27,6 @@ from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.recalibrate import recalibrate
-from permway.diagnosis.search import lines
 from permway.diagnosis.verdict import NOVEL
 from permway.recordings.campaign import Campaign, read_campaign
 

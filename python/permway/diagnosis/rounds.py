@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from permway.diagnosis.catalogue import hypotheses
+from permway.diagnosis.choose import BEYOND, lines, penalty
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.decide import E_VALUE
@@ -21,7 +22,7 @@ from permway.diagnosis.nulls import threshold
 from permway.diagnosis.quick import Quick, stacked
 from permway.diagnosis.recalibrate import UNFIT, recalibrate
 from permway.diagnosis.refit import settled, weighed_anew
-from permway.diagnosis.search import Finalist, Round, lines, penalty, search
+from permway.diagnosis.search import Finalist, Round, search
 from permway.diagnosis.slips import MOST, gain_by_cell, mended
 from permway.diagnosis.spot import Found
 from permway.errors import InputError, SolveError
@@ -31,8 +32,8 @@ MOST_EFFECTS = 3
 MOST_OF_IT = 0.5
 """Share of what earlier effects leave that may be left by a smaller one."""
 
-BEYOND, BELIEVED = 5.0, 2.5
-"""Standard deviations of its prior beyond which nobody would believe a parameter, and within which one does."""
+BELIEVED = 2.5
+"""Standard deviations of its prior within which one believes a parameter."""
 
 
 def effects(

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from permway.diagnosis.choose import CLOSE, FOLLOWED, WORTH, chosen_of, elsewhere, finalists_of, lines, penalty
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.felt import FELT, moved
 from permway.diagnosis.fit import Fit, gained
@@ -18,26 +19,11 @@ from permway.diagnosis.quick_files import noted, recalled
 from permway.diagnosis.refit import relearnt
 from permway.errors import InputError, SolveError
 
-FOLLOWED, PER_FORM = 10, 2
-"""Hypotheses that are followed after screening, in all and of one form of an effect."""
-
 TOGETHER = 2
 """Hypotheses that promise more than all others gain, and gain nothing while the base moves linearly."""
 
-FINALISTS = 3
-"""Effects of which hypotheses are fitted in full."""
-
-WORTH = 0.05
-"""Share of the best gain below which a hypothesis is not followed."""
-
 PROMISE = 3.0
 """Times that its other parameters may better what the start of a hypothesis promises."""
-
-RIVAL = 0.3
-"""Share of the best gain below which a hypothesis is no finalist."""
-
-CLOSE = 0.7
-"""Share of the best finalist's gain from which a rival may yet be the better one."""
 
 FITS, CLOSE_TO_FITTING = 1.2, 0.95
 """Mean square of the deviations below which a finalist explains all there is, and the share of its gain from which
@@ -118,16 +104,6 @@ class Round:
     threshold: float
 
 
-def penalty(quick: Quick, ring: Ring) -> float:
-    """What BIC asks of a hypothesis: its parameters times the logarithm of the number of lines."""
-    return float(len(quick.hypothesis.free) * np.log(lines(ring.fit)))
-
-
-def lines(fit: Fit) -> int:
-    """Lines of all records: real and imaginary parts are two rows of one."""
-    return max(2, fit.deviations.size // 2)
-
-
 def search(
     fit: Fit,
     hypotheses: Iterable[Hypothesis],
@@ -170,7 +146,7 @@ def search(
     else:
         screened, followed = (recalled(kept, offered, name) for name in ("screened", "followed"))
     least = threshold(ring, screened)
-    rivals = _finalists(followed, ring, least)
+    rivals = finalists_of(followed, ring, least)
     fitted: list[tuple[Quick, Fit]] = []
     close = CLOSE
     for index, one in enumerate(rivals):
@@ -184,6 +160,11 @@ def search(
         with contextlib.suppress(InputError, SolveError):
             fitted.append((one, ring.full(one, prefix=prefix, settle=False)))
     fitted.sort(key=lambda pair: pair[1].objective + penalty(pair[0], ring))
+    for one in elsewhere(fitted, followed):
+        progress("fit", len(rivals), len(rivals) + 1)
+        with contextlib.suppress(InputError, SolveError):
+            fitted.append((one, ring.full(one, prefix=prefix, settle=False)))
+            fitted.sort(key=lambda pair: pair[1].objective + penalty(pair[0], ring))
     finalists, best = [], np.inf
     for index, (one, rough) in enumerate(fitted):
         if fit.objective - rough.objective < close * (fit.objective - fitted[0][1].objective):
@@ -228,7 +209,7 @@ def _looked(
             screened.append(found)
             best = max(best, found.gain)
     screened.sort(key=lambda q: penalty(q, ring) - q.gain)
-    chosen = _chosen(screened, ring, most)
+    chosen = chosen_of(screened, ring, most)
     followed: list[Quick] = []
     for index, one in enumerate(chosen):
         progress("follow", index, len(chosen))
@@ -253,33 +234,3 @@ def _key(hypothesis: Hypothesis) -> tuple[str, ...]:
     """What makes a hypothesis the same as one of an earlier round: effect, place, and what is free."""
     values = {f.name: f.value(float(z)) for f, z in zip(hypothesis.free, hypothesis.starts[0], strict=True)}
     return *hypothesis.form, hypothesis.locate(values).label
-
-
-def _chosen(screened: Sequence[Quick], ring: Ring, most: int) -> list[Quick]:
-    """The best, not too many of one form of an effect."""
-    if not screened:
-        return []
-    best = max(q.gain for q in screened)
-    found: list[Quick] = []
-    for quick in screened:
-        taken = sum(q.hypothesis.form == quick.hypothesis.form for q in found)
-        # A step that has not arrived may still double its gain.
-        promising = 3.0 * quick.gain > penalty(quick, ring) and quick.gain > WORTH * best
-        if promising and taken < PER_FORM and len(found) < most:
-            found.append(quick)
-    return found
-
-
-def _finalists(followed: Sequence[Quick], ring: Ring, threshold: float) -> list[Quick]:
-    """The best of each effect that passes the threshold, and of its other forms that do nearly as well."""
-    found: dict[tuple[str, ...], Quick] = {}
-    leading: dict[str, float] = {}
-    for quick in followed:
-        form, entry = quick.hypothesis.form, quick.hypothesis.entry
-        best = max(leading.values(), default=quick.gain)
-        passes = quick.gain - penalty(quick, ring) > threshold and quick.gain > RIVAL * best
-        nearly = entry in leading and quick.gain > CLOSE * leading[entry]
-        if passes and form not in found and (nearly or (entry not in leading and len(leading) < FINALISTS)):
-            found[form] = quick
-            leading.setdefault(entry, quick.gain)
-    return list(found.values())[: FINALISTS + 1]

@@ -10,6 +10,7 @@ import numpy as np
 from permway.arrays import Reals
 from permway.diagnosis import decide
 from permway.diagnosis.catalogue import irregularity_level
+from permway.diagnosis.choose import BEYOND, lines
 from permway.diagnosis.decide import Conditions
 from permway.diagnosis.detectable import detectable
 from permway.diagnosis.fit import WIDTH, Fit
@@ -17,8 +18,7 @@ from permway.diagnosis.heldout import Gain
 from permway.diagnosis.labels import Mislabelled
 from permway.diagnosis.level import beyond
 from permway.diagnosis.recalibrate import UNFIT
-from permway.diagnosis.rounds import BEYOND
-from permway.diagnosis.search import Finalist, Round, lines
+from permway.diagnosis.search import Finalist, Round
 from permway.diagnosis.speak_effect import bands_of, effect_of, of_another_form
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL, Status, Verdict

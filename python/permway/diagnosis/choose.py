@@ -1,0 +1,85 @@
+"""Which hypotheses are followed, and which fitted in full."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from permway.diagnosis.compete import Ring
+from permway.diagnosis.fit import Fit
+from permway.diagnosis.quick import Quick
+
+FOLLOWED, PER_FORM = 10, 2
+"""Hypotheses that are followed after screening, in all and of one form of an effect."""
+
+FINALISTS = 3
+"""Effects of which hypotheses are fitted in full."""
+
+WORTH = 0.05
+"""Share of the best gain below which a hypothesis is not followed."""
+
+RIVAL = 0.3
+"""Share of the best gain below which a hypothesis is no finalist."""
+
+CLOSE = 0.7
+"""Share of the best finalist's gain from which a rival may yet be the better one."""
+
+BEYOND = 5.0
+"""Standard deviations of its prior beyond which nobody would believe a parameter."""
+
+
+def penalty(quick: Quick, ring: Ring) -> float:
+    """What BIC asks of a hypothesis: its parameters times the logarithm of the number of lines."""
+    return float(len(quick.hypothesis.free) * np.log(lines(ring.fit)))
+
+
+def lines(fit: Fit) -> int:
+    """Lines of all records: real and imaginary parts are two rows of one."""
+    return max(2, fit.deviations.size // 2)
+
+
+def chosen_of(screened: Sequence[Quick], ring: Ring, most: int) -> list[Quick]:
+    """The best, not too many of one form of an effect."""
+    if not screened:
+        return []
+    best = max(q.gain for q in screened)
+    found: list[Quick] = []
+    for quick in screened:
+        taken = sum(q.hypothesis.form == quick.hypothesis.form for q in found)
+        # A step that has not arrived may still double its gain.
+        promising = 3.0 * quick.gain > penalty(quick, ring) and quick.gain > WORTH * best
+        if promising and taken < PER_FORM and len(found) < most:
+            found.append(quick)
+    return found
+
+
+def finalists_of(followed: Sequence[Quick], ring: Ring, threshold: float) -> list[Quick]:
+    """The best of each effect that passes the threshold, and of its other forms that do nearly as well."""
+    found: dict[tuple[str, ...], Quick] = {}
+    leading: dict[str, float] = {}
+    for quick in followed:
+        form, entry = quick.hypothesis.form, quick.hypothesis.entry
+        best = max(leading.values(), default=quick.gain)
+        passes = quick.gain - penalty(quick, ring) > threshold and quick.gain > RIVAL * best
+        nearly = entry in leading and quick.gain > CLOSE * leading[entry]
+        if passes and form not in found and (nearly or (entry not in leading and len(leading) < FINALISTS)):
+            found[form] = quick
+            leading.setdefault(entry, quick.gain)
+    return list(found.values())[: FINALISTS + 1]
+
+
+def elsewhere(fitted: Sequence[tuple[Quick, Fit]], followed: Sequence[Quick]) -> list[Quick]:
+    """The next best place of the leading effect, where that brings a parameter to where nobody would believe it.
+
+    One of two bearings that is softer, and the other that is stiffer, both of them softer, differ in that alone.
+    """
+    if not fitted:
+        return []
+    leading, fit = fitted[0]
+    known = fit.evidence.campaign.parameters.known
+    if all(abs(float(z)) <= BEYOND for f, z in zip(fit.free, fit.z, strict=True) if f.name in known):
+        return []
+    place = leading.hypothesis.locate(leading.values)
+    alike = [q for q in followed if q.hypothesis.form == leading.hypothesis.form]
+    return [q for q in alike if q.hypothesis.locate(q.values) != place][:1]
