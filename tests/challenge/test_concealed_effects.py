@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from permway.challenge.case import _kinds
 from permway.challenge.effects import CATALOGUE, NONLINEAR, OUTSIDE, STRENGTHS, TWINS, Effect
+from permway.challenge.effects.leaving import DippedWelds
 from permway.challenge.mesh import Mesh
 from permway.challenge.plan import Plan
+from permway.diagnosis.catalogue import entries
 from short_deck import TWO_SPANS, small_plan, small_site
 
 FREQUENCY = np.array([3.0, 11.0, 33.0, 90.0, 170.0, 290.0, 395.0])
@@ -67,7 +69,8 @@ def test_vehicle_effect_is_felt_on_board(kind: type[Effect]) -> None:
 def test_truth_of_an_effect_says_what_where_and_how_much(kind: type[Effect]) -> None:
     truth = json.loads(json.dumps(drawn(kind).truth()))
     assert {"id", "kind", "family", "domain", "place", "parameters", "mechanical", "twins", "words"} == set(truth)
-    assert (truth["id"] is None) == (kind not in CATALOGUE)
+    assert truth["id"] in entries() if kind in CATALOGUE else truth["id"] in (None, *entries())
+    assert (truth["id"] is None) == (kind in (*OUTSIDE, DippedWelds))
     assert truth["place"]
     assert truth["mechanical"]
 
