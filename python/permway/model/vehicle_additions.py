@@ -135,8 +135,8 @@ class Slider(FrozenModel):
     """A force along each suspension of a kind that saturates: F erf(v / (sqrt(2) v0)), dry friction or a blow-off.
 
     Over frequency it is the dashpot that does the same work on a motion of a normal distribution, which
-    :mod:`permway.response.sliding` finds; at rest its slope there. Its velocity is taken between the degrees as they
-    are read, flexible modes or not.
+    :mod:`permway.response.sliding` finds; at rest its slope there. Its velocity is taken between the degrees as
+    they are read, flexible modes or not.
 
     Parameters
     ----------
