@@ -111,6 +111,16 @@ def test_a_solve_takes_the_dashpot_at_work() -> None:
     assert bogie(blown, 1e6) == pytest.approx(bogie(undamped, 1.0), rel=2e-2)
 
 
+def test_one_frequency_tells_no_velocity() -> None:
+    train = Train(
+        vehicle=with_slider(suspension="primary", force_N=800.0, velocity_m_per_s=0.01),
+        centre_m=16.0,
+        speed_m_per_s=70.0,
+    )
+    with pytest.raises(InputError, match="needs a band"):
+        train_response(slab_track_viaduct_32m(), train, GermanLow(), [20.0], temperature_C=20.0)
+
+
 def test_a_damper_that_blows_off_has_no_spring_in_series() -> None:
     slider = Slider(suspension="primary", force_N=1.0, velocity_m_per_s=1.0, alone=True)
     series = DamperSeries(suspension="primary", stiffness_N_per_m=1e6)

@@ -16,15 +16,7 @@ FEWEST_OCTAVES = 6
 
 
 def unsteady(fit: Fit, found: Sequence[Gain]) -> Reals:
-    """Variance of the parameters (p,) beyond the fit's own: the more of what parts and what octaves tell.
-
-    Parameters
-    ----------
-    fit : Fit
-        To all records.
-    found : sequence of Gain
-        Of it as the amended model, part by part.
-    """
+    """Variance of the parameters (p,) beyond the fit's own: what parts tell, or octaves, whichever is more."""
     return np.maximum(by_parts(fit, found), by_octaves(fit))
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from permway.arrays import Complexes, Reals
-from permway.errors import SolveError
+from permway.errors import InputError, SolveError
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_additions import Slider
 
@@ -64,12 +64,21 @@ def at_work(vehicle: Vehicle, frequency_Hz: Reals, motion: Motion) -> Vehicle:
 
     Raises
     ------
+    InputError
+        For a single frequency, over which nothing has a velocity.
     SolveError
         If no velocity is found.
     """
     sliders = sliders_of(vehicle)
     if not sliders:
         return vehicle
+    if frequency_Hz.size < 2:
+        raise InputError(
+            "a suspension that slides needs a band, for how it slides depends on how fast it moves",
+            where="frequency_Hz",
+            value=frequency_Hz.tolist(),
+            remedy="give all frequencies over which it moves",
+        )
     speeds = np.array([slider.rms_m_per_s for slider in sliders])
     found = _speeds(vehicle, speeds, frequency_Hz, motion)
     slope = np.zeros(speeds.size)
