@@ -13,12 +13,14 @@ from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
 from permway.diagnosis.catalogue import sensor_gain
+from permway.diagnosis.catalogue._change import with_chain
+from permway.diagnosis.catalogue._excite import chain_with
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.e_value import _halves, log_e_value
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather
-from permway.diagnosis.heldout import Rest, gains, parts
+from permway.diagnosis.heldout import Rest, at_fault, gains, parts
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.recordings.campaign import Campaign
@@ -116,7 +118,7 @@ def test_halves_are_points_and_lines_and_of_several_tables_whole_tables(evidence
 
 def test_with_nothing_missing_the_e_value_passes_20_once_in_twenty_times_at_most(tmp_path: Path) -> None:
     """An effect that was not chosen by these records, on twenty campaigns without it: P(E > 20) <= 1/20."""
-    passed, drawn = 0, []
+    passed, drawn = np.zeros(2), []
     for seed in range(20):
         base = recalibrate(gather(simulate(tmp_path / str(seed), seed).campaign, threads=1), learn=False)
         (effect,) = (
@@ -124,8 +126,27 @@ def test_with_nothing_missing_the_e_value_passes_20_once_in_twenty_times_at_most
         )
         ring = Ring(base)
         amended = ring.full(ring.quick(effect), prefix="1.")
-        drawn.append(log_e_value(Rest(base), Rest(amended), 1))
-        passed += drawn[-1] > np.log(20.0)
+        before, after = Rest(base), Rest(amended)
+        faults = list(at_fault(base.evidence, ("deck@3",)))
+        drawn.append([log_e_value(before, after, 1, some) for some in ([], faults)])
+        passed += np.array(drawn[-1]) > np.log(20.0)
     # Four or more would come once in sixty times.
-    assert passed <= 3
-    assert np.exp(np.minimum(drawn, 3.0)).mean() < 2.0
+    assert (passed <= 3).all()
+    assert (np.exp(np.minimum(drawn, 3.0)).mean(axis=0) < 2.0).all()
+
+
+def test_a_fault_of_a_chain_is_told_by_the_rest_of_its_band(tmp_path: Path) -> None:
+    """Where chains err by much, each blow tells of the next what the chain does, called a fault or not."""
+    case = simulate(
+        tmp_path / "c",
+        5,
+        smooth=0.15,
+        amend=lambda c: with_chain(c, "deck@3", chain_with(c.sensor("deck@3").chain, gain=0.4)),
+    )
+    base = recalibrate(gather(case.campaign, threads=1))
+    (effect,) = (h for h in sensor_gain.hypotheses(Situation(base, ())) if h.locate({}).channels == ("deck@3",))
+    ring = Ring(base)
+    amended = ring.full(ring.quick(effect), prefix="1.")
+    before, after = Rest(base), Rest(amended)
+    faults = list(at_fault(base.evidence, ("deck@3",)))
+    assert log_e_value(before, after, 60) < np.log(20.0) < log_e_value(before, after, 60, faults)

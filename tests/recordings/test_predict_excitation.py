@@ -115,6 +115,19 @@ def test_hum_is_a_line_in_its_channel(tmp_path: Path, per_profile: np.ndarray) -
     assert not found[:, 1:, 1:].any()
 
 
+def test_hum_of_iron_has_no_even_lines(tmp_path: Path, per_profile: np.ndarray) -> None:
+    def heard(**more: Any) -> np.ndarray:
+        hum = {"frequency_Hz": 31.0, "amplitude": 0.3, "harmonics": 4, "decay": 0.5, **more}
+        return expected(campaign_with(tmp_path, {}, {"mains": hum}), per_profile) - plain
+
+    plain = expected(campaign_with(tmp_path, {}), per_profile)
+    at = np.array([[n * 31.0, 0.3 / np.sqrt(n)] for n in (1.0, 3.0)])
+    wanted = welch([(f, np.array([a, 0.0, 0.0], dtype=complex)) for f, a in at])
+    bound = 0.003 * wanted.real.max()
+    assert heard(even=False)[:, 0, 0].real == pytest.approx(wanted[:, 0, 0].real, abs=bound)
+    assert not np.allclose(heard()[:, 0, 0].real, wanted[:, 0, 0].real, atol=10.0 * bound)
+
+
 def test_a_broad_line_keeps_its_power() -> None:
     grid = grid_of(np.arange(1.0, 200.0), np.arange(5.0, 190.0), 1.0)
     for width in (0.0, 0.001, 0.05):

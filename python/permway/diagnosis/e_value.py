@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from permway.diagnosis.blocks_tabular import TableBlock
 from permway.diagnosis.evidence import Evidence
-from permway.diagnosis.heldout import Rest
+from permway.diagnosis.heldout import Part, Rest
 
 
-def log_e_value(base: Rest, amended: Rest, tried: int) -> float:
+def log_e_value(base: Rest, amended: Rest, tried: int, faults: Sequence[Part] = ()) -> float:
     """Logarithm of an e-value: what the amended model foretells of one half from the other, over the base.
 
     With nothing missing, and parameters as their owner says, the ratio of the two predictive densities has the
@@ -26,11 +26,14 @@ def log_e_value(base: Rest, amended: Rest, tried: int) -> float:
     base, amended : Rest
     tried : int
         Effects, or sets of effects, that the amended model was chosen from.
+    faults : sequence of Part
+        Of channels that are said to be at fault (:func:`permway.diagnosis.heldout.at_fault`): further ways. Of a
+        chain that reads too much every blow tells of every other, whether or not that is called a fault.
     """
+    halves = [judging for half in _halves(base.fit.evidence) for judging in (half, ~half)]
     gained = [
         amended.scored(judging).log_density - base.scored(judging).log_density
-        for half in _halves(base.fit.evidence)
-        for judging in (half, ~half)
+        for judging in [*halves, *(part.rows for part in faults)]
     ]
     return float(np.logaddexp.reduce(gained)) - float(np.log(len(gained) * max(tried, 1)))
 

@@ -9,7 +9,7 @@ from permway.diagnosis.choose import lines
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.e_value import log_e_value
 from permway.diagnosis.fit import Fit, gained
-from permway.diagnosis.heldout import Rest, at_fault, gains, parts
+from permway.diagnosis.heldout import Rest, gains, parts
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.refit import weighed_anew
@@ -22,15 +22,12 @@ def prove(
     base: Fit, amended: Fit, rounds: list[Round], accepted: list[Finalist], clock: Clock, *, others: Round
 ) -> Proof:
     """Records left out, e-value, and a placebo of what was screened in another round, or in the same."""
-    chosen = list(parts(base.evidence))
-    for one in accepted:
-        channels = one.hypothesis.locate(one.values).channels
-        if one.hypothesis.domain == "measurement" and channels:
-            chosen += at_fault(base.evidence, channels)
+    faults = [part for one in accepted for part in one.faults]
+    chosen = [*parts(base.evidence), *faults]
     before, after = Rest(base), Rest(amended)
     held_out = gains(before, after, chosen)
     tried = [len(found.screened) for found in rounds[: len(accepted)]]
-    log_e = log_e_value(before, after, int(np.prod(tried)))
+    log_e = log_e_value(before, after, int(np.prod(tried)), faults)
     clock("weigh anew")
     weighed = weighed_anew(amended)
     clock("placebo")

@@ -12,6 +12,7 @@ from permway.diagnosis.choose import CLOSE, FOLLOWED, WORTH, chosen_of, elsewher
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.felt import FELT, moved
 from permway.diagnosis.fit import Fit, gained
+from permway.diagnosis.heldout import Part, at_fault
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.journal import current
 from permway.diagnosis.quick import Quick
@@ -77,6 +78,14 @@ class Finalist:
         """The effect's parameters by their own names."""
         start = len(self.prefix)
         return {k[start:]: v for k, v in self.fit.values().items() if self.prefix and k.startswith(self.prefix)}
+
+    @property
+    def faults(self) -> list[Part]:
+        """Rows that tell of the channels that it says are at fault; none if it is no fault of a measurement."""
+        channels = self.hypothesis.locate(self.values).channels
+        if self.hypothesis.domain != "measurement" or not channels:
+            return []
+        return list(at_fault(self.fit.evidence, channels))
 
 
 @dataclass(frozen=True)

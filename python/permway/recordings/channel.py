@@ -35,15 +35,23 @@ class Mains(FrozenModel):
     amplitude : float
         Of the first line, in the sensor's unit.
     harmonics : int
-        How many lines.
+        Number of the last line.
     decay : float
         The n-th line has the amplitude times n^-decay.
+    even : bool
+        Whether even multiples are among the lines, as of rectifiers; iron cores make odd ones alone.
     """
 
     frequency_Hz: PositiveFloat = 50.0
     amplitude: NonNegativeFloat
     harmonics: int = Field(default=8, ge=1, le=100, strict=True)
     decay: Number = Field(default=1.0, ge=0.0, le=10.0)
+    even: bool = Field(default=True, strict=True)
+
+    def line(self, number: int) -> float:
+        """Amplitude of a line, in the sensor's unit."""
+        there = number <= self.harmonics and (self.even or number % 2 == 1)
+        return self.amplitude * float(number) ** -self.decay if there else 0.0
 
 
 class Chain(FrozenModel):

@@ -336,3 +336,10 @@ def test_every_entry_says_what_it_is() -> None:
         assert entry == module.ID
         assert all((module.SUMMARY, module.SIGNATURE, module.SOURCE, module.CONFUSED_WITH, module.PARAMETERS))
         assert entry not in module.CONFUSED_WITH
+
+
+def test_hum_is_offered_with_all_multiples_and_with_odd_ones(quiet: Situation) -> None:
+    offered = hypotheses(quiet, "mains_lines", "floor")
+    built = [h.amend(quiet.campaign, {f.name: f.value(0.0) for f in h.free}) for h in offered]
+    hums = [campaign.sensor("floor").chain.mains for campaign in built]
+    assert {mains.even for mains in hums if mains is not None} == {True, False}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping
 
 import numpy as np
@@ -16,7 +17,10 @@ from permway.recordings.channel import Mains
 ID = "mains_lines"
 DOMAIN: Domain = "measurement"
 FAMILY = "noise"
-SUMMARY = "Lines a n^-p at multiples n of the mains' frequency in one channel, or alike in all channels on board."
+SUMMARY = (
+    "Lines a n^-p at multiples n of the mains' frequency, all or the odd ones, in one channel, or alike in all "
+    "channels on board."
+)
 PARAMETERS = {
     "frequency_Hz": "Hz, within 0.6 of 50, 60 or 16.7",
     "amplitude": "unit of the channel: a, of the first line",
@@ -33,21 +37,30 @@ FACTOR = 5.0
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
-    """At the supply's frequency that stands out most: in all channels, and in the two that show it most."""
+    """At the supply's frequency that stands out most: in all channels, and in the two that show it most.
+
+    Of either kind of its multiples: rectifiers make even ones, iron cores odd ones.
+    """
     runs, sensors = excesses(situation), on_board(situation)
     if not runs or not sensors:
         return
     supply = max(MAINS_HZ, key=lambda f: _score(runs, f))
     names = [sensor.name for sensor in sensors]
     alone = [(name,) for name in sorted(names, key=lambda name: -_shown(runs, supply, name))[:2]]
-    for group in [tuple(names), *alone] if len(names) > 1 else alone:
+    groups = [tuple(names), *alone] if len(names) > 1 else alone
+    for group, even in itertools.product(groups, (True, False)):
         size = min(_amplitude(situation, name, supply) for name in group)
 
-        def amend(campaign: Campaign, values: Mapping[str, float], group: tuple[str, ...] = group) -> Campaign:
+        def amend(
+            campaign: Campaign, values: Mapping[str, float], group: tuple[str, ...] = group, even: bool = even
+        ) -> Campaign:
             for name in group:
                 chain = campaign.sensor(name).chain
                 mains = Mains(
-                    frequency_Hz=values["frequency_Hz"], amplitude=values["amplitude"], decay=values["decay"]
+                    frequency_Hz=values["frequency_Hz"],
+                    amplitude=values["amplitude"],
+                    decay=values["decay"],
+                    even=even,
                 )
                 campaign = with_chain(campaign, name, chain_with(chain, mains=mains))
             return campaign
@@ -64,9 +77,18 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             amend=amend,
             locate=stays(channels=group),
             starts=((0.0, 0.6, -0.4), (0.0, -0.6, -0.4)),
-            law=lambda v: f"a line of {v['amplitude']:.3g} at {v['frequency_Hz']:.4g} Hz and its multiples",
+            law=_all if even else _odd,
             size="amplitude",
+            variant="all" if even else "odd",
         )
+
+
+def _all(values: Mapping[str, float]) -> str:
+    return f"a line of {values['amplitude']:.3g} at {values['frequency_Hz']:.4g} Hz and its multiples"
+
+
+def _odd(values: Mapping[str, float]) -> str:
+    return f"a line of {values['amplitude']:.3g} at {values['frequency_Hz']:.4g} Hz and its odd multiples"
 
 
 def _score(runs: list[Excess], supply: float) -> float:

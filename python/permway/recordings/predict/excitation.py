@@ -92,12 +92,12 @@ def hum(sensors: Sequence[Sensor], grid: Grid) -> Iterator[tuple[Reals, Reals]]:
         mine = [mains if mains is not None and mains.frequency_Hz == frequency else None for mains in heard]
         for number in range(1, 1 + max(mains.harmonics for mains in mine if mains is not None)):
             size = [
-                sensor.to_SI * mains.amplitude * number**-mains.decay
-                if mains is not None and number <= mains.harmonics
-                else 0.0
+                0.0 if mains is None else sensor.to_SI * mains.line(number)
                 for sensor, mains in zip(sensors, mine, strict=True)
             ]
-            yield deposit(grid, np.array([number * frequency]), np.ones(1), 0.0), np.sqrt(0.5) * np.array(size)
+            if any(size):
+                share = deposit(grid, np.array([number * frequency]), np.ones(1), 0.0)
+                yield share, np.sqrt(0.5) * np.array(size)
 
 
 def lines(grid: Grid, first_Hz: float, series: TrackLines | WheelLines) -> Reals:
