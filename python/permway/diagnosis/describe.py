@@ -12,6 +12,7 @@ from permway.diagnosis.clock import Clock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Situation, Where
 from permway.diagnosis.locate import scanned
+from permway.diagnosis.plausible import beyond_belief
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.recovered import same_place
 from permway.diagnosis.search import Finalist, Round, search
@@ -70,25 +71,30 @@ class Description:
         if named.hypothesis.domain != "path":
             return False
         described = self.of([first], [named])
-        return described is not None and self._closes(described, named.fit)
+        if described is None:
+            return False
+        # While something else is missing, what was found first may be bent beyond belief by that.
+        return (named.fit.heat < UNFIT and beyond_belief(named)) or self._closes(described, named.fit)
 
     def of(self, rounds: Sequence[Round], accepted: Sequence[Finalist]) -> Round | None:
         """Small elements, where no named effect explains what a free stiffness does, if they do it better.
 
-        Or where one effect was found twice at one place: that is one thing that the catalogue has no name for.
+        Or where one effect was found twice at one place: that is one thing that the catalogue has no name for. Or
+        where the effect has constants that no such thing has.
 
         Parameters
         ----------
         rounds : sequence of Round
         accepted : sequence of Finalist
         """
-        least, twice, explained = rounds[0].threshold, _twice(accepted), 0.0
+        least, twice, explained, strange = rounds[0].threshold, _twice(accepted), 0.0, False
         if accepted:
             best = accepted[-1].fit
             explained = decide.explained(self.base, best, self.left(best))
             # Of a large gap a small share may still be far more than errors explain.
             left = explained < 1.0 - OPEN or best.heat > UNFIT
-            if accepted[0].hypothesis.domain != "path" or not (left or twice is not None):
+            strange = beyond_belief(accepted[0])
+            if accepted[0].hypothesis.domain != "path" or not (left or strange or twice is not None):
                 return None
         else:
             best = self.base
@@ -103,7 +109,7 @@ class Description:
             # What stands for two effects has fewer constants, and need not do quite what both do.
             better += sum(penalty(two.quick, result.ring) for two in accepted)
             better += ONE_FOR_TWO * (self.base.objective - best.objective)
-        elif explained > decide.EXPLAINED and not self._closes(result, best):
+        elif explained > decide.EXPLAINED and not strange and not self._closes(result, best):
             return None
         return result if better > 0.0 else None
 

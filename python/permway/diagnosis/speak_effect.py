@@ -9,6 +9,7 @@ import numpy as np
 from permway.arrays import Reals
 from permway.diagnosis import decide
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.plausible import beyond_belief
 from permway.diagnosis.search import Finalist, Round
 from permway.diagnosis.verdict import NOVEL
 from permway.diagnosis.verdict_parts import ClassMember, Effect, Estimate, Mechanics, Place
@@ -42,6 +43,9 @@ def effect_of(
     names : sequence of str
         Of all effects that were accepted.
     """
+    if beyond_belief(one):
+        # Something acts there in this way; it is hardly this.
+        explained = min(explained, decide.HALF)
     members = decide.members(found, explained=explained, beside=names)
     hypothesis, fit = one.hypothesis, amended
     index = {f.name: i for i, f in enumerate(fit.free)}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,11 +11,11 @@ from permway.diagnosis.fit import Free
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
+from permway.diagnosis.plausible import plausible
 from permway.diagnosis.recalibrate import recalibrate
 from simulated import simulate
 from simulated_train import measured, tables, written
 
-RANGE = re.compile(r"[^,]*, ([-\d.e]+) to ([-\d.e]+)(?=:|$)")
 ROUNDED = 0.03
 """Of the whole range, in logarithms where it lies above zero."""
 
@@ -44,9 +43,8 @@ def test_what_is_plausible_can_be_reached(tmp_path: Path) -> None:
         for name, entry in entries().items():
             for hypothesis in entry.hypotheses(situation):
                 for free in hypothesis.free:
-                    said = RANGE.match(entry.PARAMETERS[free.name])
-                    if said is not None:
-                        low, high = float(said[1]), float(said[2])
+                    if free.name in plausible(name):
+                        low, high = plausible(name)[free.name]
                         assert beyond(free, low, high) < ROUNDED, (name, free.name, free.limits)
                         checked.add((name, free.name))
     assert len(checked) > 50

@@ -1,0 +1,35 @@
+"""What the catalogue says that an effect's parameters may plausibly be, and which effects go beyond it.
+
+An effect that explains the records with constants that no such thing has stands in for something else.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+from permway.diagnosis.catalogue import entries
+from permway.diagnosis.search import Finalist
+
+RANGE = re.compile(r"[^,]*, ([-\d.e]+) to ([-\d.e]+)(?=:|$)")
+"""A parameter's unit, and from what to what it may be, as `PARAMETERS` of an entry has it."""
+
+
+@cache
+def plausible(entry: str) -> dict[str, tuple[float, float]]:
+    """Lowest and highest plausible value by parameter, for those that have such; none for what is no entry."""
+    if entry not in entries():
+        return {}
+    said = {name: RANGE.match(text) for name, text in entries()[entry].PARAMETERS.items()}
+    return {name: (float(m[1]), float(m[2])) for name, m in said.items() if m is not None}
+
+
+def beyond_belief(one: Finalist) -> bool:
+    """Whether a parameter's whole 90 % interval lies where the catalogue says that it cannot be."""
+    intervals, ranges = one.fit.intervals(), plausible(one.hypothesis.entry)
+    for free, own in zip(one.hypothesis.free, one.own, strict=True):
+        if free.name in ranges:
+            (low, high), (least, most) = sorted(intervals[own]), ranges[free.name]
+            if high < least or low > most:
+                return True
+    return False
