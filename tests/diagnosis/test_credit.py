@@ -13,6 +13,7 @@ from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.recalibrate import UNFIT, recalibrate
 from permway.diagnosis.rounds import BEYOND
+from permway.diagnosis.search import standing
 from permway.diagnosis.speak import _credit, _explains_little
 from simulated import simulate
 
@@ -59,7 +60,7 @@ def test_what_leaves_a_misfit_as_it_was_explains_little(
 def test_what_was_found_beside_an_effect_is_no_rival_of_it(fit: Fit) -> None:
     def finalist(entry: str) -> Any:
         quick = SimpleNamespace(gain=50.0, hypothesis=SimpleNamespace(entry=entry, free=()))
-        return SimpleNamespace(fit=fit, hypothesis=quick.hypothesis, quick=quick, correction=0.0)
+        return SimpleNamespace(fit=fit, rough=fit, hypothesis=quick.hypothesis, quick=quick, correction=0.0)
 
     found = cast(Any, SimpleNamespace(finalists=(finalist("a"), finalist("b")), followed=(), ring=None))
     assert {m.name: m.probability for m in members(found, explained=1.0)} == pytest.approx(
@@ -68,4 +69,26 @@ def test_what_was_found_beside_an_effect_is_no_rival_of_it(fit: Fit) -> None:
     # It was found itself, in another round.
     assert {m.name: m.probability for m in members(found, explained=1.0, beside=("a", "b"))} == pytest.approx(
         {"a": 0.95, "novel": 0.05}
+    )
+
+
+def test_where_no_finalist_fits_the_blunted_responses_tell_which_does_better(fit: Fit) -> None:
+    """Two effects are missing: what the second leaves on sharp responses is no word about the first."""
+
+    def finalist(entry: str, heat: float, sharp: float, blunted: float) -> Any:
+        at = replace(fit, heat=heat, chi2=sharp)
+        quick = SimpleNamespace(gain=50.0, hypothesis=SimpleNamespace(entry=entry, free=()))
+        rough = replace(fit, chi2=blunted)
+        return SimpleNamespace(fit=at, rough=rough, hypothesis=quick.hypothesis, quick=quick, correction=0.0)
+
+    def order(heat: float) -> list[str]:
+        rivals = [finalist("right", heat, 1040.0, 100.0), finalist("wrong", heat + 0.1, 1000.0, 140.0)]
+        return [f.hypothesis.entry for f in sorted(rivals, key=lambda f: -standing(f, rivals))]
+
+    assert order(16.0) == ["right", "wrong"]
+    assert order(1.0) == ["wrong", "right"]
+    rivals = [finalist("right", 16.0, 1040.0, 100.0), finalist("wrong", 16.1, 1000.0, 140.0)]
+    found = cast(Any, SimpleNamespace(finalists=tuple(rivals), followed=(), ring=None))
+    assert {m.name: m.probability for m in members(found, explained=1.0)} == pytest.approx(
+        {"right": 0.95, "novel": 0.05}
     )

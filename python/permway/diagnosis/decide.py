@@ -11,7 +11,7 @@ from permway.diagnosis.choose import lines, penalty
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.heldout import Gain
 from permway.diagnosis.quick import Quick
-from permway.diagnosis.search import Finalist, Round
+from permway.diagnosis.search import Finalist, Round, standing
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL
 from permway.diagnosis.verdict_parts import ClassMember
@@ -143,8 +143,7 @@ def members(found: Round, *, explained: float, beside: Collection[str] = ()) -> 
     weight: dict[str, float] = {}
     for finalist in found.finalists:
         # While none fits, the records say less than they would. The best form of an effect comes first.
-        less = finalist.fit.log_evidence + finalist.correction - best.fit.log_evidence - best.correction
-        less /= best.fit.heat
+        less = standing(finalist, found.finalists) - standing(best, found.finalists)
         weight.setdefault(finalist.hypothesis.entry, float(np.exp(min(less, 0.0))))
     for quick in _twins(found, best):
         behind = 0.5 * (quick.gain - best.quick.gain) - 0.5 * (

@@ -17,6 +17,7 @@ from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.journal import current
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.quick_files import noted, recalled
+from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.refit import relearnt
 from permway.errors import InputError, SolveError
 
@@ -86,6 +87,18 @@ class Finalist:
         if self.hypothesis.domain != "measurement" or not channels:
             return []
         return list(at_fault(self.fit.evidence, channels))
+
+
+def standing(one: Finalist, rivals: Sequence[Finalist]) -> float:
+    """Log evidence by which a finalist is compared with its rivals, in nats over the heat of the best fit.
+
+    Where none of them fits, something else is missing, too: on responses as they are that decides which does best.
+    On those that the search blunted it tells less.
+    """
+    heat = min(f.fit.heat for f in rivals)
+    if heat > UNFIT:
+        return (one.rough.log_evidence + one.correction) / min(f.rough.heat for f in rivals)
+    return (one.fit.log_evidence + one.correction) / heat
 
 
 @dataclass(frozen=True)
@@ -192,7 +205,7 @@ def search(
             more = amended.log_evidence - learnt_base.log_evidence
             more -= 0.5 * (learnt_base.objective - amended.objective - gain)
             finalists.append(Finalist(one, rough, amended, prefix, gain, more))
-    finalists.sort(key=lambda f: -f.fit.log_evidence)
+    finalists.sort(key=lambda f: -standing(f, finalists))
     return Round(ring, tuple(screened), tuple(followed), tuple(finalists), least)
 
 
