@@ -205,7 +205,7 @@ def search(
             more = amended.log_evidence - learnt_base.log_evidence
             more -= 0.5 * (learnt_base.objective - amended.objective - gain)
             finalists.append(Finalist(one, rough, amended, prefix, gain, more))
-    finalists.sort(key=lambda f: -standing(f, finalists))
+    finalists = sorted(finalists, key=lambda f: -standing(f, finalists))
     return Round(ring, tuple(screened), tuple(followed), tuple(finalists), least)
 
 

@@ -38,20 +38,21 @@ class Mains(FrozenModel):
         Number of the last line.
     decay : float
         The n-th line has the amplitude times n^-decay.
-    even : bool
-        Whether even multiples are among the lines, as of rectifiers; iron cores make odd ones alone.
+    shares : tuple of float, optional
+        Amplitudes of the second line, the third and so on over that of the first, in place of the two above.
     """
 
     frequency_Hz: PositiveFloat = 50.0
     amplitude: NonNegativeFloat
     harmonics: int = Field(default=8, ge=1, le=100, strict=True)
     decay: Number = Field(default=1.0, ge=0.0, le=10.0)
-    even: bool = Field(default=True, strict=True)
+    shares: tuple[NonNegativeFloat, ...] | None = Field(default=None, max_length=100)
 
-    def line(self, number: int) -> float:
-        """Amplitude of a line, in the sensor's unit."""
-        there = number <= self.harmonics and (self.even or number % 2 == 1)
-        return self.amplitude * float(number) ** -self.decay if there else 0.0
+    def lines(self) -> list[float]:
+        """Amplitude of every line, in the sensor's unit."""
+        decaying = [float(number) ** -self.decay for number in range(1, 1 + self.harmonics)]
+        each = decaying if self.shares is None else [1.0, *self.shares]
+        return [self.amplitude * share for share in each]
 
 
 class Chain(FrozenModel):

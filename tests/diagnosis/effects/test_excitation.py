@@ -338,8 +338,8 @@ def test_every_entry_says_what_it_is() -> None:
         assert entry not in module.CONFUSED_WITH
 
 
-def test_hum_is_offered_with_all_multiples_and_with_odd_ones(quiet: Situation) -> None:
+def test_hum_is_offered_with_lines_that_fall_and_with_lines_of_their_own(quiet: Situation) -> None:
     offered = hypotheses(quiet, "mains_lines", "floor")
     built = [h.amend(quiet.campaign, {f.name: f.value(0.0) for f in h.free}) for h in offered]
     hums = [campaign.sensor("floor").chain.mains for campaign in built]
-    assert {mains.even for mains in hums if mains is not None} == {True, False}
+    assert {mains.shares is None for mains in hums if mains is not None} == {True, False}

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+import numpy as np
+
 from permway.diagnosis.catalogue._change import with_fields
 from permway.diagnosis.catalogue._roles import girders, reaches
 from permway.diagnosis.hypothesis import (
@@ -41,6 +43,9 @@ SOURCE = (
 )
 SHORTEST_M = 0.1
 
+STARTS = 7
+"""Along a span: the fit goes to the nearest of places that explain some bending frequencies."""
+
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """One for each row of girders, on the beam of the row that the scan names, else on the first."""
@@ -70,7 +75,7 @@ def _on(name: str, segment: Segment, told: float | None) -> Hypothesis:
         return with_fields(campaign, name, changes=(*beam.changes, cracked), modes=None)
 
     middle, sigma = 0.5 * (start + stop), 0.25 * span
-    places = [-1.0, 0.0, 1.0]
+    places = [*np.linspace(-1.8, 1.8, STARTS)]
     if told is not None:
         places.insert(0, (told - middle) / sigma)
     return Hypothesis(
@@ -84,7 +89,7 @@ def _on(name: str, segment: Segment, told: float | None) -> Hypothesis:
         ),
         amend=amend,
         locate=lambda v: Where(what=segment.name, x_m=stretch(v)),
-        starts=tuple((z, 0.0, 0.5) for z in places),
+        starts=tuple((float(z), 0.0, 0.5) for z in places),
         law=lambda v: f"{v['factor']:.2f} of the bending stiffness is left over {v['length_m']:.2g} m",
         size="factor",
         none=1.0,

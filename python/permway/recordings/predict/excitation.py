@@ -89,15 +89,14 @@ def hum(sensors: Sequence[Sensor], grid: Grid) -> Iterator[tuple[Reals, Reals]]:
     """Every line of the mains: its share of power per hertz, (N,), and root-mean-square by channel, (sensors,)."""
     heard = [sensor.chain.mains for sensor in sensors]
     for frequency in dict.fromkeys(mains.frequency_Hz for mains in heard if mains is not None):
-        mine = [mains if mains is not None and mains.frequency_Hz == frequency else None for mains in heard]
-        for number in range(1, 1 + max(mains.harmonics for mains in mine if mains is not None)):
+        mine = [[] if m is None or m.frequency_Hz != frequency else m.lines() for m in heard]
+        for number in range(max(map(len, mine))):
             size = [
-                0.0 if mains is None else sensor.to_SI * mains.line(number)
-                for sensor, mains in zip(sensors, mine, strict=True)
+                sensor.to_SI * amplitudes[number] if number < len(amplitudes) else 0.0
+                for sensor, amplitudes in zip(sensors, mine, strict=True)
             ]
-            if any(size):
-                share = deposit(grid, np.array([number * frequency]), np.ones(1), 0.0)
-                yield share, np.sqrt(0.5) * np.array(size)
+            share = deposit(grid, np.array([(number + 1) * frequency]), np.ones(1), 0.0)
+            yield share, np.sqrt(0.5) * np.array(size)
 
 
 def lines(grid: Grid, first_Hz: float, series: TrackLines | WheelLines) -> Reals:
