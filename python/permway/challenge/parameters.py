@@ -61,6 +61,11 @@ _TRANSLATED: dict[str, Callable[[Numbers], Numbers]] = {
     # Of both sides; the velocity rounds off two different laws.
     "primary_friction": lambda t: {"force_N": t["friction_N"] / HALF},
     "blow_off_damper": lambda t: {"force_N": t["most_N"] / HALF},
+    "mains_lines": lambda t: {
+        "frequency_Hz": t["hertz"],
+        "amplitude": t["amplitude"],
+        "third": t["share_of_third"],
+    },
     "baseplate_mass": lambda t: {
         "mass_kg": t["mass_kg"],
         "share": t["lower_over_upper"] / (1.0 + t["lower_over_upper"]),
