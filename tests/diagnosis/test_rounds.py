@@ -19,7 +19,7 @@ def finalist(name: str, domain: str) -> Any:
 
 
 def run(
-    monkeypatch: pytest.MonkeyPatch, best: dict[tuple[str, ...], list[Any]]
+    monkeypatch: pytest.MonkeyPatch, best: dict[tuple[str, ...], list[Any]], needless: tuple[str, str] = ("", "")
 ) -> tuple[list[str], list[int], Any]:
     """Searches by what they were offered give what they have left; small track effects mend the first."""
     offered: list[int] = []
@@ -38,7 +38,13 @@ def run(
     monkeypatch.setattr(rounds, "_of_the_owners", lambda base, every, fit: list(every))
     monkeypatch.setattr(rounds, "_mends", lambda base, accepted, last: last.name == "small")
     monkeypatch.setattr(rounds, "_stands", lambda *_: True)
-    monkeypatch.setattr(rounds, "_without_needless", lambda base, accepted, *_: accepted)
+
+    def without(base: object, accepted: list[Any], *_: object) -> list[Any]:
+        """The first of two names goes when the second comes."""
+        goes, comes = needless
+        return [one for one in accepted if one.name != goes or accepted[-1].name != comes]
+
+    monkeypatch.setattr(rounds, "_without_needless", without)
     description = SimpleNamespace(instead=lambda result: False, left=lambda fit: ())
     base = cast(Any, FITS)
     every, accepted = rounds.effects(base, base, (), 0, cast(Any, lambda *_: None), cast(Any, description))
@@ -70,3 +76,20 @@ def test_what_mends_it_elsewhere_is_no_effect_either(monkeypatch: pytest.MonkeyP
     names, offered, _ = run(monkeypatch, {ALL: [large, small], ELSEWHERE: [also]})
     assert names == ["large"]
     assert offered == [3, 3, 2]
+
+
+def test_what_was_dropped_may_be_met_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fitted while others were missing it was another than it is; three effects are all that is sought."""
+    bent, large, other, right, fourth = (
+        finalist(name, domain)
+        for name, domain in [
+            ("bent", "vehicle"),
+            ("large", "path"),
+            ("other", "path"),
+            ("right", "vehicle"),
+            ("fourth", "vehicle"),
+        ]
+    )
+    names, offered, _ = run(monkeypatch, {ALL: [bent, large, other, right, fourth]}, needless=("bent", "other"))
+    assert names == ["large", "other", "right"]
+    assert offered == [3, 3, 3, 3]

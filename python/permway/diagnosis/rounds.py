@@ -27,7 +27,8 @@ from permway.diagnosis.slips import MOST, gain_by_cell, mended
 from permway.diagnosis.spot import Found
 from permway.errors import InputError, SolveError
 
-MOST_EFFECTS = 3
+MOST_EFFECTS, MOST_ROUNDS = 3, 5
+"""Effects together, and rounds of the search: one that was dropped may be met again, when others are known better."""
 
 MOST_OF_IT = 0.5
 """Share of what earlier effects leave that may be left by a smaller one."""
@@ -61,7 +62,7 @@ def effects(
     accepted: list[Finalist] = []
     fit = base
     screened: tuple[Quick, ...] = ()
-    for order in range(MOST_EFFECTS):
+    for order in range(MOST_ROUNDS):
         look = partial(search, learnt_base=fit, prefix=f"{order + 1}.", threshold=least, progress=clock)
         result, start, offered = None, fit, []
         for start in [fit] if rough is fit else [rough, fit]:
@@ -89,9 +90,10 @@ def effects(
         # Once a model nearly fits, nothing is gained from blunting.
         fit = accepted[-1].fit
         rough = fit if fit.heat < UNFIT else settled(accepted[-1].rough)
-        if order + 1 < MOST_EFFECTS:
-            clock("locate")
-            found = description.left(rough)
+        if len(accepted) == MOST_EFFECTS:
+            break
+        clock("locate")
+        found = description.left(rough)
     return rounds, accepted
 
 
