@@ -28,7 +28,7 @@ from permway.diagnosis.spot import Found
 from permway.errors import InputError, SolveError
 
 MOST_EFFECTS, MOST_ROUNDS = 3, 5
-"""Effects together, and rounds of the search: one that was dropped may be met again, when others are known better."""
+"""Effects together, and rounds: an effect that was dropped may be met again, when others are known better."""
 
 MOST_OF_IT = 0.5
 """Share of what earlier effects leave that may be left by a smaller one."""
