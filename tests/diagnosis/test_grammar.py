@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from permway.diagnosis.bases import bases
-from permway.diagnosis.catalogue._change import fixed_mass, with_joints
+from permway.diagnosis.catalogue._change import fixed_mass, hung_mass, with_joints
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.elements import ELEMENTS, Element
@@ -68,6 +68,31 @@ def test_inertances_beside_some_pads_are_described_as_such(tmp_path: Path) -> No
     start, stop = best.hypothesis.locate(best.values).x_m or (0.0, 0.0)
     assert start == pytest.approx(6.6, abs=0.4)
     assert stop == pytest.approx(8.4, abs=0.4)
+
+
+def on_the_rail_at_every_pad(campaign: Campaign) -> Campaign:
+    line = campaign.model.line
+    x = tuple(np.unique(line.joint_table().x[line.joint_table().law == list(line.laws).index("pad")]).tolist())
+    joints = Joints(between=("rail", "ground"), law="hung", at=x)
+    return with_joints(campaign, joints, laws={"hung": hung_mass(4.0, 90.0, 0.1)})
+
+
+def test_what_hangs_at_every_pad_is_described_as_such(tmp_path: Path) -> None:
+    case = simulate(tmp_path / "c", 8, amend=on_the_rail_at_every_pad)
+    base, searched = bases(gather(case.campaign, threads=1), Clock(None))
+    result = search(
+        searched,
+        hypotheses(Situation(searched, scanned(searched))),
+        learnt_base=base,
+        prefix="1.",
+        threshold=lambda _ring, _screened: 10.0,
+        progress=lambda *_: None,
+    )
+    best = result.finalists[0]
+    assert best.hypothesis.family == "resonator on the body at every joint of pad"
+    assert best.values["mass_kg"] == pytest.approx(4.0, rel=0.2)
+    assert best.values["frequency_Hz"] == pytest.approx(90.0, rel=0.05)
+    assert best.hypothesis.locate(best.values).what == "rail"
 
 
 def test_what_no_name_explains_is_described_and_no_further_names_are_sought(tmp_path: Path) -> None:

@@ -37,10 +37,12 @@ def measured(averages: int, seed: int, coherence: float = 0.5) -> np.ndarray:
 
 def block(averages: int, seed: int, coherence: float = 0.5) -> SpectraBlock:
     dataset = SimpleNamespace(
-        data=csd(measured(averages, seed, coherence), averages), record=SimpleNamespace(name="run", segment_s=2.0)
+        data=csd(measured(averages, seed, coherence), averages),
+        record=SimpleNamespace(name="run", segment_s=2.0),
+        condition=SimpleNamespace(speed_m_per_s=None),
     )
     expected = csd(truth(coherence=coherence), averages)
-    return SpectraBlock(cast(Any, dataset), expected, noise=np.zeros((2, LINES.size)), floor=0.0)
+    return SpectraBlock(cast(Any, dataset), expected, added=np.zeros((2, 2, LINES.size)), floor=0.0)
 
 
 def test_lines_within_the_window_s_reach_of_zero_are_not_used() -> None:
@@ -50,7 +52,7 @@ def test_lines_within_the_window_s_reach_of_zero_are_not_used() -> None:
     first = one.dataset.data.isel(frequency=slice(0, 1)).assign_coords(frequency=[1.5])
     near = SimpleNamespace(data=first.assign_attrs(averages=14.0), record=one.dataset.record)
     with pytest.raises(InputError, match=r"run: has no line .*got 'up to 1.5 Hz.*; give a longer segment_s"):
-        SpectraBlock(cast(Any, near), first, noise=np.zeros((2, 1)))
+        SpectraBlock(cast(Any, near), first, added=np.zeros((2, 2, 1)))
 
 
 @pytest.mark.parametrize("averages", [4, 14, 120])
@@ -73,6 +75,21 @@ def test_where_noise_is_large_no_gain_is_better_than_the_right_one() -> None:
             squares = [np.sum(one.deviations(csd(truth(gain, coherence), 14)) ** 2) for gain in gains]
             best.append(gains[int(np.argmin(squares))])
         assert np.mean(best) == pytest.approx(1.0, abs=0.02)
+
+
+def test_chains_errors_act_on_what_moves_and_not_on_hum() -> None:
+    """What a smooth error does to a line is as much as of its power moves: half of it, then none."""
+    plain, moving = block(14, 3), truth()
+    hum = np.zeros_like(moving.real)
+    hum[:, :, 20], hum[:, :, 40] = moving[0, 0, 20].real * np.ones((2, 2)), 1e9 * np.ones((2, 2))
+    expected = csd(moving + hum, 14)
+    hummed = SpectraBlock(plain.dataset, expected, added=hum, floor=0.0)
+    # The root's power comes first in the rows, and the first channel's gain in the columns.
+    before, after = (one.smooth.columns.matrix.toarray()[: one.frequency.size] for one in (plain, hummed))
+    share = np.abs(after).max(axis=1) / np.abs(before).max(axis=1)
+    expected_share = np.ones(plain.frequency.size)
+    expected_share[10], expected_share[20] = 0.5, 0.0
+    np.testing.assert_allclose(share, expected_share, atol=1e-3)
 
 
 def test_too_few_averages_are_refused() -> None:

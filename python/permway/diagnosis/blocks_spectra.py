@@ -17,7 +17,6 @@ from permway.diagnosis.smooth import Origin, Smooth, SparseColumns
 from permway.diagnosis.spectra_parts import coherence, mean_of_logarithm, remainder, transfer, tree_of
 from permway.diagnosis.wander import Wander
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
 from permway.recordings.predict.grid import REACH_LINES
 
@@ -44,8 +43,8 @@ class SpectraBlock:
     dataset : Dataset
     expected : Dataset of xarray
         The prediction by which the tree is chosen and transfers are weighed.
-    noise : ndarray, shape (channels, F)
-        Expected power of each channel's own noise, which its gain does not act on.
+    added : ndarray, shape (channels, channels, F)
+        Expected cross spectra of noise and hum, which gains do not act on.
     floor : float
         Relative error of transfers that adds to their scatter.
     scatter : sequence of float, optional
@@ -67,12 +66,12 @@ class SpectraBlock:
         expected: xr.Dataset,
         *,
         floor: float = 0.01,
-        noise: Reals,
+        added: Reals,
         scatter: Sequence[float] = (),
         shared: Reals | None = None,
         span: tuple[float, float] | None = None,
     ) -> None:
-        self.dataset, self._expected, self._floor, self._noise = dataset, expected, floor, noise
+        self.dataset, self._expected, self._floor, self._added = dataset, expected, floor, added
         self._scatter, self._shared = tuple(scatter), shared
         data = dataset.data
         known_Hz, segment_s = data["frequency"].values, dataset.record.segment_s
@@ -190,7 +189,7 @@ class SpectraBlock:
 
     def scattered(self, predicted: xr.Dataset) -> SpectraBlock:
         """The same with scatter and correlations of its parts, by how lines differ from their neighbours."""
-        plain = self.expecting(self._expected, self._noise)
+        plain = self.expecting(self._expected, self._added)
         deviations, scatter, start = plain.deviations(predicted), [], 0
         for what, _, _, at, _ in plain._parts:
             size = (2 if what == "transfer" else 1) * at.size
@@ -202,23 +201,23 @@ class SpectraBlock:
         return SpectraBlock(
             self.dataset,
             self._expected,
-            noise=self._noise,
+            added=self._added,
             floor=self._floor,
             scatter=scatter,
             shared=covariance(plain._by_kind(deviations)),
             span=self._span,
         )
 
-    def expecting(self, expected: xr.Dataset, noise: Reals) -> SpectraBlock:
+    def expecting(self, expected: xr.Dataset, added: Reals) -> SpectraBlock:
         """The same weighed by another prediction, with the scatter of a stationary record."""
-        return SpectraBlock(self.dataset, expected, noise=noise, floor=self._floor, span=self._span)
+        return SpectraBlock(self.dataset, expected, added=added, floor=self._floor, span=self._span)
 
     def of(self, dataset: Dataset) -> SpectraBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
         return SpectraBlock(
             dataset,
             self._expected,
-            noise=self._noise,
+            added=self._added,
             floor=self._floor,
             scatter=self._scatter,
             shared=self._shared,
@@ -226,7 +225,7 @@ class SpectraBlock:
         )
 
     def _answers(self, gains: Reals) -> list[Reals]:
-        """Growth of each part's logarithm with that of a gain on what channels hear, and not on their noise.
+        """Growth of each part's logarithm with that of a gain on what moves, and not on noise and hum.
 
         Parameters
         ----------
@@ -234,13 +233,20 @@ class SpectraBlock:
             How much of it each channel has.
         """
         model = self._expected["csd"].values[:, :, self._lines]
-        own = np.arange(gains.size)
-        noise = np.zeros_like(model)
-        noise[own, own] = np.minimum(self._noise[:, self._lines], model[own, own].real)
+        added = self._model_added
         each = np.exp(SMALL * gains)
-        moved = (model - noise) * each[:, None, None] * each[:, None] + noise
+        moved = (model - added) * each[:, None, None] * each[:, None] + added
         before, after = (self._logarithms(csd) for csd in (model, moved))
         return [(new - old) / SMALL for new, old in zip(after, before, strict=True)]
+
+    @cached_property
+    def _model_added(self) -> Complexes:
+        """Noise and hum at the lines in use, at most what is expected there."""
+        own = np.arange(self.measured.shape[0])
+        model = self._expected["csd"].values[own, own][:, self._lines].real
+        added = self._added[:, :, self._lines]
+        share = np.sqrt(np.minimum(1.0, model / np.maximum(added[own, own], 1e-300)))
+        return np.asarray(added * share * share[:, None], dtype=np.complex128)
 
     def _logarithms(self, csd: Complexes) -> list[Reals]:
         """Of each part's modulus."""
@@ -259,6 +265,7 @@ class SpectraBlock:
         """Of each channel's chain, log gain and phase, and of the irregularity's level."""
         names = self.dataset.data["channel"].values.astype(str)
         speed = self.dataset.condition.speed_m_per_s
+        model = self._expected["csd"].values[:, :, self._lines]
         wander = Wander(*self._span)
         origins, columns = [Origin(f"channel {name}", wander, 2) for name in names], []
         for channel in range(names.size):
@@ -269,7 +276,8 @@ class SpectraBlock:
                 zero = np.zeros_like(values)
                 if what == "transfer":
                     gains.extend([answer[:, None] * values, zero])
-                    phases.extend([zero, (float(c == channel) - float(o == channel)) * values])
+                    moving = 1.0 - (self._model_added[c, o, at] / model[c, o, at]).real
+                    phases.extend([zero, (float(c == channel) - float(o == channel)) * moving[:, None] * values])
                 else:
                     gains.append(answer[:, None] * values)
                     phases.append(zero)
@@ -291,10 +299,3 @@ class SpectraBlock:
 
 LEVEL = Wander(0.005, 20.0, shortest=1.4)
 """Of the irregularity, over cycles per metre."""
-
-
-def noise_of(campaign: Campaign, dataset: Dataset) -> Reals:
-    """Expected power of the noise of each channel of a run, (channels, F)."""
-    data = dataset.data
-    frequency = np.asarray(data["frequency"].values, dtype=np.float64)
-    return np.stack([campaign.sensor(str(name)).noise(frequency) for name in data["channel"].values])

@@ -13,7 +13,8 @@ from permway.arrays import Reals
 from permway.diagnosis.blocks import Block, Rows
 from permway.diagnosis.blocks_frf import FrfBlock, thinned
 from permway.diagnosis.blocks_noise import NoiseBlock
-from permway.diagnosis.blocks_spectra import SpectraBlock, noise_of
+from permway.diagnosis.blocks_spectra import SpectraBlock
+from permway.diagnosis.spectra_parts import added_to
 from permway.diagnosis.wander import FIRST_LENGTH
 from permway.diagnosis.whitener import AllColumns, Whitener
 from permway.recordings.campaign import Campaign
@@ -200,7 +201,7 @@ class Evidence:
         blocks: list[Block] = []
         for block, prediction in zip(self.blocks, solved.datasets, strict=True):
             if isinstance(block, SpectraBlock):
-                block = block.expecting(prediction, noise_of(solved.campaign, block.dataset))
+                block = block.expecting(prediction, added_to(solved.campaign, block.dataset))
             elif isinstance(block, FrfBlock):
                 block = block.with_reference(prediction)
             blocks.append(block)

@@ -10,9 +10,10 @@ import xarray as xr
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock, thinned
 from permway.diagnosis.blocks_noise import NoiseBlock
-from permway.diagnosis.blocks_spectra import SpectraBlock, noise_of
+from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
 from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.spectra_parts import added_to
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
@@ -112,6 +113,6 @@ def _block(
         case "frf":
             return FrfBlock(dataset, reference=predicted, span=spans["frf"])
         case "csd" | "psd":
-            return SpectraBlock(dataset, predicted, noise=noise_of(campaign, dataset), span=spans["spectra"])
+            return SpectraBlock(dataset, predicted, added=added_to(campaign, dataset), span=spans["spectra"])
         case _:
             return TableBlock(dataset, span=spans.get(_kind(dataset)))

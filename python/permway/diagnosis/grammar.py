@@ -2,7 +2,8 @@
 
 An element of up to three constants (spring, dashpot, springpot, Maxwell's pair, inertance, mass on a spring,
 standing rod; of either sign where the sign is free) is added to one joint, to the joints of a stretch, to every
-joint of a layer, or to a place or a stretch of a body. What fits best is a description, not a name.
+joint of a layer, to a place or a stretch of a body, or to a body wherever it is held. What fits best is a
+description, not a name.
 """
 
 from __future__ import annotations
@@ -62,6 +63,7 @@ def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hyp
         if body is not None:
             yield _on_body(element, body, like)
             yield _over_body(situation, element, body, like)
+            yield from _at_supports(situation, element, body, like)
 
 
 def _typical(found: Found) -> tuple[float, float]:
@@ -163,6 +165,30 @@ def _over_body(situation: Situation, element: Element, found: Found, like: Value
     place = f"every {SPACING_M:g} m of a stretch of the body"
     own = _near(like) if element.ground and like is not None else None
     return _stretch(element, found, between, x, SPACING_M, place, own)
+
+
+def _at_supports(
+    situation: Situation, element: Element, found: Found, like: Values | None = None
+) -> Iterator[Hypothesis]:
+    """On a body, at every station of the layer that holds it at most places."""
+    body = found.spot.name
+    line = situation.campaign.model.line
+    laws = {layer.law for layer in line.joints if body in layer.between}
+    if not laws:
+        return
+    holding = max(laws, key=lambda law: (stations_of(line, law).size, law))
+    x = tuple(stations_of(line, holding).tolist())
+    stiffness, frequency = _typical(found)
+    free = (
+        _near(like) if element.ground and like is not None else element.free(stiffness / STRETCHES[0], frequency)
+    )
+
+    def amend(campaign: Campaign, values: Values) -> Campaign:
+        name = fresh(NOVEL, campaign.model.line.laws)
+        joints = Joints(between=(body, GROUND), law=name, at=x)
+        return with_joints(campaign, joints, laws={name: element.law(values)})
+
+    yield _made(element, f"on the body at every joint of {holding}", free, Where(body), amend)
 
 
 def _stretch(

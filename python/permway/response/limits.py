@@ -17,7 +17,7 @@ LARGEST_ANSWER = 16 * 2**30
 MOST_DENSE_JOINTS = 5000
 """Joints of the receptance formulation: its dense system then takes 0.4 GB on each thread."""
 
-MOST_ELEMENTS = 1_000_000
+MOST_ELEMENTS = 250_000
 """Elements of the chain formulation, over all beams."""
 
 MOST_BODIES = 100_000

@@ -167,7 +167,7 @@ pub fn sweep_into(
             let tape = Tape::new(line, request.forces, request.sensors, highest, wanted);
             if tape.is_too_long() {
                 let what =
-                    format!("waves at {highest} Hz are too short: the line would need millions of elements");
+                    format!("waves at {highest} Hz are too short: the line would need more than 250,000 elements");
                 return Err(CoreError::Invalid(what));
             }
             Plan::Chain(tape)

@@ -79,7 +79,7 @@ def test_a_block_with_correlations_is_the_quadratic_form_by_them(tmp_path: Path)
     kinds = plain._by_kind(np.zeros(plain.rows.channel.size))
     shared = np.full((len(kinds),) * 2, 0.6) + 0.4 * np.eye(len(kinds))
     block = SpectraBlock(
-        plain.dataset, predicted, noise=plain._noise, scatter=plain._scatter, shared=shared, span=plain._span
+        plain.dataset, predicted, added=plain._added, scatter=plain._scatter, shared=shared, span=plain._span
     )
     assert block.log_determinant < plain.log_determinant
     deviations = plain.deviations(predicted)

@@ -89,8 +89,8 @@ def pushed(vehicle: Vehicle, frequency_Hz: Reals, rows: Reals, per_profile: Comp
     """
     lines = frequency_Hz.tobytes()
     # What the push moves the contacts by is, reversed, what forces on the contacts move the degrees by.
-    at_contacts = np.einsum("nd,fdw->fnw", rows, _pushed(vehicle, lines)[0])
-    answer = np.einsum("fdw,fnw->fnd", per_profile, at_contacts)
+    at_contacts = rows @ _pushed(vehicle, lines)[0]
+    answer = at_contacts @ np.swapaxes(per_profile, 1, 2)
     return np.asarray(_shaken(vehicle, rows.tobytes(), lines) - answer)
 
 

@@ -112,13 +112,31 @@ def expected_csd(
         mixed = np.einsum("ntk,ntc->knc", shares(remainder, grid.frequency_Hz), fine)
         upper += np.sum([grid.expected(one, np.ones(grid.frequency_Hz.size)) for one in mixed], axis=0)
     rows, columns = np.triu_indices(len(sensors))
-    if any(sensor.chain.mains is not None for sensor in sensors):
-        for density, size in excitation.hum(sensors, grid):
-            upper += (grid.smear @ density)[:, None] * (size[rows] * size[columns])
     # Of a matrix that is its own adjoint the upper triangle is enough.
     matrix = np.empty((estimate_Hz.size, len(sensors), len(sensors)), dtype=np.complex128)
     matrix[:, columns, rows] = upper.conj()
     matrix[:, rows, columns] = upper
+    matrix += added_csd(sensors, lines_Hz, estimate_Hz, segment_s)
+    return matrix
+
+
+def added_csd(sensors: Sequence[Sensor], lines_Hz: Reals, estimate_Hz: Reals, segment_s: float) -> Reals:
+    """What chains add of their own, whatever moves: the noise of each, and hum, which they have in common.
+
+    Parameters
+    ----------
+    lines_Hz, estimate_Hz, segment_s
+        As of :func:`expected_csd`.
+
+    Returns
+    -------
+    ndarray, shape (F, sensors, sensors)
+    """
+    matrix = np.zeros((estimate_Hz.size, len(sensors), len(sensors)))
+    if any(sensor.chain.mains is not None for sensor in sensors):
+        grid = grid_of(lines_Hz, estimate_Hz, segment_s)
+        for density, size in excitation.hum(sensors, grid):
+            matrix += (grid.smear @ density)[:, None, None] * np.outer(size, size)
     own = np.arange(len(sensors))
     matrix[:, own, own] += np.stack([sensor.noise(estimate_Hz) for sensor in sensors], axis=-1)
     return matrix

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,11 +10,12 @@ import numpy as np
 from permway.arrays import Complexes, Reals
 from permway.model.file import Model
 from permway.model.vehicle import Vehicle
+from permway.model.vehicle_additions import FlexibleMode
 from permway.recordings.campaign_parts import Condition, IrregularityKnown
 from permway.recordings.predict import excitation
 from permway.recordings.predict.excitation import speed_of
 from permway.recordings.predict.grid import Grid
-from permway.recordings.predict.motion import influence, wheels_of
+from permway.recordings.predict.motion import influence, pushed, wheels_of
 from permway.response.sliding import Remainder, at_work, remainders, sliders_of
 
 STEP_HZ = 0.25
@@ -70,13 +72,53 @@ def worked(
     left = np.clip(np.searchsorted(lines_Hz, uniform, side="right") - 1, 0, lines_Hz.size - 2)
     share = np.clip((uniform - lines_Hz[left]) / (lines_Hz[left + 1] - lines_Hz[left]), 0.0, 1.0)
 
+    influence_of = retuned(model, lines_Hz, track)
+
     def motion(vehicle: Vehicle) -> Complexes:
-        per_profile = influence(with_vehicle(model, vehicle), lines_Hz, track)
-        between = per_profile[left] + share[:, None, None] * (per_profile[left + 1] - per_profile[left])
-        return np.asarray(rough[:, None] * np.einsum("fdw,fw->fd", between, late))
+        per_profile = influence_of(vehicle)
+        between = np.diff(per_profile, axis=0)[left]
+        between *= share[:, None, None]
+        between += per_profile[left]
+        return np.asarray(rough[:, None] * (between @ late[:, :, None])[:, :, 0])
 
     vehicle = at_work(train.vehicle, uniform, motion)
     return Work(with_vehicle(model, vehicle), remainders(vehicle, STEP_HZ, motion(vehicle)))
+
+
+def retuned(model: Model, lines_Hz: Reals, track: Complexes) -> Callable[[Vehicle], Complexes]:
+    """:func:`influence` of the model's vehicle with sliders that move as fast as they may.
+
+    Their dashpots alone change, so a system of as many unknowns as there are suspensions is enough (Woodbury);
+    where flexible modes stretch suspensions too, all is solved again.
+
+    Parameters
+    ----------
+    model : Model
+    lines_Hz : ndarray, shape (L,)
+    track : ndarray of complex128, shape (L, wheels, wheels)
+        Receptance at the contacts, m/N.
+    """
+    assert model.train is not None
+    vehicle = model.train.vehicle
+    if any(isinstance(addition, FlexibleMode) for addition in vehicle.additions):
+        return lambda moving: influence(with_vehicle(model, moving), lines_Hz, track)
+    before = influence(model, lines_Hz, track)
+    rows = [vehicle.stretches(slider.suspension) for slider in sliders_of(vehicle)]
+    ties = np.concatenate(rows)
+    per_force = np.swapaxes(pushed(vehicle, lines_Hz, ties, before), 1, 2)
+    give, felt = ties @ per_force, ties @ before
+    own = np.eye(len(ties))
+
+    def of(moving: Vehicle) -> Complexes:
+        more = [
+            np.full(len(mine), vehicle.share * (now.damping_Ns_per_m - then.damping_Ns_per_m))
+            for mine, now, then in zip(rows, sliders_of(moving), sliders_of(vehicle), strict=True)
+        ]
+        dashpots = 2j * np.pi * lines_Hz[:, None] * np.concatenate(more)
+        stretched = np.linalg.solve(own + give * dashpots[:, None, :], felt)
+        return np.asarray(before - per_force @ (dashpots[:, :, None] * stretched))
+
+    return of
 
 
 def shares(left: Remainder, frequency_Hz: Reals) -> Complexes:

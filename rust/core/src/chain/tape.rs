@@ -68,8 +68,8 @@ pub enum Wanted {
     States,
 }
 
-/// Most elements that a line is cut into; more would fill the memory.
-const MOST_ELEMENTS: usize = 4_000_000;
+/// Most elements that waves too short for the lengths between joints may add; more would fill the memory.
+const MOST_ADDED: usize = 250_000;
 
 /// Record of an operation that nothing will read again.
 const SCRATCH: usize = usize::MAX;
@@ -156,6 +156,8 @@ struct Compiler<'a> {
     keep: bool,
     /// Length of the longest record that will not.
     scratch: usize,
+    /// Elements beyond one for each length between joints.
+    added: usize,
     /// Bodies that reach both sides of the place where the two marches meet.
     crossing: Vec<bool>,
 }
@@ -200,10 +202,11 @@ impl Compiler<'_> {
             Body::Mass(_) => return,
         };
         let mut parts = (steepest * length / LONGEST).ceil().max(1.0);
-        if parts > MOST_ELEMENTS.saturating_sub(self.tape.ops.len()) as f64 {
+        if parts - 1.0 > MOST_ADDED.saturating_sub(self.added) as f64 {
             self.tape.too_long = true;
             parts = 1.0;
         }
+        self.added += parts as usize - 1;
         let piece = self.piece(body, stretch, length / parts, steepest);
         for _ in 0..parts as usize {
             let rows = self.record(body, 8, self.tape.states);
@@ -297,7 +300,18 @@ impl<'a> Compiler<'a> {
         let n = line.bodies.len();
         let tape = Tape { joints: line.joints.len(), ..Tape::default() };
         let front = Front { rows: vec![vec![]; n], ..Front::default() };
-        Self { line, highest, front, place: vec![f64::NAN; n], tape, mirrored, keep, scratch: 0, crossing }
+        Self {
+            line,
+            highest,
+            front,
+            place: vec![f64::NAN; n],
+            tape,
+            mirrored,
+            keep,
+            scratch: 0,
+            added: 0,
+            crossing,
+        }
     }
 
     /// Marches over what happens, in order; bodies end after their last event, unless they cross.
