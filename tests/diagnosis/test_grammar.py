@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -12,11 +14,13 @@ from permway.diagnosis.clock import Clock
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.elements import ELEMENTS, Element
 from permway.diagnosis.gather import gather
-from permway.diagnosis.grammar import hypotheses
+from permway.diagnosis.grammar import alike, hypotheses
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.search import search
+from permway.diagnosis.spot import Found, Spot
 from permway.model.joints import Joints
+from permway.model.presets import slab_track_viaduct_32m
 from permway.recordings.campaign import Campaign
 from simulated import simulate
 
@@ -93,6 +97,32 @@ def test_what_hangs_at_every_pad_is_described_as_such(tmp_path: Path) -> None:
     assert best.values["mass_kg"] == pytest.approx(4.0, rel=0.2)
     assert best.values["frequency_Hz"] == pytest.approx(90.0, rel=0.05)
     assert best.hypothesis.locate(best.values).what == "rail"
+
+
+def test_what_rings_alike_is_tried_where_one_ended() -> None:
+    """A rod and a resonator have the same constants; of what hangs at every pad each is begun at the other's."""
+    resonator, rod = (next(e for e in ELEMENTS if e.name == name) for name in ("resonator", "rod"))
+    assert [f.name for f in resonator.free(1e7, 50.0)] == [f.name for f in rod.free(1e7, 50.0)]
+    found = Found(
+        spot=Spot("body", "rail", (6.0, 6.0)),
+        gain=100.0,
+        degrees=4,
+        frequency_Hz=np.array([40.0, 50.0]),
+        stiffness_N_per_m=np.array([1e7 + 1e6j, 2e7 + 1e6j]),
+        sigma_N_per_m=np.array([1e6, 1e6]),
+        by_band=np.array([0.5, 0.5]),
+        total=1000.0,
+    )
+    line = slab_track_viaduct_32m()
+    situation = cast(
+        Situation, SimpleNamespace(found=(found,), campaign=SimpleNamespace(model=SimpleNamespace(line=line)))
+    )
+    offered = {h.family: h for h in hypotheses(situation)}
+    one = offered["rod on the body at every joint of pad"]
+    (other,) = alike(situation, None, one, (0.3, -0.2, 0.1))
+    assert other.family == "resonator on the body at every joint of pad"
+    assert other.starts == ((0.3, -0.2, 0.1),)
+    assert not list(alike(situation, None, offered["dashpot on the body"], (0.0, 0.0)))
 
 
 def test_what_no_name_explains_is_described_and_no_further_names_are_sought(tmp_path: Path) -> None:

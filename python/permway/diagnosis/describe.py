@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,12 +11,12 @@ from permway.diagnosis import decide, grammar
 from permway.diagnosis.choose import lines, penalty
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.fit import Fit
-from permway.diagnosis.hypothesis import Situation, Where
+from permway.diagnosis.hypothesis import Hypothesis, Situation, Where
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.plausible import beyond_belief
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.recovered import same_place
-from permway.diagnosis.search import Finalist, Round, search
+from permway.diagnosis.search import Finalist, Round, search, standing
 from permway.diagnosis.spot import Found, Spot
 from permway.model.bodies import Beam
 
@@ -135,18 +136,31 @@ class Description:
                 there = at.x_m[0]
                 found = tuple(sorted(found, key=lambda f: abs(f.spot.x_m[0] - there)))
             found = tuple(sorted(found, key=lambda f: f.spot.name != at.what))
-        result = search(
+        situation = Situation(self.searched, found)
+        result = self._held(grammar.hypotheses(situation, like), least)
+        if result.finalists:
+            first = result.finalists[0]
+            ended = dict(zip((f.name for f in first.fit.free), first.fit.z.tolist(), strict=True))
+            z = tuple(ended[name] for name in first.own)
+            near = tuple(grammar.alike(situation, like, first.hypothesis, z))
+            others = self._held(near, least).finalists if near else ()
+            rivals = [*result.finalists, *others]
+            result = replace(result, finalists=tuple(sorted(rivals, key=lambda f: -standing(f, rivals))))
+        if twice is None:
+            self._plain = result
+        return result
+
+    def _held(self, hypotheses: Iterable[Hypothesis], least: float) -> Round:
+        """Held against the records, beside nothing else."""
+        return search(
             self.searched,
-            grammar.hypotheses(Situation(self.searched, found), like),
+            hypotheses,
             learnt_base=self.base,
             prefix="1.",
             threshold=lambda _ring, _screened: least,
             most=FOLLOWED,
             progress=self.clock,
         )
-        if twice is None:
-            self._plain = result
-        return result
 
 
 def _twice(accepted: Sequence[Finalist]) -> Finalist | None:

@@ -66,6 +66,28 @@ def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hyp
             yield from _at_supports(situation, element, body, like)
 
 
+def alike(
+    situation: Situation, like: Values | None, one: Hypothesis, z: tuple[float, ...]
+) -> Iterator[Hypothesis]:
+    """Other elements of the same constants at the same place, begun where one of them ended.
+
+    What rings at one frequency may be met first by another element that rings there, too.
+
+    Parameters
+    ----------
+    situation, like
+        As of :func:`hypotheses`, which gave `one`.
+    one : Hypothesis
+    z : tuple of float
+        Coordinates of its constants where it ended.
+    """
+    place, names = one.family.partition(" ")[2], [f.name for f in one.free]
+    for other in hypotheses(situation, like):
+        apart = other.family != one.family and other.family.partition(" ")[2] == place
+        if apart and [f.name for f in other.free] == names:
+            yield replace(other, starts=(z,))
+
+
 def _typical(found: Found) -> tuple[float, float]:
     """Size of the free stiffness where it is best known, and at which frequency."""
     known = np.abs(found.stiffness_N_per_m) / np.maximum(found.sigma_N_per_m, 1e-300)

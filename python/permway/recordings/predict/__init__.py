@@ -14,7 +14,7 @@ from permway.recordings.campaign_factors import campaign_under, factors_of
 from permway.recordings.campaign_load import Dataset
 from permway.recordings.campaign_parts import Condition
 from permway.recordings.predict import decay, hammer, material, run, shaker
-from permway.recordings.predict.grid import grid_of
+from permway.recordings.predict.grid import grid_of, halved
 from permway.recordings.predict.sliding import worked
 from permway.recordings.predict.sweeps import Answer, Need, State, Sweep, plan, solve
 
@@ -149,16 +149,19 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
             return found.assign(noise_factor=("sensor", np.array(noise)))
         case "csd" | "psd":
             sensors = [campaign.sensor(name) for name in _names(data, "channel")]
-            grid = grid_of(need.frequency_Hz, _frequency(data), record.segment_s)
+            lines = need.frequency_Hz
+            if record.interpolated_Hz is None:
+                lines, values = halved(lines, values, record.segment_s)
+            grid = grid_of(lines, _frequency(data), record.segment_s)
             known = campaign.said.irregularity
-            work = worked(campaign.model, known, condition, grid, need.frequency_Hz, values)
+            work = worked(campaign.model, known, condition, grid, lines, values)
             matrix = run.expected_csd(
                 work.model,
                 known,
                 condition,
                 sensors,
-                need.frequency_Hz,
-                run.influence(work.model, need.frequency_Hz, values),
+                lines,
+                run.influence(work.model, lines, values),
                 _frequency(data),
                 segment_s=record.segment_s,
                 interpolated=record.interpolated_Hz is not None,

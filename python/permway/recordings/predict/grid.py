@@ -34,6 +34,8 @@ class Grid:
         The solved line below each point.
     share : ndarray, shape (N, 1)
         How much of the way to the next solved line.
+    cubic : sparse array, shape (N, L)
+        From the solved lines to the grid by cubics through the four nearest.
     smear : sparse array, shape (F, N)
         Power of Hann's spectral window about every line of the estimate, each row of sum 1.
     moments : sparse array, shape (n, N)
@@ -47,13 +49,20 @@ class Grid:
     step_Hz: float
     left: np.ndarray
     share: Reals
+    cubic: sparse.csr_array
     smear: sparse.csr_array
     moments: sparse.csr_array
     columns: np.ndarray
     pointers: np.ndarray
 
-    def spread(self, values: Complexes) -> Complexes:
-        """Linear interpolation from the solved lines, (L, k) to (N, k)."""
+    def spread(self, values: Complexes, *, straight: bool) -> Complexes:
+        """From the solved lines, (L, k) to (N, k): linear between them if `straight`, else by cubics.
+
+        Straight lines clip a resonance 4 Hz wide between lines 1 Hz apart by 6 %, cubics by 2 %, and between lines
+        half as far apart by 0.3 %.
+        """
+        if not straight:
+            return _apply(self.cubic, values)
         steps = np.diff(values, axis=0)
         found = steps[self.left]
         found *= self.share
@@ -142,7 +151,38 @@ def _grid(lines: bytes, estimate: bytes, segment_s: float) -> Grid:
     left = np.clip(np.searchsorted(lines_Hz, fine, side="right") - 1, 0, lines_Hz.size - 2)
     share = np.clip((fine - lines_Hz[left]) / (lines_Hz[left + 1] - lines_Hz[left]), 0.0, 1.0)
     smear = _window(fine, estimate_Hz, segment_s)
-    return Grid(fine, step, left, share[:, None], smear, *_moments(smear, left, share, lines_Hz.size - 1))
+    cubic = cubic_weights(lines_Hz, fine)
+    return Grid(fine, step, left, share[:, None], cubic, smear, *_moments(smear, left, share, lines_Hz.size - 1))
+
+
+def cubic_weights(x: Reals, at: Reals) -> sparse.csr_array:
+    """Weights of values at ascending x for those at other places, by Lagrange's cubics through the four nearest.
+
+    Parameters
+    ----------
+    x : ndarray, shape (L,)
+        Of fewer than four, the polynomial through all.
+    at : ndarray, shape (N,)
+        Not beyond the ends of x.
+
+    Returns
+    -------
+    sparse array, shape (N, L)
+    """
+    many = min(4, x.size)
+    first = np.clip(np.searchsorted(x, at, side="right") - many // 2, 0, x.size - many)
+    columns = first[:, None] + np.arange(many)
+    nodes = x[columns]
+    away = at[:, None] - nodes
+    weights = np.stack(
+        [
+            np.prod(np.delete(away, k, axis=1) / (nodes[:, [k]] - np.delete(nodes, k, axis=1)), axis=1)
+            for k in range(many)
+        ],
+        axis=1,
+    )
+    pointers = many * np.arange(at.size + 1)
+    return sparse.csr_array((weights.ravel(), columns.ravel(), pointers), shape=(at.size, x.size))
 
 
 def _moments(
@@ -171,6 +211,24 @@ def _window(fine: Reals, estimate_Hz: Reals, segment_s: float) -> sparse.csr_arr
         values.append(power / power.sum())
     at = (np.concatenate(rows), np.concatenate(columns))
     return sparse.csr_array((np.concatenate(values), at), shape=(estimate_Hz.size, fine.size))
+
+
+def halved(lines_Hz: Reals, track: Complexes, segment_s: float) -> tuple[Reals, Complexes]:
+    """The track at the solved lines and halfway between, where these lie a line of the estimate apart.
+
+    A wheel on its track may resonate within a few lines; the track alone has nothing as narrow, so it may be
+    interpolated, and what wheels do on it is solved at twice as many lines.
+
+    Parameters
+    ----------
+    lines_Hz : ndarray, shape (L,)
+    track : ndarray of complex128, shape (L, wheels, wheels)
+    segment_s : float
+    """
+    wide = np.flatnonzero(np.diff(lines_Hz) > 0.9 / segment_s)
+    lines = np.insert(lines_Hz, wide + 1, 0.5 * (lines_Hz[wide] + lines_Hz[wide + 1]))
+    flat = _apply(cubic_weights(lines_Hz, lines), track.reshape(lines_Hz.size, -1))
+    return lines, flat.reshape(-1, *track.shape[1:])
 
 
 def solved_lines(

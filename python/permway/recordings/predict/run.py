@@ -90,24 +90,25 @@ def expected_csd(
     chains = _chains(sensors, grid.frequency_Hz[:1] if flat else grid.frequency_Hz)
 
     def expected(sources: Sequence[Complexes], density: Reals) -> Complexes:
-        """Of independent sources that are linear between the solved lines."""
-        if flat:
+        """Of independent sources."""
+        if flat and interpolated:
             return grid.expected_between([source * chains for source in sources], density)
-        parts = [grid.expected(grid.spread(source) * chains, density) for source in sources]
+        parts = [grid.expected(grid.spread(source, straight=interpolated) * chains, density) for source in sources]
         return np.asarray(np.sum(parts, axis=0))
 
     power = excitation.profile(model, known, condition, grid)
     if interpolated:
         upper = expected([amplitudes(model, condition, sensors, lines_Hz, mine)], power)
     else:
-        spread = grid.spread(mine.reshape(lines_Hz.size, -1)).reshape(-1, *mine.shape[1:])
+        spread = grid.spread(mine.reshape(lines_Hz.size, -1), straight=False).reshape(-1, *mine.shape[1:])
         upper = grid.expected(amplitudes(model, condition, sensors, grid.frequency_Hz, spread) * chains, power)
     for moved, density in _sources(model, known, condition, grid, lines_Hz, per_profile):
         upper += expected([source[:, chosen] * _there(sensors, lines_Hz) for source in moved], density)
     for remainder in left:
         per_force = pushed(model.train.vehicle, lines_Hz, remainder.rows, per_profile)[:, :, chosen]
         per_force = per_force * _there(sensors, lines_Hz)[:, None, :]
-        fine = grid.spread(per_force.reshape(lines_Hz.size, -1)).reshape(-1, *per_force.shape[1:])
+        fine = grid.spread(per_force.reshape(lines_Hz.size, -1), straight=interpolated)
+        fine = fine.reshape(-1, *per_force.shape[1:])
         fine *= chains[:, None, :]
         mixed = np.einsum("ntk,ntc->knc", shares(remainder, grid.frequency_Hz), fine)
         upper += np.sum([grid.expected(one, np.ones(grid.frequency_Hz.size)) for one in mixed], axis=0)

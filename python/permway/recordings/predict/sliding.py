@@ -14,7 +14,7 @@ from permway.model.vehicle_additions import FlexibleMode
 from permway.recordings.campaign_parts import Condition, IrregularityKnown
 from permway.recordings.predict import excitation
 from permway.recordings.predict.excitation import speed_of
-from permway.recordings.predict.grid import Grid
+from permway.recordings.predict.grid import Grid, cubic_weights
 from permway.recordings.predict.motion import influence, pushed, wheels_of
 from permway.response.sliding import Remainder, at_work, remainders, sliders_of
 
@@ -69,17 +69,14 @@ def worked(
     late = np.exp(-2j * np.pi * np.outer(uniform, (wheels[0] - wheels) / speed_of(condition)))
     rough = np.sqrt(_resampled(excitation.profile(model, known, condition, grid), grid.frequency_Hz, uniform))
     rough[uniform < lines_Hz[0]] = 0.0
-    left = np.clip(np.searchsorted(lines_Hz, uniform, side="right") - 1, 0, lines_Hz.size - 2)
-    share = np.clip((uniform - lines_Hz[left]) / (lines_Hz[left + 1] - lines_Hz[left]), 0.0, 1.0)
-
+    between = cubic_weights(lines_Hz, np.clip(uniform, lines_Hz[0], lines_Hz[-1]))
     influence_of = retuned(model, lines_Hz, track)
 
     def motion(vehicle: Vehicle) -> Complexes:
         per_profile = influence_of(vehicle)
-        between = np.diff(per_profile, axis=0)[left]
-        between *= share[:, None, None]
-        between += per_profile[left]
-        return np.asarray(rough[:, None] * (between @ late[:, :, None])[:, :, 0])
+        flat = np.ascontiguousarray(per_profile.reshape(lines_Hz.size, -1)).view(np.float64)
+        there = (between @ flat).view(np.complex128).reshape(-1, *per_profile.shape[1:])
+        return np.asarray(rough[:, None] * (there @ late[:, :, None])[:, :, 0])
 
     vehicle = at_work(train.vehicle, uniform, motion)
     return Work(with_vehicle(model, vehicle), remainders(vehicle, STEP_HZ, motion(vehicle)))
