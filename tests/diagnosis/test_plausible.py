@@ -22,6 +22,8 @@ def test_ranges_are_those_of_the_catalogue() -> None:
     assert found["loss_factor"] == (0.005, 0.5)
     assert "x_m" not in found
     assert plausible("novel") == {}
+    # A second line that is not there is no reason for doubt.
+    assert not beyond_belief(finalist("mains_lines", second=(3e-5, 5e-4)))
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ PARAMETERS = {
     "frequency_Hz": "Hz, within 0.6 of 50, 60 or 16.7",
     "amplitude": "unit of the channel: a, of the first line",
     "decay": "1, 0 to 3: p",
-    **dict.fromkeys(("second", "third", "fourth", "fifth"), "1, 0.001 to 10: of the first line"),
+    **dict.fromkeys(("second", "third", "fourth", "fifth"), "1, 0 to 10: of the first line"),
 }
 SIGNATURE = "Lines that no speed moves, in one channel, or coherent in several whatever their bodies do."
 CONFUSED_WITH = {

@@ -25,7 +25,7 @@ PARAMETERS = {
     "compliance": "1, 0.002 to 120: of the soil's spring, over that of one bearing at 10 Hz",
     "mass_kg": "kg, 1e3 to 1e7: of pier and foundation, the model's share",
     "loss_factor": "1, 0.005 to 5: of the soil's spring",
-    "radiation": "1, 0.0004 to 25: loss factor at 10 Hz of the dashpot that radiation into the soil is",
+    "radiation": "1, 0 to 25: loss factor at 10 Hz of the dashpot that radiation into the soil is",
 }
 SIGNATURE = (
     "Responses of the girder at its ends and its rigid and first bending motions, at all supports alike; the "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -119,6 +120,12 @@ def _joints(segment: Segment, values: Mapping[str, float]) -> list[float]:
     return [float(x) for x in places[(places > segment.start + least) & (places < segment.stop - least)]]
 
 
+def _at(name: str, segments: list[Segment], values: Mapping[str, float]) -> Where:
+    """From the first joint to the last."""
+    x = [joint for segment in segments for joint in _joints(segment, values)]
+    return Where(name, (min(x), max(x))) if x else Where(name)
+
+
 def _start(length: float, offset: float) -> tuple[float, float]:
     return float(np.log(length / CENTRE_M) / np.log(FACTOR)), offset / OFFSET
 
@@ -141,7 +148,7 @@ def _cut(name: str, segments: list[Segment], tried: list[tuple[float, float]]) -
         family=FAMILY,
         free=_free(),
         amend=amend,
-        locate=lambda _: Where(what=name),
+        locate=partial(_at, name, segments),
         starts=tuple(_start(*one) for one in tried),
         law=lambda v: f"cut through every {v['length_m']:.3g} m",
         size="length_m",
@@ -202,7 +209,7 @@ def _at_fasteners(name: str, segments: list[Segment], length: float, start: floa
             log_free("dowels_N_per_m", "N/m", 1e8, 10.0),
         ),
         amend=amend,
-        locate=lambda _: Where(what=name),
+        locate=lambda v: _at(name, segments, dict(v, offset=start / length)),
         starts=((0.0, -2.0), (0.0, 1.0)),
         law=lambda v: (
             f"cut through every {v['length_m']:.3g} m, at fasteners, dowels of {v['dowels_N_per_m']:.2g} N/m"
@@ -230,7 +237,7 @@ def _bending(name: str, segments: list[Segment], tried: list[tuple[float, float]
         family=FAMILY,
         free=(*_free(), log_free("flexibility_m", "m", 3.0, 10.0, lowest=1e-4)),
         amend=amend,
-        locate=lambda _: Where(what=name),
+        locate=partial(_at, name, segments),
         starts=tuple((*_start(*one), 0.5) for one in tried),
         law=lambda v: f"joints every {v['length_m']:.3g} m that bend as {v['flexibility_m']:.2g} m of slab",
         size="flexibility_m",
