@@ -77,12 +77,32 @@ def _suite(name: str, scores: dict[str, Any]) -> list[str]:
         if "seconds" in row:
             lines.append(f"| {row['group']} | {row['cases']} | median time, s | 300 | {row['seconds']} |")
     lines += _rivals(scores.get("rivals", []))
+    lines += _parameters(scores.get("parameters", []))
     lines += ["", "| case | concealed | deviance | status | said | |", "|---|---|---:|---|---|---|"]
     for case in scores["cases"]:
         weight = "" if case["deviance"] is None else f"{case['deviance']:.0f}"
         cells = (case["case"], case["truth"], weight, case["status"], case["said"], _missed(case))
         lines.append(f"| {' | '.join(cells)} |")
     return [*lines, ""]
+
+
+def _parameters(rows: list[dict[str, Any]]) -> list[str]:
+    """Recalibrated parameters against the true ones."""
+    if not rows:
+        return []
+    count, inside = (sum(row[key] for row in rows) for key in ("campaigns", "inside"))
+    lines = [
+        "",
+        f"Recalibrated parameters of campaigns that were told rightly: {inside} of {count} lie within their 90 %",
+        "intervals. A pull is the true value less the recalibrated one in standard deviations; one that leans the",
+        "same way everywhere (mean over its standard error beyond 3) would be a prediction that is wrong:",
+        "",
+        "| parameter | campaigns | within 90 % | mean pull | rms | mean over its error |",
+        "|---|---:|---:|---:|---:|---:|",
+    ]
+    for row in rows:
+        lines.append(f"| {' | '.join(str(cell) for cell in row.values())} |")
+    return lines
 
 
 def _rivals(rows: list[dict[str, Any]]) -> list[str]:

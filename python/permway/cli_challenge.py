@@ -148,7 +148,8 @@ def challenge_suite(
 
 
 def _scores(folder: Path) -> dict[str, object]:
-    """By tier, and case by case."""
+    """By tier, case by case, and recalibrated parameter by parameter."""
+    from permway.challenge.recalibrated import by_parameter, pulls
     from permway.challenge.score import score, summary
     from permway.diagnosis.catalogue import entries
 
@@ -171,7 +172,7 @@ def _scores(folder: Path) -> dict[str, object]:
         }
         for s in scored
     ]
-    return {"tiers": summary(scored), "cases": cases}
+    return {"tiers": summary(scored), "cases": cases, "parameters": by_parameter(pulls(folder, scored))}
 
 
 def _rivals(folder: Path) -> list[dict[str, object]]:

@@ -226,9 +226,15 @@ def _ends(proof: Proof) -> dict[str, tuple[float, float]]:
 
 def _moved(fit: Fit) -> dict[str, Moved]:
     known = fit.evidence.campaign.parameters.known
-    values = fit.values()
+    values, ends = fit.values(), {name: sorted(pair) for name, pair in fit.intervals().items()}
     return {
-        f.name: Moved(value=values[f.name], prior=known[f.name].nominal, z=float(z))
+        f.name: Moved(
+            value=values[f.name],
+            prior=known[f.name].nominal,
+            z=float(z),
+            low=ends[f.name][0],
+            high=ends[f.name][1],
+        )
         for f, z in zip(fit.free, fit.z, strict=True)
         if f.name in known
     }

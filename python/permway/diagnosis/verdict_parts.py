@@ -171,6 +171,10 @@ class Moved(VerdictPart):
     """The owner's value."""
     z: Number
     """Value less prior in standard deviations of the owner's tolerance."""
+    low: Number | None = None
+    """Lower end of the 90 % interval."""
+    high: Number | None = None
+    """Upper end of the 90 % interval."""
 
 
 class Recalibrated(VerdictPart):
