@@ -29,7 +29,8 @@ def test_a_resonance_of_a_wheel_on_its_track_keeps_its_peak() -> None:
     stiffness = 1.0 / resonance(lines)
     halves, track = halved(lines, stiffness[:, :, None], 1.0)
     assert np.isin(lines, halves).all()
-    assert np.diff(halves).max() == 0.5
+    assert np.diff(halves[halves < 128.0]).max() == 0.5
+    assert np.diff(halves).max() == 1.0
     grid, coarse = grid_of(halves, ESTIMATE_HZ, 1.0), grid_of(lines, ESTIMATE_HZ, 1.0)
     exact = resonance(grid.frequency_Hz)
     assert np.abs(grid.spread(1.0 / track[:, :, 0], straight=False) - exact).max() < 0.004 * np.abs(exact).max()

@@ -232,8 +232,7 @@ class SpectraBlock:
         gains : ndarray, shape (channels,)
             How much of it each channel has.
         """
-        model = self._expected["csd"].values[:, :, self._lines]
-        added = self._model_added
+        model, added = self._expected["csd"].values[:, :, self._lines], self._model_added
         each = np.exp(SMALL * gains)
         moved = (model - added) * each[:, None, None] * each[:, None] + added
         before, after = (self._logarithms(csd) for csd in (model, moved))

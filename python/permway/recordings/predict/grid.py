@@ -21,6 +21,9 @@ FINE_LINES, FINER = 16.0, 4.0
 """Lines of an estimate below which is solved so many times as finely: there resonances are narrower than a line,
 and the window brings the power of one to lines beside it."""
 
+HALVED_LINES = 128.0
+"""Lines up to which wheels are solved halfway between, too; above, what resonates is wider than that."""
+
 
 @dataclass(frozen=True, eq=False)
 class Grid:
@@ -214,7 +217,7 @@ def _window(fine: Reals, estimate_Hz: Reals, segment_s: float) -> sparse.csr_arr
 
 
 def halved(lines_Hz: Reals, track: Complexes, segment_s: float) -> tuple[Reals, Complexes]:
-    """The track at the solved lines and halfway between, where these lie a line of the estimate apart.
+    """The track at the solved lines and halfway between, where these are a line of the estimate apart, and low.
 
     A wheel on its track may resonate within a few lines; the track alone has nothing as narrow, so it may be
     interpolated, and what wheels do on it is solved at twice as many lines.
@@ -225,7 +228,7 @@ def halved(lines_Hz: Reals, track: Complexes, segment_s: float) -> tuple[Reals, 
     track : ndarray of complex128, shape (L, wheels, wheels)
     segment_s : float
     """
-    wide = np.flatnonzero(np.diff(lines_Hz) > 0.9 / segment_s)
+    wide = np.flatnonzero((np.diff(lines_Hz) > 0.9 / segment_s) & (lines_Hz[:-1] < HALVED_LINES / segment_s))
     lines = np.insert(lines_Hz, wide + 1, 0.5 * (lines_Hz[wide] + lines_Hz[wide + 1]))
     flat = _apply(cubic_weights(lines_Hz, lines), track.reshape(lines_Hz.size, -1))
     return lines, flat.reshape(-1, *track.shape[1:])
