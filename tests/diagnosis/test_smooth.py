@@ -11,10 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from permway.diagnosis.gather import gather
 from permway.diagnosis.learning import learnt
-from permway.diagnosis.smooth import Origin, PairColumns, Smooth, SparseColumns
+from permway.diagnosis.smooth import Origin, PairColumns, PlainColumns, Smooth
 from permway.diagnosis.wander import LENGTHS, SHORTEST, Wander
 from permway.diagnosis.whitener import AllColumns, Whitener
-from scipy import sparse
 from simulated import simulate
 
 Reals = np.ndarray
@@ -88,14 +87,14 @@ def test_a_whitener_is_the_inverse_of_the_covariance() -> None:
     wander = Wander(1.0, 8.0)
     one = pair_columns(random, 2, 1, 4, wander.count)
     names = [Origin(name, wander, 2) for name in ("sensor a", "sensor b", "force c")]
-    other = SparseColumns(sparse.csr_array(random.standard_normal((5, 2 * wander.count))))
+    other = PlainColumns(random.standard_normal((5, 2 * wander.count)))
     rows = [2 * 2 * 4, 5]
     columns = AllColumns.of([Smooth(tuple(names), one), Smooth((names[1],), other)], rows)
     sizes = {"sensor a": 0.3, "sensor b": 0.1, "force c": 0.7}
     whitener = Whitener.of(columns, sizes, 2.0)
     matrix = np.zeros((sum(rows), columns.gram.shape[0]))
     matrix[: rows[0]] = dense(one)
-    matrix[rows[0] :, 2 * wander.count : 4 * wander.count] = other.matrix.toarray()
+    matrix[rows[0] :, 2 * wander.count : 4 * wander.count] = other.matrix
     covariance = np.eye(sum(rows))
     for index, origin in enumerate(names):
         root = np.kron(np.eye(2), sizes[origin.name] * wander.root(2.0))

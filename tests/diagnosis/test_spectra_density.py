@@ -85,7 +85,7 @@ def test_chains_errors_act_on_what_moves_and_not_on_hum() -> None:
     expected = csd(moving + hum, 14)
     hummed = SpectraBlock(plain.dataset, expected, added=hum, floor=0.0)
     # The root's power comes first in the rows, and the first channel's gain in the columns.
-    before, after = (one.smooth.columns.matrix.toarray()[: one.frequency.size] for one in (plain, hummed))
+    before, after = (one.smooth.columns.matrix[: one.frequency.size] for one in (plain, hummed))
     share = np.abs(after).max(axis=1) / np.abs(before).max(axis=1)
     expected_share = np.ones(plain.frequency.size)
     expected_share[10], expected_share[20] = 0.5, 0.0

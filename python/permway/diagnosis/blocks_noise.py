@@ -7,11 +7,10 @@ from functools import cached_property
 
 import numpy as np
 import xarray as xr
-from scipy import sparse
 
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Rows
-from permway.diagnosis.smooth import Origin, Smooth, SparseColumns
+from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
 from permway.recordings.campaign_load import Dataset
 
 FEWEST = 5
@@ -102,9 +101,9 @@ class NoiseBlock:
     @cached_property
     def smooth(self) -> Smooth:
         """What all sensors of the test have in common."""
-        column = sparse.csr_array(np.full((self.names.size, 1), ANY / self.scatter))
+        column = np.full((self.names.size, 1), ANY / self.scatter)
         origin = Origin(f"unrest {self.dataset.record.name}", Level(), 1, fixed=True)
-        return Smooth((origin,), SparseColumns(column))
+        return Smooth((origin,), PlainColumns(column))
 
 
 def _noise(data: xr.Dataset) -> Reals:

@@ -13,7 +13,7 @@ from scipy.special import polygamma
 from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks import SURE, Rows
 from permway.diagnosis.blocks_shared import apart, covariance
-from permway.diagnosis.smooth import Origin, Smooth, SparseColumns
+from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
 from permway.diagnosis.spectra_parts import coherence, mean_of_logarithm, remainder, transfer, tree_of
 from permway.diagnosis.wander import Wander
 from permway.errors import InputError
@@ -280,7 +280,7 @@ class SpectraBlock:
                 else:
                     gains.append(answer[:, None] * values)
                     phases.append(zero)
-            columns.append(sparse.csr_array(np.hstack([np.vstack(gains), np.vstack(phases)])))
+            columns.append(np.hstack([np.vstack(gains), np.vstack(phases)]))
         if speed is not None:
             # The same track under every speed: of a power, as half as much in every channel.
             level = []
@@ -289,11 +289,11 @@ class SpectraBlock:
                 values = answer[:, None] * LEVEL.values(self.frequency[at] / speed) / sigma[:, None]
                 level.extend([values, np.zeros_like(values)] if what == "transfer" else [values])
             origins.append(Origin("irregularity", LEVEL, 1, chain=False))
-            columns.append(sparse.csr_array(np.vstack(level)))
-        whole = sparse.csr_array(sparse.hstack(columns))
+            columns.append(np.vstack(level))
+        whole = np.hstack(columns)
         if self._apart is not None:
-            whole = sparse.csr_array(self._apart @ whole)
-        return Smooth(tuple(origins), SparseColumns(whole))
+            whole = np.asarray(self._apart @ whole)
+        return Smooth(tuple(origins), PlainColumns(whole))
 
 
 LEVEL = Wander(0.005, 20.0, shortest=1.4)

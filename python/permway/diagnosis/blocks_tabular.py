@@ -6,11 +6,10 @@ from functools import cached_property
 
 import numpy as np
 import xarray as xr
-from scipy import sparse
 
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Rows
-from permway.diagnosis.smooth import Origin, Smooth, SparseColumns
+from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
 from permway.diagnosis.wander import Wander
 from permway.recordings.campaign_load import Dataset
 
@@ -83,6 +82,6 @@ class TableBlock:
         matrix = np.block([[values, zero], [zero, values]]) if self.complex else values
         origin = Origin(f"record {self.dataset.record.name}", wander, 2 if self.complex else 1)
         if self.name != "decay_rate":
-            return Smooth((origin,), SparseColumns(sparse.csr_array(matrix)))
+            return Smooth((origin,), PlainColumns(matrix))
         section = Origin("decay of the section", wander, 1)
-        return Smooth((origin, section), SparseColumns(sparse.csr_array(np.hstack([matrix, matrix]))))
+        return Smooth((origin, section), PlainColumns(np.hstack([matrix, matrix])))

@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from scipy import sparse
 
 from permway.arrays import Complexes, Reals
 
@@ -84,15 +83,15 @@ class Smooth:
 
 
 @dataclass(frozen=True)
-class SparseColumns:
+class PlainColumns:
     """Of any block.
 
     Attributes
     ----------
-    matrix : sparse matrix, shape (n, c)
+    matrix : ndarray, shape (n, c)
     """
 
-    matrix: sparse.csr_array
+    matrix: Reals
 
     def pull(self, values: Reals) -> Reals:
         """See :class:`Columns`."""
@@ -104,12 +103,11 @@ class SparseColumns:
 
     def gram(self) -> Reals:
         """See :class:`Columns`."""
-        return np.asarray((self.matrix.T @ self.matrix).toarray())
+        return np.asarray(self.matrix.T @ self.matrix)
 
-    def masked(self, rows: np.ndarray) -> SparseColumns:
+    def masked(self, rows: np.ndarray) -> PlainColumns:
         """See :class:`Columns`."""
-        keep = sparse.csr_array(sparse.diags(rows.astype(float)))
-        return SparseColumns(sparse.csr_array(keep @ self.matrix))
+        return PlainColumns(self.matrix * rows[:, None])
 
 
 @dataclass(frozen=True)
