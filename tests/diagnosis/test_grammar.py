@@ -17,7 +17,7 @@ from permway.diagnosis.gather import gather
 from permway.diagnosis.grammar import alike, hypotheses
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
-from permway.diagnosis.search import search
+from permway.diagnosis.search import Finalist, search
 from permway.diagnosis.spot import Found, Spot
 from permway.model.joints import Joints
 from permway.model.presets import slab_track_viaduct_32m
@@ -48,6 +48,20 @@ def test_no_element_gives_energy(element: Element, far: float) -> None:
         assert (stiffness.imag >= -1e-9 * np.abs(stiffness)).all()
 
 
+def described(campaign: Campaign) -> Finalist:
+    """The element that does best."""
+    base, searched = bases(gather(campaign, threads=1), Clock(None))
+    result = search(
+        searched,
+        hypotheses(Situation(searched, scanned(searched))),
+        learnt_base=base,
+        prefix="1.",
+        threshold=lambda _ring, _screened: 10.0,
+        progress=lambda *_: None,
+    )
+    return result.finalists[0]
+
+
 def beside_four_pads(campaign: Campaign) -> Campaign:
     joints = Joints(between=("rail", "deck"), law="inertia", at=(6.6, 7.2, 7.8, 8.4))
     return with_joints(campaign, joints, laws={"inertia": fixed_mass(6.0)})
@@ -55,18 +69,7 @@ def beside_four_pads(campaign: Campaign) -> Campaign:
 
 def test_inertances_beside_some_pads_are_described_as_such(tmp_path: Path) -> None:
     """No effect of the catalogue; a stretch of elements, with its ends and its size."""
-    case = simulate(tmp_path / "c", 8, amend=beside_four_pads)
-    base, searched = bases(gather(case.campaign, threads=1), Clock(None))
-    found = scanned(searched)
-    result = search(
-        searched,
-        hypotheses(Situation(searched, found)),
-        learnt_base=base,
-        prefix="1.",
-        threshold=lambda _ring, _screened: 10.0,
-        progress=lambda *_: None,
-    )
-    best = result.finalists[0]
+    best = described(simulate(tmp_path / "c", 8, amend=beside_four_pads).campaign)
     assert best.hypothesis.family == "inerter beside each joint of a stretch"
     assert best.values["inertance_kg"] == pytest.approx(6.0, rel=0.1)
     start, stop = best.hypothesis.locate(best.values).x_m or (0.0, 0.0)
@@ -82,17 +85,7 @@ def on_the_rail_at_every_pad(campaign: Campaign) -> Campaign:
 
 
 def test_what_hangs_at_every_pad_is_described_as_such(tmp_path: Path) -> None:
-    case = simulate(tmp_path / "c", 8, amend=on_the_rail_at_every_pad)
-    base, searched = bases(gather(case.campaign, threads=1), Clock(None))
-    result = search(
-        searched,
-        hypotheses(Situation(searched, scanned(searched))),
-        learnt_base=base,
-        prefix="1.",
-        threshold=lambda _ring, _screened: 10.0,
-        progress=lambda *_: None,
-    )
-    best = result.finalists[0]
+    best = described(simulate(tmp_path / "c", 8, amend=on_the_rail_at_every_pad).campaign)
     assert best.hypothesis.family == "resonator on the body at every joint of pad"
     assert best.values["mass_kg"] == pytest.approx(4.0, rel=0.2)
     assert best.values["frequency_Hz"] == pytest.approx(90.0, rel=0.05)

@@ -14,12 +14,11 @@ from permway.diagnosis.blocks import Block, Rows
 from permway.diagnosis.blocks_frf import FrfBlock, thinned
 from permway.diagnosis.blocks_noise import NoiseBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
-from permway.diagnosis.spectra_parts import added_to
 from permway.diagnosis.wander import FIRST_LENGTH
 from permway.diagnosis.whitener import AllColumns, Whitener
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import Answer, Need, State, need_of, plan, predict_one, solve
+from permway.recordings.predict import Answer, Need, State, added_to, need_of, plan, predict_one, solve
 
 SMALLEST_SMOOTH, LARGEST_SMOOTH = 0.001, 0.2
 """Between which the size of smooth errors is learnt, neper or rad: 0.009 and 1.7 dB."""

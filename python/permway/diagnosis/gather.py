@@ -13,11 +13,10 @@ from permway.diagnosis.blocks_noise import NoiseBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
 from permway.diagnosis.evidence import Evidence
-from permway.diagnosis.spectra_parts import added_to
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import predict, why_not
+from permway.recordings.predict import added_to, predict, why_not
 
 
 def predictable(campaign: Campaign) -> tuple[list[Dataset], dict[str, str]]:

@@ -6,10 +6,6 @@ import numpy as np
 from scipy.special import digamma
 
 from permway.arrays import Complexes, Reals
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict.grid import solved_lines
-from permway.recordings.predict.run import added_csd
 
 
 def coherence(csd: Complexes) -> Reals:
@@ -43,12 +39,3 @@ def tree_of(coherence: Reals) -> tuple[int, list[tuple[int, int]]]:
         tree.append((child, parent))
         inside.append(child)
     return 0, tree
-
-
-def added_to(campaign: Campaign, dataset: Dataset) -> Reals:
-    """Expected cross spectra of the noise and hum of the channels of a run, (channels, channels, F)."""
-    data, record = dataset.data, dataset.record
-    frequency = np.asarray(data["frequency"].values, dtype=np.float64)
-    sensors = [campaign.sensor(str(name)) for name in data["channel"].values]
-    lines = solved_lines(frequency, record.segment_s, record.interpolated_Hz)
-    return np.moveaxis(added_csd(sensors, lines, frequency, record.segment_s), 0, -1)

@@ -172,7 +172,7 @@ class Moved(VerdictPart):
     z: Number
     """Value less prior in standard deviations of the owner's tolerance."""
     low: Number | None = None
-    """Lower end of the 90 % interval."""
+    """Lower end of the 90 % interval by the fit's covariance."""
     high: Number | None = None
     """Upper end of the 90 % interval."""
 

@@ -5,7 +5,7 @@
 
 use crate::{
     c64,
-    chain::{self, Engine, Group, Response, Tape, Wanted},
+    chain::{self, Engine, Group, MOST_ADDED, Response, Tape, Wanted},
     error::CoreError,
     lanes::LANES,
     line::{Line, Point},
@@ -166,8 +166,9 @@ pub fn sweep_into(
             };
             let tape = Tape::new(line, request.forces, request.sensors, highest, wanted);
             if tape.is_too_long() {
-                let what =
-                    format!("waves at {highest} Hz are too short: the line would need more than 250,000 elements");
+                let what = format!(
+                    "waves at {highest} Hz are too short: the line would need more than {MOST_ADDED} elements"
+                );
                 return Err(CoreError::Invalid(what));
             }
             Plan::Chain(tape)

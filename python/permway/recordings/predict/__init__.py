@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from permway.arrays import Reals
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_factors import campaign_under, factors_of
@@ -24,6 +25,7 @@ __all__ = [
     "PassBy",
     "State",
     "Sweep",
+    "added_to",
     "need_of",
     "plan",
     "predict",
@@ -175,6 +177,14 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
             return _like(data, "transmissibility", moved.T * np.stack(chains))
         case _:
             return decay.predicted(record, data, values)
+
+
+def added_to(campaign: Campaign, dataset: Dataset) -> Reals:
+    """Expected cross spectra of the noise and hum of the channels of a run, (channels, channels, F)."""
+    frequency, record = _frequency(dataset.data), dataset.record
+    sensors = [campaign.sensor(name) for name in _names(dataset.data, "channel")]
+    lines = run.solved_lines(frequency, record.segment_s, record.interpolated_Hz)
+    return np.moveaxis(run.added_csd(sensors, lines, frequency, record.segment_s), 0, -1)
 
 
 def _like(data: xr.Dataset, name: str, values: np.ndarray) -> xr.Dataset:

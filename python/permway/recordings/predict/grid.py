@@ -22,7 +22,8 @@ FINE_LINES, FINER = 16.0, 4.0
 and the window brings the power of one to lines beside it."""
 
 HALVED_LINES = 128.0
-"""Lines up to which wheels are solved halfway between, too; above, what resonates is wider than that."""
+"""Lines up to which wheels are solved halfway between, too. Above, cubics miss the peak of what resonates with a loss
+factor of 0.035 or more by 1.4 % at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +66,7 @@ class Grid:
         half as far apart by 0.3 %.
         """
         if not straight:
-            return _apply(self.cubic, values)
+            return weighed(self.cubic, values)
         steps = np.diff(values, axis=0)
         found = steps[self.left]
         found *= self.share
@@ -88,7 +89,7 @@ class Grid:
             The upper triangle, row by row.
         """
         scaled = fine * np.sqrt(density)[:, None]
-        return _apply(self.smear, _pairs(scaled, scaled))
+        return weighed(self.smear, _pairs(scaled, scaled))
 
     def expected_between(self, sources: Sequence[Complexes], density: Reals) -> Complexes:
         """The same of independent sources of one density, given at the solved lines and linear between them.
@@ -111,7 +112,7 @@ class Grid:
         parabolas = parabolas.reshape(3 * intervals, -1)
         shape = (self.pointers.size - 1, len(parabolas))
         weights = sparse.csr_array((self.moments @ density, self.columns, self.pointers), shape=shape)
-        return _apply(weights, parabolas)
+        return weighed(weights, parabolas)
 
 
 def _pairs(one: Complexes, other: Complexes) -> Complexes:
@@ -126,7 +127,7 @@ def _pairs(one: Complexes, other: Complexes) -> Complexes:
     return np.ascontiguousarray(found.T)
 
 
-def _apply(weights: sparse.csr_array, values: Complexes) -> Complexes:
+def weighed(weights: sparse.csr_array, values: Complexes) -> Complexes:
     """Real weights times complex values, whose parts are columns of their own."""
     real = np.ascontiguousarray(values).view(np.float64)
     return np.ascontiguousarray(weights @ real).view(np.complex128)
@@ -230,7 +231,7 @@ def halved(lines_Hz: Reals, track: Complexes, segment_s: float) -> tuple[Reals, 
     """
     wide = np.flatnonzero((np.diff(lines_Hz) > 0.9 / segment_s) & (lines_Hz[:-1] < HALVED_LINES / segment_s))
     lines = np.insert(lines_Hz, wide + 1, 0.5 * (lines_Hz[wide] + lines_Hz[wide + 1]))
-    flat = _apply(cubic_weights(lines_Hz, lines), track.reshape(lines_Hz.size, -1))
+    flat = weighed(cubic_weights(lines_Hz, lines), track.reshape(lines_Hz.size, -1))
     return lines, flat.reshape(-1, *track.shape[1:])
 
 

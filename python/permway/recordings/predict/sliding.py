@@ -14,7 +14,7 @@ from permway.model.vehicle_additions import FlexibleMode
 from permway.recordings.campaign_parts import Condition, IrregularityKnown
 from permway.recordings.predict import excitation
 from permway.recordings.predict.excitation import speed_of
-from permway.recordings.predict.grid import Grid, cubic_weights
+from permway.recordings.predict.grid import Grid, cubic_weights, weighed
 from permway.recordings.predict.motion import influence, pushed, wheels_of
 from permway.response.sliding import Remainder, at_work, remainders, sliders_of
 
@@ -74,8 +74,7 @@ def worked(
 
     def motion(vehicle: Vehicle) -> Complexes:
         per_profile = influence_of(vehicle)
-        flat = np.ascontiguousarray(per_profile.reshape(lines_Hz.size, -1)).view(np.float64)
-        there = (between @ flat).view(np.complex128).reshape(-1, *per_profile.shape[1:])
+        there = weighed(between, per_profile.reshape(lines_Hz.size, -1)).reshape(-1, *per_profile.shape[1:])
         return np.asarray(rough[:, None] * (there @ late[:, :, None])[:, :, 0])
 
     vehicle = at_work(train.vehicle, uniform, motion)

@@ -26,4 +26,4 @@ mod tape;
 pub use engine::{Engine, Job, Vectors};
 pub use factor::Group;
 pub use solve::Response;
-pub use tape::{Tape, Wanted};
+pub use tape::{MOST_ADDED, Tape, Wanted};

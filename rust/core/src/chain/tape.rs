@@ -69,7 +69,7 @@ pub enum Wanted {
 }
 
 /// Most elements that waves too short for the lengths between joints may add; more would fill the memory.
-const MOST_ADDED: usize = 250_000;
+pub const MOST_ADDED: usize = 250_000;
 
 /// Record of an operation that nothing will read again.
 const SCRATCH: usize = usize::MAX;
