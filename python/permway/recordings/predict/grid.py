@@ -22,8 +22,8 @@ FINE_LINES, FINER = 16.0, 4.0
 and the window brings the power of one to lines beside it."""
 
 HALVED_LINES = 128.0
-"""Lines up to which wheels are solved halfway between, too. Above, cubics miss the peak of what resonates with a loss
-factor of 0.035 or more by 1.4 % at most."""
+"""Lines up to which wheels are solved halfway between, too. Above, cubics miss the peak of what resonates with a
+loss factor of 0.035 or more by 1.4 % at most."""
 
 
 @dataclass(frozen=True, eq=False)
