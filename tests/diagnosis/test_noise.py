@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather
 from permway.diagnosis.heldout import at_fault
 from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.learning import learnt
 from permway.diagnosis.recalibrate import recalibrate
 from permway.laws.toml import to_toml
 from permway.recordings.campaign import Campaign, read_campaign
@@ -114,3 +116,27 @@ def test_few_sensors_tell_nothing_of_each_other(tmp_path: Path) -> None:
     few = dataset.data.isel(sensor=slice(0, FEWEST - 1))
     assert NoiseBlock.tells(dataset)
     assert not NoiseBlock.tells(type(dataset)(dataset.record, dataset.condition, few))
+
+
+def test_a_sensor_of_which_noise_tells_little_is_taken_to_wander_as_its_kind_does(tmp_path: Path) -> None:
+    """By itself it would be taken for a clean one, and what its responses say for as sure."""
+    made = campaign(tmp_path, 8, 3e6)
+    (dataset,) = made.load()
+    random, frf = np.random.default_rng(9), dataset.data["frf"].values.copy()
+    octaves = np.log2(dataset.data["frequency"].values)
+    apart = np.subtract.outer(octaves, octaves)
+    root = np.linalg.cholesky(np.exp(-0.5 * apart**2) + 1e-8 * np.eye(octaves.size))
+    for row in range(len(PLACES)):
+        level, phase = 0.1 * (root @ random.standard_normal((octaves.size, 2))).T
+        frf[row] *= np.exp(level + 1j * phase)
+    moved = replace(dataset, data=dataset.data.assign(frf=(dataset.data["frf"].dims, frf)))
+    evidence = gather(made, [moved])
+    for _ in range(4):
+        evidence, _ = learnt(evidence, evidence.predicted(made))
+    sizes = {name.split()[1]: size for name, size in evidence.sizes.items() if name.startswith("sensor")}
+    others = np.median([size for name, size in sizes.items() if name != NOISY])
+    told = 1.0 - evidence.whitener.variances()
+    origins = [origin.name for origin in evidence.whitener.columns.origins]
+    assert told[evidence.whitener.of_origin() == origins.index(f"sensor {NOISY}")].sum() < 2.5
+    assert others == pytest.approx(0.1, rel=0.4)
+    assert sizes[NOISY] == pytest.approx(others, rel=0.3)

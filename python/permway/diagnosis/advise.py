@@ -64,9 +64,12 @@ def separation(item: Item, right: Fit, other: Fit) -> float:
     measured = dataset.data.assign({name: values[name] for name in values.data_vars if name in dataset.data})
     evidence = evidence_of(truth, [replace(dataset, data=measured)], right.evidence)
 
+    # Deviations are held against what noise does to them on the mean, and here is none.
+    nothing = evidence.deviations(evidence.predicted(truth).datasets)
+
     def deviations(z: Reals) -> Reals:
         rival = item.planned(other.build({f.name: f.value(float(v)) for f, v in zip(other.free, z, strict=True)}))
-        return evidence.deviations(evidence.predicted(rival).datasets)
+        return evidence.deviations(evidence.predicted(rival).datasets) - nothing
 
     plain = deviations(other.z)
     columns = []

@@ -17,6 +17,9 @@ from permway.recordings.campaign_load import Dataset
 FLOOR = 0.003
 """Relative error that no record is free of: rounding, discretisation, the last decimals (0.026 dB)."""
 
+REACH = 2
+"""Lines to either side over which the variance of noise is taken together."""
+
 MOST_PAIR_STEPS, PAIR_CLOSE = 50, 1e-3
 """Of the fixed point for the size of pairs' errors, and the change of its logarithm that is none."""
 
@@ -63,10 +66,8 @@ class FrfBlock:
         self.measured: Complexes = data["frf"].values
         self.frequency: Reals = data["frequency"].values
         size = np.abs(self.measured)
-        # The coherence comes from the same blows: its scatter widens what it says of them.
-        averages = float(data.attrs.get("averages", np.inf))
-        widened = averages / (averages - 2.0) if np.isfinite(averages) and averages > 2.5 else 1.0
-        noise = _noise_variance(widened * data["log_variance"].values * size**2, reach=2)
+        noise = _noise_variance(data["log_variance"].values * size**2, reach=REACH)
+        noise *= _widened(float(data.attrs.get("averages", np.inf)), lines=2 * REACH + 1)
         self.sigma = np.sqrt(noise + (floor * size) ** 2)
         used = np.isfinite(self.measured) & np.isfinite(self.sigma) & (self.sigma > 0.0)
         # What is not used weighs nothing, and stays in its place.
@@ -80,6 +81,8 @@ class FrfBlock:
         seen = np.minimum(size, np.abs(expected))
         self._logarithmic = used & (np.maximum(own * size, np.sqrt(noise)) < SURE * seen)
         self._seen: Complexes = self._measured[self._logarithmic]
+        # A response that noise has made larger weighs more: so much is the weighed logarithm above zero.
+        self._lifted: Reals = 2.0 * (noise[self._logarithmic] / np.abs(self._seen) ** 2)
         # Of what is mostly noise, smooth errors act on what is there.
         self._there: Complexes = np.where(self._logarithmic, self._measured, expected)
         self._span = span or (float(self.frequency[0]), float(self.frequency[-1]))
@@ -109,9 +112,9 @@ class FrfBlock:
 
     def error(self, predicted: xr.Dataset) -> Reals:
         """Root mean square of the logarithm of measured over predicted by pair, shape (sensors, points, 1)."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            relative = np.abs(self.off(predicted) / self._measured) ** 2
-        total = np.where(self._logarithmic, relative, 0.0).sum(axis=-1, keepdims=True)
+        squares = np.zeros(self._logarithmic.shape)
+        squares[self._logarithmic] = _square(self._logarithms(predicted["frf"].values))
+        total = squares.sum(axis=-1, keepdims=True)
         return np.asarray(np.sqrt(total / np.maximum(self._logarithmic.sum(axis=-1, keepdims=True), 1)))
 
     def with_reference(self, reference: xr.Dataset) -> FrfBlock:
@@ -162,12 +165,16 @@ class FrfBlock:
         """Measured less predicted, in the response's unit, as errors that multiply have it."""
         model = predicted["frf"].values
         found = self._measured - model
+        found[self._logarithmic] = self._seen * (self._logarithms(model) - self._lifted)
+        return np.asarray(found)
+
+    def _logarithms(self, model: Complexes) -> Complexes:
+        """Of measured over predicted, of the lines that count by it."""
         # A model that predicts nothing there has no logarithm: what is not finite is refused where it is used.
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = self._seen / model[self._logarithmic]
             # The logarithm by its parts: several times faster than that of complex numbers.
-            found[self._logarithmic] = self._seen * (0.5 * np.log(_square(ratio)) + 1j * np.angle(ratio))
-        return np.asarray(found)
+            return np.asarray(0.5 * np.log(_square(ratio)) + 1j * np.angle(ratio))
 
     def along(self, predicted: xr.Dataset) -> Complexes:
         """Direction in which a gain moves a deviation; a phase moves it across."""
@@ -223,7 +230,18 @@ def _square(values: Complexes) -> Reals:
     return np.asarray(values.real**2 + values.imag**2)
 
 
-def _noise_variance(raw: Reals, reach: int = 4) -> Reals:
+def _widened(averages: float, lines: int) -> float:
+    """By what a variance of noise is too small that comes from the coherence of the same blows.
+
+    One blow of K goes into the response itself; and few blows scatter, of which `lines` are taken together.
+    """
+    if not np.isfinite(averages) or averages <= 1.0:
+        return 1.0
+    freedom = lines * (averages - 1.0)
+    return averages / (averages - 1.0) * (freedom / (freedom - 1.0) if freedom > 1.0 else 1.0)
+
+
+def _noise_variance(raw: Reals, reach: int) -> Reals:
     """Smoothed over neighbouring lines, so that a line's weight does not follow its own error.
 
     Parameters

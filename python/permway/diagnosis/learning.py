@@ -5,6 +5,8 @@ MacKay's fixed point (1992): a coefficient counts by as much as the records tell
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from permway.arrays import Reals
@@ -15,7 +17,8 @@ from permway.recordings.campaign import Campaign
 from permway.recordings.compare import NEPER_DB
 
 USUAL, SEEN = 0.02, 4.0
-"""Size of smooth errors that is expected beforehand, neper or rad, and how many coefficients it counts for."""
+"""Size of smooth errors that is expected beforehand, neper or rad, or as those of its kind have; and how many
+coefficients it counts for."""
 
 APART, FEWEST_ALIKE = 3.0, 4
 """Times the median of its kind that the size of an origin may be, and of how many that is told."""
@@ -49,13 +52,15 @@ def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
         coefficients, told = whitener.explained(deviations), 1.0 - whitener.variances()
         origin_of = whitener.of_origin()
         sizes, change = dict(evidence.sizes), 0.0
+        usual = {kind: max(typical, USUAL) for kind, typical in _typical(evidence.sizes).items()}
         for index, origin in enumerate(whitener.columns.origins):
             if origin.fixed:
                 continue
             mine, old = origin_of == index, evidence.sizes[origin.name]
             # As if so many more of the usual size had been seen: what does not fit is not all chain.
             power = float(np.sum(coefficients[mine] ** 2)) * old**2
-            new = float(np.sqrt((power + SEEN * USUAL**2) / (told[mine].sum() + SEEN)))
+            expected = SEEN * usual.get(_kind(origin.name), USUAL) ** 2
+            new = float(np.sqrt((power + expected) / (told[mine].sum() + SEEN)))
             highest = _highest(evidence.campaign, origin.name)
             sizes[origin.name] = float(np.clip(new, SMALLEST_SMOOTH, highest))
         sizes = _alike(sizes)
@@ -76,7 +81,7 @@ def _highest(campaign: Campaign, origin: str) -> float:
     if stated is not None:
         # Two standard deviations, of an amplitude.
         return float(TRUSTED * 0.5 * stated / NEPER_DB)
-    return LARGEST.get(origin.split()[0], LARGEST_SMOOTH)
+    return LARGEST.get(_kind(origin), LARGEST_SMOOTH)
 
 
 def _alike(sizes: dict[str, float]) -> dict[str, float]:
@@ -84,14 +89,20 @@ def _alike(sizes: dict[str, float]) -> dict[str, float]:
 
     What one channel is missed by beyond that is a fault of its own, or physics, and is sought.
     """
+    most = {kind: max(APART * typical, USUAL) for kind, typical in _typical(sizes).items()}
+    return {name: min(size, most.get(_kind(name), np.inf)) for name, size in sizes.items()}
+
+
+def _typical(sizes: Mapping[str, float]) -> dict[str, float]:
+    """Median size of each kind of origin that there are enough of."""
     kinds: dict[str, list[float]] = {}
     for name, size in sizes.items():
-        kinds.setdefault(name.split()[0], []).append(size)
-    most = {
-        kind: max(APART * float(np.median(found)), USUAL) if len(found) >= FEWEST_ALIKE else np.inf
-        for kind, found in kinds.items()
-    }
-    return {name: min(size, most[name.split()[0]]) for name, size in sizes.items()}
+        kinds.setdefault(_kind(name), []).append(size)
+    return {kind: float(np.median(found)) for kind, found in kinds.items() if len(found) >= FEWEST_ALIKE}
+
+
+def _kind(origin: str) -> str:
+    return origin.split()[0]
 
 
 def _of_best_length(evidence: Evidence, deviations: Reals) -> Evidence:
