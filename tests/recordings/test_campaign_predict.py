@@ -66,19 +66,22 @@ def test_a_hammer_test_is_receptance_through_the_chains(tmp_path: Path) -> None:
     assert predicted.dims == ("sensor", "force", "frequency")
 
 
-def test_records_of_one_temperature_share_one_solve(tmp_path: Path) -> None:
+def test_records_of_one_temperature_and_of_the_same_lines_share_one_solve(tmp_path: Path) -> None:
     campaign = small(tmp_path)
-    needs = [need_of(campaign, d) for d in (blows(campaign), run(campaign))]
-    sweeps = plan(need for need in needs if need is not None)
-    assert len(sweeps) == 1
-    # Two sensors and four wheels push; nobody needs more.
-    assert len(sweeps[0].forces) == 6
-    cold = Need(-10.0, FREQUENCY, (("rail", 1.0),), (("rail", 2.0),))
-    assert len(plan([cold, *(n for n in needs if n is not None)])) == 2
-    answer = Answer(sweeps[0], np.zeros((sweeps[0].frequency_Hz.size, len(sweeps[0].sensors), 6), dtype=complex))
+    hammer, train = (need_of(campaign, d) for d in (blows(campaign), run(campaign)))
+    assert hammer is not None
+    assert train is not None
+    mine = Need(hammer.temperature_C, hammer.frequency_Hz.copy(), (("rail", 1.0),), (("rail", 2.0),))
+    shared, wheels = plan([hammer, mine, train])
+    # Two sensors, and one place of another record; four wheels push at lines of their own.
+    assert len(shared.forces) == 3
+    assert len(wheels.forces) == 4
+    cold = Need(-10.0, hammer.frequency_Hz, (("rail", 1.0),), (("rail", 2.0),))
+    assert len(plan([cold, hammer, mine])) == 2
+    answer = Answer(shared, np.zeros((shared.frequency_Hz.size, len(shared.sensors), 3), dtype=complex))
     with pytest.raises(InputError, match="pair is not in the sweep"):
         answer.of(Need(12.0, FREQUENCY, (("deck", 1.0),), (("rail", 2.0),)))
-    with pytest.raises(InputError, match="is not in the sweep"):
+    with pytest.raises(InputError, match="of another temperature, factor or frequency"):
         answer.of(Need(12.0, np.array([0.123]), (("rail", 12.0),), (("rail", 12.0),)))
 
 

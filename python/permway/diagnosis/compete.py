@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import linalg
@@ -29,6 +29,24 @@ STEPS_TOGETHER = 5
 Progress = Callable[[str], object]
 
 
+@dataclass(frozen=True)
+class _Seen:
+    """Deviations of an amended model, and what every use of them needs.
+
+    Attributes
+    ----------
+    deviations : ndarray, shape (n,)
+    reduced : ndarray, shape (c,)
+        What smooth errors explain of them.
+    slope : ndarray, shape (p,)
+        Half the gradient of the heated objective by the base's parameters.
+    """
+
+    deviations: Reals
+    reduced: Reals
+    slope: Reals
+
+
 class Ring:
     """The recalibrated base, made ready for many hypotheses to be held against it.
 
@@ -47,7 +65,8 @@ class Ring:
         self.reduced = self.whitener.reduce(fit.jacobian)
         normal = (fit.jacobian.T @ fit.jacobian - self.reduced.T @ self.reduced) / fit.heat
         self.factor = linalg.cho_factor(normal + np.eye(fit.z.size))
-        self.start = self._objective(fit.deviations)[0]
+        self._base = self._seen(fit.deviations)
+        self.start = self._objective(self._base)[0]
         self._others: dict[tuple[tuple[str, float], ...], Ring] = {}
 
     def _about(self, hypothesis: Hypothesis) -> Ring:
@@ -63,22 +82,26 @@ class Ring:
         """What was gained over another ring's start, as gain over this one's; and back with the two exchanged."""
         return replace(quick, gain=quick.gain + self.start - other.start)
 
-    def _objective(self, deviations: Reals) -> tuple[float, Reals]:
-        """The least heated objective over linear moves of the base, and the move."""
-        reduced = self.whitener.reduce(deviations)
-        square = float(deviations @ deviations - reduced @ reduced) / self.fit.heat
-        slope = (self.fit.jacobian.T @ deviations - self.reduced.T @ reduced) / self.fit.heat + self.fit.z
-        move = -linalg.cho_solve(self.factor, slope, check_finite=False)
-        return square + float(self.fit.z @ self.fit.z) + float(slope @ move), move
+    def _seen(self, deviations: Reals) -> _Seen:
+        reduced, fit = self.whitener.reduce(deviations), self.fit
+        slope = (fit.jacobian.T @ deviations - self.reduced.T @ reduced) / fit.heat + fit.z
+        return _Seen(deviations, reduced, slope)
 
-    def _deviations(self, hypothesis: Hypothesis, z: Reals) -> Reals | None:
+    def _objective(self, seen: _Seen) -> tuple[float, Reals]:
+        """The least heated objective over linear moves of the base, and the move."""
+        square = float(seen.deviations @ seen.deviations - seen.reduced @ seen.reduced) / self.fit.heat
+        move = -linalg.cho_solve(self.factor, seen.slope, check_finite=False)
+        return square + float(self.fit.z @ self.fit.z) + float(seen.slope @ move), move
+
+    def _amended(self, hypothesis: Hypothesis, z: Reals) -> _Seen | None:
+        """With a hypothesis in the base; None if that cannot be solved."""
         values = {f.name: f.value(float(v)) for f, v in zip(hypothesis.free, z, strict=True)}
         try:
             campaign = hypothesis.amend(self.fit.campaign, values)
             deviations = self.evidence.deviations(self.evidence.predicted(campaign, self._solved).datasets)
         except (InputError, SolveError):
             return None
-        return deviations if np.isfinite(deviations).all() else None
+        return self._seen(deviations) if np.isfinite(deviations).all() else None
 
     def felt(self, hypothesis: Hypothesis, z: Reals) -> float:
         """Largest change of what a sensor is predicted to read, neper, the base's parameters as they are."""
@@ -102,32 +125,33 @@ class Ring:
         if other is not self:
             found = other.screen(replace(hypothesis, about={}), least=least)
             return self._seen_from(other, replace(found, hypothesis=hypothesis))
-        best: tuple[tuple[float, float], Quick, Reals] | None = None
+        best: tuple[tuple[float, float], Quick, _Seen] | None = None
         low, high = np.array([f.limits for f in hypothesis.free]).T
         tried = [np.clip(np.array(start, dtype=np.float64), low, high) for start in hypothesis.starts]
         for index, z in enumerate(tried):
-            deviations = self._deviations(hypothesis, z)
-            if deviations is None:
+            seen = self._amended(hypothesis, z)
+            if seen is None:
                 continue
-            curvature, slope = self._projected((deviations - self.fit.deviations)[:, None], self.fit.deviations)
-            measure = max(-float(slope[0]), 0.0) / max(float(curvature[0, 0]), 1e-12)
-            promise = measure * max(-float(slope[0]), 0.0)
-            objective, move = self._objective(deviations)
-            gain, direction = self.start - objective - float(z @ z), deviations - self.fit.deviations
+            direction = seen.deviations - self.fit.deviations
+            curvature, slope = self._along(direction, seen)
+            measure = max(-slope, 0.0) / max(curvature, 1e-12)
+            promise = measure * max(-slope, 0.0)
+            objective, move = self._objective(seen)
+            gain = self.start - objective - float(z @ z)
             one = Quick(hypothesis, z, self.fit.z + move, gain, None, direction.astype(np.float32), z, promise)
             # What a start gains as it is counts before what it promises.
             rank = max(gain, 0.0), promise
             if best is None or rank > best[0]:
-                best = rank, one, deviations
+                best = rank, one, seen
             if index < len(hypothesis.starts) and gain < 0.0 and promise > max(least, best[1].gain):
                 # It does more than is asked for: as much as is.
                 tried += weaker(hypothesis, z, measure)
         if best is None:
             return Quick(hypothesis, np.zeros(len(hypothesis.free)), self.fit.z, -np.inf)
-        _, found, deviations = best
+        _, found, seen = best
         if found.promise < least:
             return replace(found, gain=found.promise)
-        found = self._descend(found, deviations, 1)
+        found = self._descend(found, seen, 1)
         # A start that is too strong takes some steps back before it gains.
         return found if found.gain > 0.0 else self.quick(hypothesis, after=found, steps=STEPS_BACK)
 
@@ -138,7 +162,7 @@ class Ring:
             # That base weighed other lines.
             return float("inf")
         slopes = np.asarray(columns, dtype=np.float64).reshape(self.fit.deviations.size, -1)
-        normal, slope = self._projected(slopes, self.fit.deviations)
+        normal, slope = self._projected(slopes, self.whitener.reduce(slopes), self._base)
         return float(slope @ linalg.solve(normal + np.eye(slope.size), slope, assume_a="pos"))
 
     def effect(self, hypothesis: Hypothesis) -> tuple[Reals, Reals, Reals] | None:
@@ -147,10 +171,10 @@ class Ring:
         plain = self.evidence.deviations(self._solved.datasets)
         for start in hypothesis.starts:
             z = np.clip(np.array(start, dtype=np.float64), low, high)
-            deviations = self._deviations(hypothesis, z)
-            columns = None if deviations is None else self._columns(hypothesis, z, deviations, high)
-            if deviations is not None and columns is not None:
-                return z, deviations - plain, columns
+            seen = self._amended(hypothesis, z)
+            slopes = None if seen is None else self._columns(hypothesis, z, seen, high)
+            if seen is not None and slopes is not None:
+                return z, seen.deviations - plain, slopes[0]
         return None
 
     def quick(self, hypothesis: Hypothesis, *, after: Quick | None = None, steps: int = 6) -> Quick:
@@ -161,8 +185,8 @@ class Ring:
             found = other.quick(replace(hypothesis, about={}), after=begun, steps=steps)
             return self._seen_from(other, replace(found, hypothesis=hypothesis))
         found = self.screen(hypothesis) if after is None else after
-        deviations = self._deviations(hypothesis, found.z)
-        return found if deviations is None else self._descend(found, deviations, steps)
+        seen = self._amended(hypothesis, found.z)
+        return found if seen is None else self._descend(found, seen, steps)
 
     def together(self, found: Quick) -> Quick:
         """Some steps of base and effect together, for what the base has to move far for."""
@@ -172,28 +196,28 @@ class Ring:
         gain = self.start - objective
         return replace(found, z=fit.z[own:], base_z=fit.z[:own], gain=gain) if gain > found.gain else found
 
-    def _descend(self, found: Quick, deviations: Reals, steps: int) -> Quick:
+    def _descend(self, found: Quick, seen: _Seen, steps: int) -> Quick:
         hypothesis, z, objective = found.hypothesis, found.z, self.start - found.gain
         move, columns = found.base_z - self.fit.z, found.columns
         low, high = np.array([f.limits for f in hypothesis.free]).T
         damping = 1e-2
         for _ in range(steps):
-            slopes = self._columns(hypothesis, z, deviations, high)
+            slopes = self._columns(hypothesis, z, seen, high)
             if slopes is None:
                 break
-            columns = slopes.astype(np.float32)
-            normal, slope = self._projected(slopes, deviations)
+            columns = slopes[0].astype(np.float32)
+            normal, slope = self._projected(*slopes, seen)
             normal, slope = normal + np.eye(z.size), slope + z
             gained = 0.0
             for _ in range(5):
                 tried = np.clip(z + bounded_step(normal, slope, z, low, high, damping), low, high)
-                new = self._deviations(hypothesis, tried)
+                new = self._amended(hypothesis, tried)
                 if new is not None:
                     value, moved = self._objective(new)
                     value += float(tried @ tried)
                     if value < objective:
                         gained = objective - value
-                        z, deviations, objective, move = tried, new, value, moved
+                        z, seen, objective, move = tried, new, value, moved
                         damping = max(damping / 5.0, 1e-9)
                         break
                 damping *= 6.0
@@ -201,17 +225,19 @@ class Ring:
                 break
         return replace(found, z=z, base_z=self.fit.z + move, gain=self.start - objective, columns=columns)
 
-    def _columns(self, hypothesis: Hypothesis, z: Reals, at: Reals, high: Reals) -> Reals | None:
-        columns = []
+    def _columns(self, hypothesis: Hypothesis, z: Reals, at: _Seen, high: Reals) -> tuple[Reals, Reals] | None:
+        """Derivatives of the deviations by z, and what smooth errors explain of them."""
+        columns, reduced = [], []
         for index in range(z.size):
             step = 10.0 * STEP if z[index] + 10.0 * STEP <= high[index] else -10.0 * STEP
             moved = z.copy()
             moved[index] += step
-            new = self._deviations(hypothesis, moved)
+            new = self._amended(hypothesis, moved)
             if new is None:
                 return None
-            columns.append((new - at) / step)
-        return np.column_stack(columns)
+            columns.append((new.deviations - at.deviations) / step)
+            reduced.append((new.reduced - at.reduced) / step)
+        return np.column_stack(columns), np.column_stack(reduced)
 
     def projected(self, columns: Reals, other: Reals) -> Reals:
         """Products of columns, (n, p) and (n, q), smooth errors and all moves of the base taken out."""
@@ -223,19 +249,25 @@ class Ring:
 
     def pull(self, columns: Reals) -> Reals:
         """Slope of half the objective along columns at the base, smooth errors and moves of the base taken out."""
-        return self._projected(columns, self.fit.deviations)[1]
+        return self._projected(columns, self.whitener.reduce(columns), self._base)[1]
 
-    def _projected(self, columns: Reals, deviations: Reals) -> tuple[Reals, Reals]:
+    def _projected(self, columns: Reals, reduced: Reals, seen: _Seen) -> tuple[Reals, Reals]:
         """Curvature and slope over the effect's parameters, the base moving along."""
-        heat, jacobian = self.fit.heat, self.fit.jacobian
-        reduced, left = self.whitener.reduce(columns), self.whitener.reduce(deviations)
+        heat = self.fit.heat
         inner = (columns.T @ columns - reduced.T @ reduced) / heat
-        cross = (columns.T @ jacobian - reduced.T @ self.reduced) / heat
-        own = (columns.T @ deviations - reduced.T @ left) / heat
-        base = (jacobian.T @ deviations - self.reduced.T @ left) / heat + self.fit.z
-        return inner - cross @ linalg.cho_solve(self.factor, cross.T), own - cross @ linalg.cho_solve(
-            self.factor, base
-        )
+        cross = (columns.T @ self.fit.jacobian - reduced.T @ self.reduced) / heat
+        own = (columns.T @ seen.deviations - reduced.T @ seen.reduced) / heat
+        moved = linalg.cho_solve(self.factor, np.column_stack([cross.T, seen.slope]))
+        return inner - cross @ moved[:, :-1], own - cross @ moved[:, -1]
+
+    def _along(self, direction: Reals, seen: _Seen) -> tuple[float, float]:
+        """Curvature and slope at the base along the way to other deviations, the base moving along."""
+        heat, base = self.fit.heat, self._base
+        reduced, cross = seen.reduced - base.reduced, seen.slope - base.slope
+        inner = float(direction @ direction - reduced @ reduced) / heat
+        own = float(direction @ base.deviations - reduced @ base.reduced) / heat
+        moved = linalg.cho_solve(self.factor, np.column_stack([cross, base.slope]))
+        return inner - float(cross @ moved[:, 0]), own - float(cross @ moved[:, 1])
 
     def full(
         self,

@@ -41,7 +41,7 @@ PassBy = Callable[[Campaign, Dataset], xr.Dataset]
 def predict(
     campaign: Campaign, datasets: Sequence[Dataset], *, threads: int | None = None, passby: PassBy | None = None
 ) -> list[xr.Dataset]:
-    """Predict all datasets: one solve of the line for each temperature and each set of factors.
+    """Predict all datasets: one solve of the line for each temperature, set of factors and set of lines.
 
     Parameters
     ----------

@@ -229,10 +229,19 @@ def halved(lines_Hz: Reals, track: Complexes, segment_s: float) -> tuple[Reals, 
     track : ndarray of complex128, shape (L, wheels, wheels)
     segment_s : float
     """
+    lines, weights = _halving(lines_Hz.tobytes(), segment_s)
+    flat = weighed(weights, track.reshape(lines_Hz.size, -1))
+    return lines, flat.reshape(-1, *track.shape[1:])
+
+
+@lru_cache(maxsize=8)
+def _halving(solved: bytes, segment_s: float) -> tuple[Reals, sparse.csr_array]:
+    """Lines and those halfway between, and the way from the one to the other."""
+    lines_Hz = np.frombuffer(solved)
     wide = np.flatnonzero((np.diff(lines_Hz) > 0.9 / segment_s) & (lines_Hz[:-1] < HALVED_LINES / segment_s))
     lines = np.insert(lines_Hz, wide + 1, 0.5 * (lines_Hz[wide] + lines_Hz[wide + 1]))
-    flat = weighed(cubic_weights(lines_Hz, lines), track.reshape(lines_Hz.size, -1))
-    return lines, flat.reshape(-1, *track.shape[1:])
+    lines.flags.writeable = False
+    return lines, cubic_weights(lines_Hz, lines)
 
 
 def solved_lines(

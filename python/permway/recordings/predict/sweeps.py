@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -16,8 +17,8 @@ from permway.response.receptance import Place, receptance
 Spot = tuple[str, float]
 """Body and x in m."""
 
-State = tuple[float | None, Factors]
-"""Temperature, and factors on the model's numbers."""
+State = tuple[float | None, Factors, bytes]
+"""Temperature, factors on the model's numbers, and the frequencies as they stand in memory."""
 
 
 @dataclass(frozen=True)
@@ -44,12 +45,11 @@ class Need:
     @property
     def state(self) -> State:
         """What needs that one sweep serves have in common."""
-        return self.temperature_C, self.factors
+        return self.temperature_C, self.factors, self.frequency_Hz.tobytes()
 
     def is_like(self, other: Need) -> bool:
         """Whether another needs the same receptances."""
-        alike = (self.state, self.rows, self.columns) == (other.state, other.rows, other.columns)
-        return alike and np.array_equal(self.frequency_Hz, other.frequency_Hz)
+        return (self.state, self.rows, self.columns) == (other.state, other.rows, other.columns)
 
 
 @dataclass(frozen=True)
@@ -72,44 +72,8 @@ class Sweep:
 
     @property
     def state(self) -> State:
-        """Temperature and factors."""
-        return self.temperature_C, self.factors
-
-    def lines(self, frequency_Hz: Reals) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
-        """Places of frequencies in the sweep's.
-
-        Raises
-        ------
-        InputError
-            For a frequency that is not among them.
-        """
-        found = np.searchsorted(self.frequency_Hz, frequency_Hz)
-        found = np.minimum(found, self.frequency_Hz.size - 1)
-        if not np.array_equal(self.frequency_Hz[found], frequency_Hz):
-            missing = frequency_Hz[self.frequency_Hz[found] != frequency_Hz]
-            raise InputError("is not in the sweep", where="frequency_Hz", value=float(missing[0]))
-        return found
-
-    def picks(self, rows: Sequence[Spot], columns: Sequence[Spot]) -> tuple[Reals, Reals]:
-        """Indices (sensor, force) into the answer for each pair, each of shape (rows, columns).
-
-        Raises
-        ------
-        InputError
-            For a pair that the sweep does not hold.
-        """
-        forces = {(p.body, p.x_m): i for i, p in enumerate(self.forces)}
-        sensors = {(p.body, p.x_m): i for i, p in enumerate(self.sensors)}
-        at = np.empty((2, len(rows), len(columns)), dtype=np.int64)
-        for i, row in enumerate(rows):
-            for j, column in enumerate(columns):
-                if column in forces and row in sensors:
-                    at[:, i, j] = sensors[row], forces[column]
-                elif row in forces and column in sensors:
-                    at[:, i, j] = sensors[column], forces[row]
-                else:
-                    raise InputError("the pair is not in the sweep", where="sweep", value=(row, column))
-        return at[0], at[1]
+        """See :attr:`Need.state`."""
+        return self.temperature_C, self.factors, self.frequency_Hz.tobytes()
 
 
 @dataclass(frozen=True)
@@ -120,30 +84,65 @@ class Answer:
     receptance: Complexes
 
     def of(self, need: Need) -> Complexes:
-        """Receptances of a need, shape (F, rows, columns)."""
-        lines = self.sweep.lines(need.frequency_Hz)
-        sensor, force = self.sweep.picks(need.rows, need.columns)
-        return np.asarray(self.receptance[lines[:, None, None], sensor[None], force[None]])
+        """Receptances of a need, shape (F, rows, columns).
+
+        Raises
+        ------
+        InputError
+            For a need of another state, or a pair that the sweep does not hold.
+        """
+        if need.state != self.sweep.state:
+            raise InputError("is of another temperature, factor or frequency", where="need", value=need)
+        held = [tuple((p.body, p.x_m) for p in places) for places in (self.sweep.sensors, self.sweep.forces)]
+        sensor, force = _picks(need.rows, need.columns, *held)
+        return np.asarray(self.receptance[:, sensor, force])
+
+
+@lru_cache(maxsize=64)
+def _picks(
+    rows: tuple[Spot, ...], columns: tuple[Spot, ...], sensors: tuple[Spot, ...], forces: tuple[Spot, ...]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Indices of sensor and of force for each pair, each of shape (rows, columns); the line is reciprocal.
+
+    Raises
+    ------
+    InputError
+        For a pair that is not held.
+    """
+    of_sensor, of_force = ({spot: i for i, spot in enumerate(spots)} for spots in (sensors, forces))
+    at = np.empty((2, len(rows), len(columns)), dtype=np.int64)
+    for i, row in enumerate(rows):
+        for j, column in enumerate(columns):
+            if column in of_force and row in of_sensor:
+                at[:, i, j] = of_sensor[row], of_force[column]
+            elif row in of_force and column in of_sensor:
+                at[:, i, j] = of_sensor[column], of_force[row]
+            else:
+                raise InputError("the pair is not in the sweep", where="sweep", value=(row, column))
+    return at[0], at[1]
 
 
 def plan(needs: Iterable[Need]) -> list[Sweep]:
-    """One sweep for each temperature and each set of factors, which serves all needs.
+    """One sweep for each temperature, each set of factors and each set of frequencies, which serves all its needs.
 
-    A force costs a solve, a sensor nearly nothing: of every need the shorter side becomes forces.
+    A force costs a solve at every frequency, a sensor nearly nothing: of every need the shorter side becomes
+    forces, and what pushes at other frequencies is solved by itself.
     """
     grouped: dict[State, list[Need]] = {}
     for need in needs:
         grouped.setdefault(need.state, []).append(need)
     sweeps = []
-    for (temperature, factors), members in grouped.items():
+    for members in grouped.values():
         forces: dict[Spot, None] = {}
         sensors: dict[Spot, None] = {}
         for need in members:
             few, many = sorted((need.rows, need.columns), key=len)
             forces.update(dict.fromkeys(few))
             sensors.update(dict.fromkeys(many))
-        frequency = np.unique(np.concatenate([need.frequency_Hz for need in members]))
-        sweeps.append(Sweep(temperature, frequency, places_of(forces), places_of(sensors), factors))
+        one = members[0]
+        sweeps.append(
+            Sweep(one.temperature_C, one.frequency_Hz, places_of(forces), places_of(sensors), one.factors)
+        )
     return sweeps
 
 
