@@ -5,12 +5,14 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any, cast
 
+import numpy as np
 import pytest
 from permway.diagnosis.plausible import beyond_belief, plausible
 
 
 def finalist(entry: str, **intervals: tuple[float, float]) -> Any:
     return SimpleNamespace(
+        values={name: float(np.mean(ends)) for name, ends in intervals.items()},
         hypothesis=SimpleNamespace(entry=entry, free=[SimpleNamespace(name=name) for name in intervals]),
         own=[f"1.{name}" for name in intervals],
         fit=SimpleNamespace(intervals=lambda: {f"1.{name}": ends for name, ends in intervals.items()}),
@@ -36,3 +38,12 @@ def test_only_what_lies_beyond_with_all_its_interval_is_strange(ends: tuple[floa
     # A coordinate may run the other way.
     one = finalist("deck_attachment", mass_kg=(900.0, 1100.0), loss_factor=ends[::-1])
     assert beyond_belief(cast(Any, one)) is strange
+
+
+def test_what_ends_where_its_range_does_would_go_on() -> None:
+    """A springpot of the highest order is a dashpot, which has a name of its own."""
+    assert beyond_belief(finalist("pad_frequency", order=(0.7998, 0.8001)))
+    assert not beyond_belief(finalist("pad_frequency", order=(0.70, 0.78)))
+    # All of the loss may go, and all of a stiffness be lost.
+    assert not beyond_belief(finalist("layer_damping", share=(0.9999, 1.0001)))
+    assert not beyond_belief(finalist("fastener_loss", factor=(-1e-6, 1e-6)))

@@ -104,9 +104,17 @@ class Fit:
         """Values by name."""
         return {f.name: f.value(float(z)) for f, z in zip(self.free, self.z, strict=True)}
 
-    def intervals(self, width: float = WIDTH) -> dict[str, tuple[float, float]]:
-        """90 % intervals by name, by default."""
-        sigma = np.sqrt(np.diag(self.covariance))
+    def intervals(self, width: float = WIDTH, *, more: Reals | float = 0.0) -> dict[str, tuple[float, float]]:
+        """90 % intervals by name, by default.
+
+        Parameters
+        ----------
+        width : float
+            Half of an interval, in standard deviations.
+        more : ndarray, shape (p,), optional
+            Variance of z beyond that of the fit.
+        """
+        sigma = np.sqrt(np.diag(self.covariance) + more)
         return {
             f.name: (f.value(float(z - width * s)), f.value(float(z + width * s)))
             for f, z, s in zip(self.free, self.z, sigma, strict=True)

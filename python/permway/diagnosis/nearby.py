@@ -7,12 +7,14 @@ move by `dH = sum of dH/dp times the change of p`, one derivative sweep for all 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import xarray as xr
 
-from permway.arrays import Complexes
+from permway.arrays import Complexes, Reals
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.model.line import Line
 from permway.recordings.campaign import Campaign
@@ -23,6 +25,8 @@ from permway.response.sensitivity import sensitivity
 
 COLUMNS = ("bending", "shear", "mass", "rotary")
 """Of the core's tables, in the order of :data:`permway.response.sensitivity.PROPERTIES`."""
+
+Part = Literal["law", "beam"]
 
 MOST_BEAMS = 60
 """Beams and masses of a line above which all derivatives together cost more memory than they save time."""
@@ -55,24 +59,69 @@ class Nearby:
         """What a campaign near by predicts; None if its line differs by more than numbers."""
         near = self.solved
         one, other = near.campaign.model.line, campaign.model.line
-        few = len(one.beams()) + one.masses_kg().size <= MOST_BEAMS
-        if one == other or not few or campaign.model.formulation != "chain" or not _alike(one, other):
+        if one == other or not self._few(one) or campaign.model.formulation != "chain" or not _alike(one, other):
             return None
         needs = [need_of(campaign, dataset) for dataset in self.evidence.datasets]
         if not all(_same_places(new, old) for new, old in zip(needs, near.needs, strict=True)):
             return None
-        moved = {id(need): self._moved(need, campaign) for need in near.needs if need is not None}
+        return self._read(campaign, {id(n): self._moved(n, campaign) for n in near.needs if n is not None})
+
+    def bent(self, part: Part, indices: Sequence[int], share: Callable[[Reals], Reals]) -> Solved | None:
+        """What is predicted with the stiffness of laws, or of beams that bend, off at some frequencies.
+
+        Parameters
+        ----------
+        part : str
+        indices : sequence of int
+            Of the line's laws, or of its beams.
+        share : callable
+            From frequencies to the share by which it is off.
+
+        Returns
+        -------
+        Solved or None
+            None if derivatives would cost too much.
+        """
+        if not self._few(self.solved.campaign.model.line):
+            return None
+        answers: dict[int, Answer] = {}
+        for need in self.solved.needs:
+            if need is not None:
+                line = model_under(self.solved.campaign.model, need.factors).line
+                known = self._derivatives(need, line)
+                if part == "law":
+                    stiffness, slopes = line.stiffness(need.frequency_Hz, need.temperature_C), known.by_law
+                else:
+                    stiffness, slopes = line.beam_columns()["bending"][None], known.by_beam[:, :, 0]
+                chosen = list(indices)
+                by_share = np.einsum("fi,firc->frc", stiffness[:, chosen], slopes[:, chosen])
+                answers[id(need)] = self._answer(need, share(need.frequency_Hz)[:, None, None] * by_share)
+        return self._read(self.solved.campaign, answers)
+
+    def _few(self, line: Line) -> bool:
+        return len(line.beams()) + line.masses_kg().size <= MOST_BEAMS
+
+    def _read(self, campaign: Campaign, answers: Mapping[int, Answer]) -> Solved:
+        """All datasets, from what their needs were answered."""
         made: dict[int, xr.Dataset] = {}
-        for dataset, old in zip(self.evidence.datasets, near.needs, strict=True):
+        for dataset, need in zip(self.evidence.datasets, self.solved.needs, strict=True):
             if id(dataset) not in made:
-                made[id(dataset)] = predict_one(campaign, dataset, old, None if old is None else moved[id(old)])
-        return Solved(campaign, near.needs, {}, [made[id(dataset)] for dataset in self.evidence.datasets])
+                made[id(dataset)] = predict_one(
+                    campaign, dataset, need, None if need is None else answers[id(need)]
+                )
+        return Solved(campaign, self.solved.needs, {}, [made[id(dataset)] for dataset in self.evidence.datasets])
+
+    def _answer(self, need: Need, moved: Complexes) -> Answer:
+        """The receptances of a need, moved."""
+        places = places_of(need.columns), places_of(need.rows)
+        sweep = Sweep(need.temperature_C, need.frequency_Hz, *places, need.factors)
+        return Answer(sweep, self.solved.answers[need.state].of(need) + moved)
 
     def _moved(self, need: Need, campaign: Campaign) -> Answer:
         before = model_under(self.solved.campaign.model, need.factors).line
         after = model_under(campaign.model, need.factors).line
         known = self._derivatives(need, before)
-        values = self.solved.answers[need.state].of(need).copy()
+        values = np.zeros((need.frequency_Hz.size, len(need.rows), len(need.columns)), dtype=np.complex128)
         law = after.stiffness(need.frequency_Hz, need.temperature_C) - before.stiffness(
             need.frequency_Hz, need.temperature_C
         )
@@ -86,10 +135,7 @@ class Nearby:
         mass = after.masses_kg() - before.masses_kg()
         for index in np.flatnonzero(mass):
             values += mass[index] * known.by_mass[:, index]
-        sweep = Sweep(
-            need.temperature_C, need.frequency_Hz, places_of(need.columns), places_of(need.rows), need.factors
-        )
-        return Answer(sweep, values)
+        return self._answer(need, values)
 
     def _derivatives(self, need: Need, line: Line) -> _Derivatives:
         if id(need) not in self._known:

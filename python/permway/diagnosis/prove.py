@@ -10,6 +10,7 @@ from permway.diagnosis.clock import Clock
 from permway.diagnosis.e_value import log_e_value
 from permway.diagnosis.fit import Fit, gained
 from permway.diagnosis.heldout import Rest, gains, parts
+from permway.diagnosis.idealised import idealised
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.refit import weighed_anew
@@ -46,7 +47,7 @@ def prove(
         held_out=held_out,
         log_e=log_e,
         placebo=placebo_held_out,
-        unsteady=unsteady(amended, held_out),
+        unsteady=unsteady(amended, held_out) + idealised(weighed),
         weighed=weighed,
         bic_gain=bic,
         conditions=decide.conditions(

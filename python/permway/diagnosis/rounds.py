@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from permway.diagnosis.bases import BENT
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.choose import BEYOND, lines, penalty
 from permway.diagnosis.clock import Clock
@@ -87,9 +88,10 @@ def effects(
             break
         if len(accepted) > 1:
             accepted = _without_needless(base, accepted, result.threshold, clock)
-        # Once a model nearly fits, nothing is gained from blunting.
+        # Once a model nearly fits, nothing is gained from blunting, unless it does so by parameters far off.
         fit = accepted[-1].fit
-        rough = fit if fit.heat < UNFIT else settled(accepted[-1].rough)
+        bent = fit.heat > UNFIT or fit.prior > BENT * len(fit.free)
+        rough = settled(accepted[-1].rough) if bent else fit
         if len(accepted) == MOST_EFFECTS:
             break
         clock("locate")

@@ -15,6 +15,7 @@ from permway.diagnosis.decide import Conditions
 from permway.diagnosis.detectable import detectable
 from permway.diagnosis.fit import WIDTH, Fit
 from permway.diagnosis.heldout import Gain
+from permway.diagnosis.idealised import idealised
 from permway.diagnosis.labels import Mislabelled
 from permway.diagnosis.level import beyond
 from permway.diagnosis.recalibrate import UNFIT
@@ -225,8 +226,8 @@ def _ends(proof: Proof) -> dict[str, tuple[float, float]]:
 
 
 def _moved(fit: Fit) -> dict[str, Moved]:
-    known = fit.evidence.campaign.parameters.known
-    values, ends = fit.values(), {name: sorted(pair) for name, pair in fit.intervals().items()}
+    known, more = fit.evidence.campaign.parameters.known, idealised(fit)
+    values, ends = fit.values(), {name: sorted(pair) for name, pair in fit.intervals(more=more).items()}
     return {
         f.name: Moved(
             value=values[f.name],

@@ -17,8 +17,8 @@ from permway.recordings.campaign import Campaign
 LONGEST = 12.0
 """Of a stretch, in spacings."""
 
-LOOKED = 7
-"""Joints that a stretch is made of in the first look, at most."""
+LOOKED, CENTRES = 7, 3
+"""Joints that a stretch is made of in the first look, at most, and places that are looked at."""
 
 LEFT = (0.05, 0.001)
 """Of the stiffness, in the first look: a twentieth of a stiff bed still carries."""
@@ -52,11 +52,12 @@ def local_loss(
             taken.append(centre)
     telling = bool(told) and told[0].surplus > TELLING * situation.found[0].surplus
     glance = Glance(situation.fit) if telling and told[0].surplus > SURPLUS else None
+    found = None if glance is None else _looked(situation, glance, law, taken[:CENTRES])
+    if found is not None:
+        yield _hypothesis(law, step, taken[0], found, entry, family)
+        return
     for centre in taken[:most]:
-        found = None if glance is None else _looked(situation, glance, law, centre)
-        yield _hypothesis(law, step, centre, found, entry, family)
-        if found is not None:
-            return
+        yield _hypothesis(law, step, centre, None, entry, family)
 
 
 def _hypothesis(
@@ -103,10 +104,13 @@ def _length(length: float, sigma: float, step: float) -> Free:
     return replace(made, limits=(min(made.limits[0], 0.0), max(made.limits[1], 0.0)))
 
 
-def _looked(situation: Situation, glance: Glance, law: str, centre: float) -> tuple[float, float, float] | None:
+def _looked(
+    situation: Situation, glance: Glance, law: str, centres: Sequence[float]
+) -> tuple[float, float, float] | None:
     """First and last joint of the stretch whose loss explains most, and what is left; none if no loss explains.
 
-    All short stretches about the place, and from the best one on by a joint more or less at either end.
+    All short stretches about each place, and from its best one on by a joint more or less at either end. What a
+    few lost joints do shows beside them, too: the most telling place need not be among them.
     """
     campaign = situation.campaign
     x = stations_of(campaign.model.line, law)
@@ -120,19 +124,26 @@ def _looked(situation: Situation, glance: Glance, law: str, centre: float) -> tu
             known[key] = glance.objective(changed)
         return known[key]
 
-    near = int(np.argmin(np.abs(x - centre)))
-    for first in range(max(0, near - LOOKED + 2), min(x.size, near + 2)):
-        for last in range(max(first, near - 1), min(x.size, first + LOOKED)):
-            for left in LEFT:
-                objective(first, last, left)
-    best = min(known, key=lambda key: known[key])
-    while True:
+    def nearby(centre: float) -> list[tuple[int, int, float]]:
+        near = int(np.argmin(np.abs(x - centre)))
+        firsts = range(max(0, near - LOOKED + 2), min(x.size, near + 2))
+        return [
+            (first, last, left)
+            for first in firsts
+            for last in range(max(first, near - 1), min(x.size, first + LOOKED))
+            for left in LEFT
+        ]
+
+    def followed(best: tuple[int, int, float]) -> tuple[int, int, float]:
         first, last, left = best
-        for start, stop in ((first - 1, last), (first + 1, last), (first, last - 1), (first, last + 1)):
-            if 0 <= start <= stop < x.size:
-                objective(start, stop, left)
-        if min(known.values()) >= known[best]:
-            break
-        best = min(known, key=lambda key: known[key])
-    first, last, left = best
-    return (float(x[first]), float(x[last]), left) if known[best] < glance.objective(campaign) else None
+        ends = ((first - 1, last), (first + 1, last), (first, last - 1), (first, last + 1))
+        beside = [(start, stop, left) for start, stop in ends if 0 <= start <= stop < x.size]
+        better = min(beside, key=lambda key: objective(*key))
+        return followed(better) if objective(*better) < objective(*best) else best
+
+    for centre in centres:
+        followed(min(nearby(centre), key=lambda key: objective(*key)))
+    first, last, left = min(known, key=lambda key: known[key])
+    if known[first, last, left] >= glance.objective(campaign):
+        return None
+    return float(x[first]), float(x[last]), left
