@@ -10,7 +10,7 @@ import pytest
 from permway.diagnosis import rounds
 from permway.diagnosis.search import Round
 
-FITS = SimpleNamespace(heat=1.0)
+FITS = SimpleNamespace(heat=1.0, prior=0.0, free=())
 EVERY = [SimpleNamespace(domain=domain) for domain in ("path", "vehicle", "irregularity")]
 
 

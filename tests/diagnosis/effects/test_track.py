@@ -295,6 +295,32 @@ def test_no_stiffness_is_lost_or_won_where_a_fastener_holds_two_ends(
 
 
 @pytest.mark.injection
+@pytest.mark.parametrize("variant", ["", "shared"])
+@pytest.mark.parametrize(("compliance", "mass_kg"), [(0.28, 9.75e4), (0.08, 2.5e5), (1.0, 4e5)])
+def test_piers_of_one_girder_and_of_two_are_told_apart(
+    variant: str,
+    compliance: float,
+    mass_kg: float,
+    situations: Callable[[str], tuple[Situation, Campaign]],
+    tmp_path: Path,
+) -> None:
+    """Heavy or light, on rock or on soil: found from afar, and named before a girder's own modes."""
+    inject = next(h for h in entries()["pier_soil"].hypotheses(situations("two spans")[0]) if h.variant == variant)
+    values = {"compliance": compliance, "mass_kg": mass_kg, "loss_factor": 0.1, "radiation": 0.03}
+    fit, situation = of(read(tmp_path, "two spans"), 3, partial(_put, inject.amend, values))
+    ring = Ring(fit)
+    quick = [
+        ring.quick(h)
+        for name in ("pier_soil", "girder_local_modes")
+        for h in entries()[name].hypotheses(situation)
+    ]
+    found = min((ring.full(q, most_steps=25) for q in quick), key=lambda full: full.objective)
+    assert {"compliance", "mass_kg"} <= found.values().keys()
+    assert found.values()["mass_kg"] == pytest.approx(mass_kg, rel=0.15)
+    assert found.values()["compliance"] == pytest.approx(compliance, rel=0.15)
+
+
+@pytest.mark.injection
 @pytest.mark.parametrize("factor", [0.3, 3.0])
 def test_a_bearing_apart_is_found(
     factor: float, situations: Callable[[str], tuple[Situation, Campaign]], tmp_path: Path

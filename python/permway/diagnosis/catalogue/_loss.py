@@ -17,8 +17,11 @@ from permway.recordings.campaign import Campaign
 LONGEST = 12.0
 """Of a stretch, in spacings."""
 
-LOOKED, CENTRES = 7, 3
-"""Joints that a stretch is made of in the first look, at most, and places that are looked at."""
+LOOKED, CENTRES, BEST = 7, 3, 2
+"""Joints that a stretch is made of in the first look, at most, places that are looked at, and stretches told."""
+
+FURTHER = (1, 2, 3)
+"""Joints that an end of a stretch is moved by: one more may explain no more where three do."""
 
 LEFT = (0.05, 0.001)
 """Of the stiffness, in the first look: a twentieth of a stiff bed still carries."""
@@ -52,11 +55,10 @@ def local_loss(
             taken.append(centre)
     telling = bool(told) and told[0].surplus > TELLING * situation.found[0].surplus
     glance = Glance(situation.fit) if telling and told[0].surplus > SURPLUS else None
-    found = None if glance is None else _looked(situation, glance, law, taken[:CENTRES])
-    if found is not None:
+    looked = [] if glance is None else _looked(situation, glance, law, taken[:CENTRES])
+    for found in looked:
         yield _hypothesis(law, step, taken[0], found, entry, family)
-        return
-    for centre in taken[:most]:
+    for centre in [] if looked else taken[:most]:
         yield _hypothesis(law, step, centre, None, entry, family)
 
 
@@ -106,10 +108,10 @@ def _length(length: float, sigma: float, step: float) -> Free:
 
 def _looked(
     situation: Situation, glance: Glance, law: str, centres: Sequence[float]
-) -> tuple[float, float, float] | None:
-    """First and last joint of the stretch whose loss explains most, and what is left; none if no loss explains.
+) -> list[tuple[float, float, float]]:
+    """First and last joint of the stretches whose loss explains most, and what is left; none if no loss explains.
 
-    All short stretches about each place, and from its best one on by a joint more or less at either end. What a
+    All short stretches about each place, and from its best one on by a few joints more or less at an end. What a
     few lost joints do shows beside them, too: the most telling place need not be among them.
     """
     campaign = situation.campaign
@@ -136,14 +138,18 @@ def _looked(
 
     def followed(best: tuple[int, int, float]) -> tuple[int, int, float]:
         first, last, left = best
-        ends = ((first - 1, last), (first + 1, last), (first, last - 1), (first, last + 1))
+        ends = [
+            pair for k in (*FURTHER, *(-k for k in FURTHER)) for pair in ((first + k, last), (first, last + k))
+        ]
         beside = [(start, stop, left) for start, stop in ends if 0 <= start <= stop < x.size]
         better = min(beside, key=lambda key: objective(*key))
         return followed(better) if objective(*better) < objective(*best) else best
 
     for centre in centres:
         followed(min(nearby(centre), key=lambda key: objective(*key)))
-    first, last, left = min(known, key=lambda key: known[key])
-    if known[first, last, left] >= glance.objective(campaign):
-        return None
-    return float(x[first]), float(x[last]), left
+    least = glance.objective(campaign)
+    best: dict[tuple[int, int], float] = {}
+    for first, last, left in sorted(known, key=lambda key: known[key]):
+        if known[first, last, left] < least and len(best) < BEST:
+            best.setdefault((first, last), left)
+    return [(float(x[first]), float(x[last]), left) for (first, last), left in best.items()]

@@ -6,10 +6,11 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from permway.diagnosis.catalogue._change import fresh, with_line
+from permway.diagnosis.catalogue._change import fixed_mass, fresh, with_line
 from permway.diagnosis.catalogue._roles import Layer, bearings, reaches
+from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
-from permway.laws import Hysteretic, Parallel, Springpot
+from permway.laws import Hysteretic, Parallel, Series, Springpot
 from permway.laws.base import Law
 from permway.model.bodies import Mass
 from permway.model.joints import GROUND, Joints
@@ -20,7 +21,7 @@ from permway.recordings.campaign import Campaign
 ID = "pier_soil"
 DOMAIN: Domain = "path"
 FAMILY = "bearing and pier"
-SUMMARY = "Below every bearing a mass on a spring with loss: pier and soil."
+SUMMARY = "Below every bearing, or those of two girders together, a mass on a spring with loss: pier and soil."
 PARAMETERS = {
     "compliance": "1, 0.002 to 120: of the soil's spring, over that of one bearing at 10 Hz",
     "mass_kg": "kg, 1e3 to 1e7: of pier and foundation, the model's share",
@@ -40,20 +41,27 @@ AT_HZ = 10.0
 """Where the dashpot's loss is counted."""
 
 SHARED_M = 1.5
-"""Ends of two girders no farther apart stand on one pier."""
+"""Ends of two girders no farther apart may stand on one pier."""
+
+COMPLIANCES = (0.1, 0.4, 1.6)
+PIER_HZ = (10.0, 25.0, 50.0, 100.0)
+"""Begun from: of the soil, over a bearing's; and where the pier on the soil alone would ring."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
-    """One for each layer of bearings to the ground."""
-    line = situation.campaign.model.line
-    for layer in bearings(line):
+    """One for each layer of bearings to the ground, and one more where neighbouring girders may share piers."""
+    model = situation.campaign.model
+    for layer in bearings(model.line):
         if layer.lower == GROUND and not isinstance(layer.joints.at, str):
-            yield _below(layer, _shared(line, layer))
+            bearing = _stiffness(model.line, layer, model.temperature_C)
+            yield _below(layer, bearing)
+            if isinstance(layer.joints.at, Ends) and len(reaches(model.line, layer.upper)) > 1:
+                yield _below(layer, bearing, shared=True)
 
 
-def _shared(line: Line, layer: Layer) -> float:
-    several = isinstance(layer.joints.at, Ends) and len(reaches(line, layer.upper)) > 1
-    return SHARED_M if several else 0.0
+def _stiffness(line: Line, layer: Layer, temperature_C: float | None) -> float:
+    """N/m, of one bearing."""
+    return float(line.laws[layer.law].complex(np.array([AT_HZ]), temperature_C)[0].real)
 
 
 def _soil(stiffness: float, loss_factor: float, radiation: float) -> Law:
@@ -63,49 +71,78 @@ def _soil(stiffness: float, loss_factor: float, radiation: float) -> Law:
     )
 
 
-def _below(layer: Layer, within: float) -> Hypothesis:
-    upper = layer.joints.between[0]
+def _below(layer: Layer, stiffness: float, *, shared: bool = False) -> Hypothesis:
+    free = (
+        log_free("compliance", "1", 0.5, 3.0),
+        log_free("mass_kg", "kg", 1e5, 2.5),
+        log_free("loss_factor", "1", 0.15, 2.0),
+        log_free("radiation", "1", 0.1, 3.0),
+    )
+    starts = tuple(
+        (_at(free[0], c), _at(free[1], stiffness / (c * (2.0 * np.pi * f) ** 2)), 0.0, 0.0)
+        for c in COMPLIANCES
+        for f in PIER_HZ
+    )
+    whose = "under neighbouring girders' bearings together" if shared else "under each bearing"
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         if values["compliance"] == 0.0:
             return campaign
-        line = campaign.model.line
-        pier, soil = fresh("pier", line.bodies), fresh("soil", line.laws)
-        bearing = float(line.laws[layer.law].complex(np.array([10.0]), campaign.model.temperature_C)[0].real)
-        at = layer.joints.at
-        if isinstance(at, Ends):
-            at = Ends(of=at.of, inset_m=at.inset_m, within_m=within)
-        held = line.joints[layer.index].model_copy(update={"between": (upper, pier), "at": at})
-        return with_line(
-            campaign,
-            bodies={**line.bodies, pier: Mass(mass_kg=values["mass_kg"], at=at)},
-            joints=(
-                *(held if i == layer.index else own for i, own in enumerate(line.joints)),
-                Joints(between=(pier, GROUND), law=soil, at=Ends(of=pier)),
-            ),
-            laws={
-                **line.laws,
-                soil: _soil(bearing / values["compliance"], values["loss_factor"], values["radiation"]),
-            },
-        )
+        bearing = _stiffness(campaign.model.line, layer, campaign.model.temperature_C)
+        soil = _soil(bearing / values["compliance"], values["loss_factor"], values["radiation"])
+        return (_on_shared if shared else _on_own)(campaign, layer, soil, values["mass_kg"])
 
     return Hypothesis(
         entry=ID,
         domain=DOMAIN,
         family=FAMILY,
-        free=(
-            log_free("compliance", "1", 0.5, 3.0),
-            log_free("mass_kg", "kg", 1e5, 2.5),
-            log_free("loss_factor", "1", 0.15, 2.0),
-            log_free("radiation", "1", 0.1, 3.0),
-        ),
+        free=free,
         amend=amend,
         locate=lambda _: Where(what=layer.law),
-        starts=((0.0, 0.0, 0.0, 0.0), (1.0, -1.0, 0.0, 0.0), (1.0, 1.0, 0.0, 0.0)),
+        starts=starts,
         law=lambda v: (
-            f"{v['mass_kg']:.3g} kg on a spring of {1.0 / v['compliance']:.3g} times a bearing's stiffness, "
+            f"{v['mass_kg']:.3g} kg {whose} on a spring of {1.0 / v['compliance']:.3g} times a bearing's, "
             f"loss factor {v['loss_factor']:.2g}, and {v['radiation']:.2g} more at {AT_HZ:g} Hz by a dashpot"
         ),
         size="compliance",
         none=0.0,
+        variant="shared" if shared else "",
     )
+
+
+def _on_own(campaign: Campaign, layer: Layer, soil: Law, mass_kg: float) -> Campaign:
+    """Each bearing in series with a pier of its own: a law, for no two of them meet."""
+    line = campaign.model.line
+    others = {own.law for i, own in enumerate(line.joints) if i != layer.index}
+    name = fresh(layer.law, line.laws) if layer.law in others else layer.law
+    below = Parallel(first=soil, second=fixed_mass(mass_kg))
+    held = line.joints[layer.index].model_copy(update={"law": name})
+    return with_line(
+        campaign,
+        joints=tuple(held if i == layer.index else own for i, own in enumerate(line.joints)),
+        laws={**line.laws, name: Series(first=line.laws[layer.law], second=below)},
+    )
+
+
+def _on_shared(campaign: Campaign, layer: Layer, soil: Law, mass_kg: float) -> Campaign:
+    """Bearings near each other on one pier: a mass between them and the ground."""
+    line = campaign.model.line
+    upper, at = layer.joints.between[0], layer.joints.at
+    pier, name = fresh("pier", line.bodies), fresh("soil", line.laws)
+    near = Ends(of=at.of, inset_m=at.inset_m, within_m=SHARED_M) if isinstance(at, Ends) else at
+    held = line.joints[layer.index].model_copy(update={"between": (upper, pier), "at": near})
+    return with_line(
+        campaign,
+        bodies={**line.bodies, pier: Mass(mass_kg=mass_kg, at=near)},
+        joints=(
+            *(held if i == layer.index else own for i, own in enumerate(line.joints)),
+            Joints(between=(pier, GROUND), law=name, at=Ends(of=pier)),
+        ),
+        laws={**line.laws, name: soil},
+    )
+
+
+def _at(free: Free, value: float) -> float:
+    """The coordinate of a value, or the limit next to it."""
+    one = float(np.log(free.value(1.0) / free.value(0.0)))
+    return float(np.clip(np.log(value / free.value(0.0)) / one, *free.limits))
