@@ -74,8 +74,14 @@ def _suite(name: str, scores: dict[str, Any]) -> list[str]:
                 group = row["group"]
                 bar = BARS.get(group, BARS.get(row["tier"], {})).get(key, "")
                 lines.append(f"| {group} | {row['cases']} | {text} | {bar} | {row[key]} |")
+        if "gain_dB" in row:
+            text = "median of what held-out records gain, dB"
+            lines.append(f"| {row['group']} | {row['cases']} | {text} |  | {row['gain_dB']} |")
         if "seconds" in row:
             lines.append(f"| {row['group']} | {row['cases']} | median time, s | 300 | {row['seconds']} |")
+    if scores.get("power"):
+        lines += ["", f"![Power by deviance, and what stated probabilities are worth](challenge/{name}.png)"]
+    lines += _confusion(scores.get("confusion", []))
     lines += _rivals(scores.get("rivals", []))
     lines += _parameters(scores.get("parameters", []))
     lines += ["", "| case | concealed | deviance | status | said | |", "|---|---|---:|---|---|---|"]
@@ -84,6 +90,17 @@ def _suite(name: str, scores: dict[str, Any]) -> list[str]:
         cells = (case["case"], case["truth"], weight, case["status"], case["said"], _missed(case))
         lines.append(f"| {' | '.join(cells)} |")
     return [*lines, ""]
+
+
+def _confusion(rows: list[dict[str, Any]]) -> list[str]:
+    """Families of the strongest concealed effects, and of what was named in their place."""
+    if not rows:
+        return []
+    lines = ["", "| family concealed | cases | named in its place, or the verdict |", "|---|---:|---|"]
+    for row in rows:
+        said = ", ".join(f"{name} {count}" for name, count in row["said"].items())
+        lines.append(f"| {row['concealed']} | {row['cases']} | {said} |")
+    return lines
 
 
 def _parameters(rows: list[dict[str, Any]]) -> list[str]:
@@ -133,12 +150,64 @@ def _missed(case: dict[str, Any]) -> str:
     return ", ".join(["not found"] if "not found" in wrong else wrong)
 
 
+def picture(scores: dict[str, Any], path: Path) -> None:
+    """Shares found, placed and named over the deviance of what was concealed; claims over their probability.
+
+    Parameters
+    ----------
+    scores : mapping
+        With `power` and `reliability`.
+    path : Path
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.0, 3.6), layout="constrained")
+    power, worth = figure.subplots(1, 2, width_ratios=[3, 2])
+    rows = scores["power"]
+    for shift, (key, text) in enumerate(
+        (("found", "found"), ("placed", "at its place"), ("family", "family named"))
+    ):
+        at = [index + 0.18 * (shift - 1) for index in range(len(rows))]
+        _shares(power, at, [row[key] for row in rows], [row["cases"] for row in rows], text)
+    power.set_xticks(range(len(rows)), [f"{_range(row)}\nn = {row['cases']}" for row in rows], fontsize=8)
+    power.set(xlabel="deviance of what is concealed", ylabel="share of cases", ylim=(-0.02, 1.02))
+    power.legend(fontsize=8, frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3)
+    claims = scores["reliability"]
+    worth.plot([0, 1], [0, 1], color="0.7", linewidth=1)
+    _shares(worth, [r["mean"] for r in claims], [r["true"] for r in claims], [r["claims"] for r in claims], "")
+    for row in claims:
+        share = row["true"]["count"] / row["claims"]
+        worth.annotate(f"{row['claims']}", (row["mean"], share), (5, -9), textcoords="offset points", fontsize=8)
+    worth.set(xlabel="probability stated", ylabel="share that is true", xlim=(-0.02, 1.02), ylim=(-0.02, 1.02))
+    for axes in (power, worth):
+        axes.spines[["top", "right"]].set_visible(False)
+    figure.savefig(path, dpi=130, metadata={"Software": None})
+
+
+def _shares(axes: Any, at: list[float], told: list[dict[str, float]], of: list[int], label: str) -> None:
+    """Shares with their 90 % intervals."""
+    shares = [row["count"] / count for row, count in zip(told, of, strict=True)]
+    below = [max(0.0, share - row["low"]) for row, share in zip(told, shares, strict=True)]
+    above = [max(0.0, row["high"] - share) for row, share in zip(told, shares, strict=True)]
+    axes.errorbar(at, shares, [below, above], fmt="o", markersize=5, linewidth=1, label=label)
+
+
+def _range(row: dict[str, Any]) -> str:
+    low, high = row["from"], row["to"]
+    if low is None:
+        return f"below {high:g}"
+    return f"from {low:g}" if high is None else f"{low:g} to {high:g}"
+
+
 def main() -> None:
     """From all suites."""
     suites = {
         path.stem: json.loads(path.read_text("utf-8")) for path in sorted((DOCS / "challenge").glob("*.json"))
     }
     (DOCS / "challenge.md").write_text(page(suites), "utf-8")
+    for name, scores in suites.items():
+        if scores.get("power"):
+            picture(scores, DOCS / "challenge" / f"{name}.png")
 
 
 if __name__ == "__main__":

@@ -148,9 +148,11 @@ def challenge_suite(
 
 
 def _scores(folder: Path) -> dict[str, object]:
-    """By tier, case by case, and recalibrated parameter by parameter."""
+    """By tier, by difficulty, case by case, and recalibrated parameter by parameter."""
+    from permway.challenge.calibration import confusion, power, reliability
     from permway.challenge.recalibrated import by_parameter, pulls
-    from permway.challenge.score import score, summary
+    from permway.challenge.score import score
+    from permway.challenge.summary import summary
     from permway.diagnosis.catalogue import entries
 
     scored = score(folder, {name: entry.FAMILY for name, entry in entries().items()})
@@ -167,17 +169,26 @@ def _scores(folder: Path) -> dict[str, object]:
             "in_class": s.in_class,
             "false_name": s.false_name,
             "harmed": s.harmed,
+            "gain_dB": None if s.gain_dB is None else round(s.gain_dB, 3),
             # A verdict that was not made by `run` has no time.
             "seconds": s.seconds if math.isfinite(s.seconds) else None,
         }
         for s in scored
     ]
-    return {"tiers": summary(scored), "cases": cases, "parameters": by_parameter(pulls(folder, scored))}
+    return {
+        "tiers": summary(scored),
+        "power": power(scored),
+        "reliability": reliability(scored),
+        "confusion": confusion(scored),
+        "cases": cases,
+        "parameters": by_parameter(pulls(folder, scored)),
+    }
 
 
 def _rivals(folder: Path) -> list[dict[str, object]]:
     """Scores of the rivals, by tier."""
-    from permway.challenge.score import score, summary
+    from permway.challenge.score import score
+    from permway.challenge.summary import summary
     from permway.diagnosis.catalogue import entries
     from permway.diagnosis.rivals import RIVALS
 

@@ -11,7 +11,8 @@ import pytest
 from permway.challenge.effects import Site
 from permway.challenge.effects.bridge import DeckAttachment
 from permway.challenge.layout import draw_layout, draw_tests
-from permway.challenge.score import interval, score, summary
+from permway.challenge.score import score
+from permway.challenge.summary import interval, summary
 from permway.cli import app
 from permway.errors import InputError
 from typer.testing import CliRunner
@@ -170,3 +171,23 @@ def test_scores_of_verdicts_without_times_are_json(tmp_path: Path) -> None:
     assert ended.exit_code == 0
     (case,) = json.loads(ended.stdout)["cases"]
     assert (case["found"], case["seconds"]) == (True, None)
+
+
+def test_names_are_claims_and_what_no_catalogue_has_is_novel(tmp_path: Path) -> None:
+    said = effect("sensor_gain", "sensor_gain", "novel")
+    right = verdict("named", effect("fastener_loss", "fastener_loss", "novel"))
+    right["held_out"] = {"place": {"gain_nats": 5.0, "standard_error": 1.0, "db_before": 2.0, "db_after": 0.5}}
+    cases = {
+        "outside-1": (truth({**LOST, "id": None, "mechanical": "a spring"}), verdict("named", said)),
+        "single-1": (truth(LOST), right),
+        "single-2": (truth(LOST), verdict("insufficient", said)),
+    }
+    outside, single, quiet = score(folder(tmp_path, cases), FAMILIES)
+    assert [(c.name, c.probability, c.true) for c in outside.claims] == [
+        ("sensor_gain", 0.5, False),
+        ("novel", 0.5, True),
+    ]
+    assert [c.true for c in single.claims] == [True, False]
+    assert (single.concealed_family, single.said_family, single.gain_dB) == ("local loss", "local loss", 1.5)
+    # A suspicion claims nothing.
+    assert (quiet.claims, quiet.said_family, quiet.gain_dB) == ((), "insufficient", None)

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.stats import beta
 
 from permway.challenge.parameters import in_catalogue
 from permway.challenge.weigh import weights, weights_of_each
@@ -21,8 +20,20 @@ FOUND = ("named", "ambiguous", "described", "located", "measurement")
 DIFFICULTY = {"easy": 200.0, "medium": 50.0, "hard": 15.0, "too small": -np.inf}
 """Least deviance against the best recalibrated base; too small is what the records do not tell."""
 
+NOVEL = "novel"
+"""The name of what no catalogue has."""
+
 NEAR_M = 1.5
 """How far from a true place an interval may end and still be there."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A name of a verdict, how probable it says that is, and whether it is so."""
+
+    name: str
+    probability: float
+    true: bool
 
 
 @dataclass(frozen=True)
@@ -49,6 +60,12 @@ class Scored:
     seconds : float
     deviance : float or None
         Against the best recalibrated base, if it was weighed.
+    gain_dB : float or None
+        By which records that were left out are predicted better, the median of all ways to leave some out.
+    claims : tuple of Claim
+        All names of all effects, "novel" among them.
+    concealed_family, said_family : str
+        Of the strongest concealed effect, and of what is named in its place, or what the verdict is instead.
     """
 
     name: str
@@ -67,6 +84,10 @@ class Scored:
     deviance: float | None = None
     all_found: bool | None = None
     mechanics: bool | None = None
+    gain_dB: float | None = None
+    claims: tuple[Claim, ...] = ()
+    concealed_family: str = ""
+    said_family: str = ""
 
     @property
     def group(self) -> str:
@@ -160,7 +181,34 @@ def _scored(
         if len(concealed) > 1
         else None,
         mechanics=_described(concealed[0], effects) if concealed and concealed[0].get("words") else None,
+        gain_dB=_gained(verdict) if effects else None,
+        claims=tuple(_claims(concealed, effects)),
+        concealed_family=families.get(concealed[0]["id"], "") if concealed and concealed[0]["id"] else "",
+        said_family=_family(concealed, effects, families) or str(verdict["status"]),
     )
+
+
+def _gained(verdict: Mapping[str, Any]) -> float | None:
+    held = [g for g in verdict["held_out"].values() if g.get("db_before") is not None]
+    return float(np.median([g["db_before"] - g["db_after"] for g in held])) if held else None
+
+
+def _claims(concealed: Sequence[Mapping[str, Any]], effects: Iterable[Mapping[str, Any]]) -> list[Claim]:
+    """Every member of every class; "novel" is true where something of no catalogue is concealed."""
+    ids = {one["id"] or NOVEL for one in concealed}
+    members = [member for effect in effects for member in effect["class"]]
+    return [Claim(m["name"], float(m["probability"]), m["name"] in ids) for m in members]
+
+
+def _family(
+    concealed: Sequence[Mapping[str, Any]], effects: Sequence[Mapping[str, Any]], families: Mapping[str, str]
+) -> str:
+    """Family of the named effect at the first concealed one's place, or of the first; "" if none has a name."""
+    named = [e for e in effects if e["name"]]
+    if concealed:
+        first = concealed[0]
+        named.sort(key=lambda e: not _there(first["place"], e["place"], first.get("domain"), e["domain"]))
+    return families.get(named[0]["name"], named[0]["name"]) if named else ""
 
 
 def _same(true: Mapping[str, Any], said: Mapping[str, Any], families: Mapping[str, str]) -> bool:
@@ -203,43 +251,3 @@ def _covered(concealed: Iterable[Mapping[str, Any]], effects: Iterable[Mapping[s
             if said is not None and said["low"] is not None:
                 found.append(bool(said["low"] <= value <= said["high"]))
     return found
-
-
-def interval(hits: int, of: int, width: float = 0.9) -> tuple[float, float]:
-    """Clopper and Pearson's interval of a share."""
-    tail = 0.5 * (1.0 - width)
-    low = 0.0 if hits == 0 else float(beta.ppf(tail, hits, of - hits + 1))
-    high = 1.0 if hits == of else float(beta.ppf(1.0 - tail, hits + 1, of - hits))
-    return low, high
-
-
-def summary(scored: Iterable[Scored]) -> list[dict[str, Any]]:
-    """A row for each tier, of which the weighed ones by how hard they are: shares with their 90 % intervals."""
-    rows = []
-    order = {name: index for index, name in enumerate(DIFFICULTY)}
-    all_cases = sorted(scored, key=lambda s: (s.tier, order.get(s.group.split(", ")[-1], -1)))
-    for group in dict.fromkeys(s.group for s in all_cases):
-        mine = [s for s in all_cases if s.group == group]
-        row: dict[str, Any] = {"tier": mine[0].tier, "group": group, "cases": len(mine)}
-        alarms = [s.status in FOUND for s in mine]
-        row["called"] = _share(alarms)
-        for key in ("found", "placed", "family", "in_class", "all_found", "mechanics"):
-            values = [v for s in mine if (v := getattr(s, key)) is not None]
-            if values:
-                row[key] = _share(values)
-        row["false_name"] = _share([s.false_name for s in mine])
-        row["harmed"] = _share([s.harmed for s in mine])
-        covered = [c for s in mine for c in s.covered]
-        if covered:
-            row["covered"] = _share(covered)
-        took = [s.seconds for s in mine if np.isfinite(s.seconds)]
-        if took:
-            row["seconds"] = round(float(np.median(took)), 1)
-        rows.append(row)
-    return rows
-
-
-def _share(values: list[bool]) -> str:
-    hits, of = sum(values), len(values)
-    low, high = interval(hits, of)
-    return f"{hits}/{of} ({100.0 * low:.0f} to {100.0 * high:.0f} %)"
