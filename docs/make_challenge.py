@@ -63,6 +63,8 @@ def _suite(name: str, scores: dict[str, Any]) -> list[str]:
     if note:
         lines += [note, ""]
     lines += ["```sh", *scores.get("commands", []), "```", ""]
+    if not scores["cases"]:
+        return lines
     lines += [
         "Hard is a deviance of 15 to 50 against the best recalibrated base, medium one to 200, easy what is above;"
     ]
