@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from permway.challenge.case import _kinds
 from permway.challenge.effects import CATALOGUE, NONLINEAR, OUTSIDE, STRENGTHS, TWINS, Effect
-from permway.challenge.effects.leaving import DippedWelds
 from permway.challenge.mesh import Mesh
 from permway.challenge.plan import Plan
 from permway.diagnosis.catalogue import entries
@@ -70,7 +69,7 @@ def test_truth_of_an_effect_says_what_where_and_how_much(kind: type[Effect]) -> 
     truth = json.loads(json.dumps(drawn(kind).truth()))
     assert {"id", "kind", "family", "domain", "place", "parameters", "mechanical", "twins", "words"} == set(truth)
     assert truth["id"] in entries() if kind in CATALOGUE else truth["id"] in (None, *entries())
-    assert (truth["id"] is None) == (kind in (*OUTSIDE, DippedWelds))
+    assert (truth["id"] is None) == (kind in OUTSIDE)
     assert truth["place"]
     assert truth["mechanical"]
 

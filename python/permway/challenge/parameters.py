@@ -78,5 +78,7 @@ _TRANSLATED: dict[str, Callable[[Numbers], Numbers]] = {
     "pad_springpot": lambda t: {"order": t["order"]},
     "body_bending": lambda t: {"frequency_Hz": t["frequency_Hz"], "loss_factor": t["loss"]},
     # Of a band's edge the two shapes say different things.
+    # How deep they seem depends on how far wheels fly.
+    "dipped_welds": lambda t: {"length_m": t["length_m"]},
     "rail_corrugation": lambda t: {"wavelength_m": t["wavelength_m"]},
 }

@@ -8,7 +8,7 @@ description, not a name.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -35,6 +35,9 @@ BESIDE_M = 2.0
 SPACING_M = 1.0
 """Between the points of a stretch of a body at which an element acts."""
 
+AS_MUCH = 2.0 * float(np.log(10.0))
+"""Between the surpluses of two bodies that the records do not tell apart (90 %)."""
+
 STRETCHES = (3.0, 9.0)
 """Usual lengths, in spacings, that a stretch is looked for with."""
 
@@ -45,7 +48,7 @@ Values = Mapping[str, float]
 
 
 def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hypothesis]:
-    """Each element at the most telling joint, in its whole layer, and at the most telling place of a body.
+    """Each element at the most telling joint, in its whole layer, and at the most telling place of a body or some.
 
     Parameters
     ----------
@@ -54,16 +57,26 @@ def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hyp
         Of a mass on a spring that explained part: what hangs on a body is looked for from there.
     """
     joint = next((f for f in situation.found if f.spot.kind == "joint"), None)
-    body = next((f for f in situation.found if f.spot.kind == "body"), None)
+    bodies = _bodies(situation.found)[: 1 if like is not None else None]
     for element in ELEMENTS:
         if not element.ground and joint is not None:
             yield _at_joint(situation, element, joint)
             yield _over_joints(situation, element, joint)
             yield _in_layer(element, joint)
-        if body is not None:
+        for body in bodies:
             yield _on_body(element, body, like)
             yield _over_body(situation, element, body, like)
             yield from _at_supports(situation, element, body, like)
+
+
+def _bodies(found: Sequence[Found]) -> list[Found]:
+    """The most telling place of a body, and of others that tell as much: layers of a track move together."""
+    best: dict[str, Found] = {}
+    for one in found:
+        if one.spot.kind == "body":
+            best.setdefault(one.spot.name, one)
+    kept = list(best.values())
+    return [one for one in kept if kept[0].surplus - one.surplus < AS_MUCH]
 
 
 def alike(

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
+from permway.arrays import Reals
 from permway.errors import InputError
 from permway.records import FrozenModel, Number
 
@@ -33,6 +35,34 @@ class RoughBand(FrozenModel):
     wavelength_m: PositiveFloat
     octaves: float = Field(default=0.2, ge=0.005, le=5.0)
     gain_dB: Number = Field(ge=0.0, le=60.0)
+
+
+class Dips(FrozenModel):
+    """Dips of one shape at places that do not repeat: welds, squats, spots of soft ballast.
+
+    Each is a depth times (1 + cos(2 pi x / length)) / 2 over its length. With n of them a metre, independent of
+    each other, the profile's one-sided density over wavenumber k = 2 pi / wavelength, m2/(rad/m), gains
+    n |D(k)|^2 / pi, D the transform of one dip, D(0) = depth length / 2 (Campbell, 1909).
+
+    Parameters
+    ----------
+    depth_m : float
+        In the root mean square.
+    length_m : float
+    every_m : float
+        Mean distance, 1/n.
+    """
+
+    depth_m: float = Field(ge=0.0, le=0.1)
+    length_m: float = Field(ge=0.01, le=20.0)
+    every_m: float = Field(default=20.0, ge=0.1, le=10_000.0)
+
+    def density(self, wavenumber: Reals) -> Reals:
+        """One-sided, m2/(rad/m), shape of the wavenumbers in rad/m."""
+        turns = np.asarray(wavenumber) * self.length_m / (2.0 * np.pi)
+        # sinc(u) / (1 - u^2) is (sinc(u - 1) + sinc(u + 1)) / 2 + sinc(u), which divides by nothing at u = 1.
+        shape = np.sinc(turns) + 0.5 * (np.sinc(turns - 1.0) + np.sinc(turns + 1.0))
+        return np.asarray((0.5 * self.depth_m * self.length_m * shape) ** 2 / (np.pi * self.every_m))
 
 
 class _Lines(FrozenModel):

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, PositiveFloat, model_validator
 
 from permway.model.faults import fault
 from permway.model.irregularity_spectra import FASTEST_M_PER_S
-from permway.recordings.campaign_excitation import Push, RoughBand, TrackLines, WheelLines
+from permway.recordings.campaign_excitation import Dips, Push, RoughBand, TrackLines, WheelLines
 from permway.records import FrozenModel, Number
 
 Statistic = Literal["frf", "csd", "psd", "bands", "decay", "transmissibility", "material"]
@@ -232,6 +232,7 @@ class IrregularityKnown(FrozenModel):
     contact_patch_m : float
         Half length a of the patch that filters short waves: density over 1 + pi/4 (k a)^3, k the wavenumber.
     bands : sequence of RoughBand
+    dips : sequence of Dips
     series : sequence of TrackLines
     wheels : sequence of WheelLines
     wheel_radius_m : float
@@ -246,6 +247,7 @@ class IrregularityKnown(FrozenModel):
     level_by_condition_dB: dict[str, Annotated[Number, Field(ge=-60.0, le=60.0)]] = Field(default_factory=dict)
     contact_patch_m: float = Field(default=0.0, ge=0.0, le=1.0)
     bands: tuple[RoughBand, ...] = ()
+    dips: tuple[Dips, ...] = ()
     series: tuple[TrackLines, ...] = ()
     wheels: tuple[WheelLines, ...] = ()
     wheel_radius_m: float = Field(default=0.43, gt=0.1, lt=1.5)

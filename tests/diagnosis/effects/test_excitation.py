@@ -21,7 +21,7 @@ from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.refit import relearnt
 from permway.model.contact import GivenContact
 from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import Push, RoughBand, TrackLines, WheelLines
+from permway.recordings.campaign_excitation import Dips, Push, RoughBand, TrackLines, WheelLines
 from permway.recordings.channel import Mains
 from permway.recordings.predict import predict
 from simulated import simulate
@@ -30,6 +30,7 @@ from trains import blank, campaign_in, situation_of
 MINE = (
     "wheel_polygon",
     "rail_corrugation",
+    "dipped_welds",
     "rail_joint",
     "wheel_flat",
     "contact_filter",
@@ -129,6 +130,13 @@ CASES = (
         lambda c, v: with_irregularity(c, bands=(RoughBand(**v),)),
         {"gain_dB": 8.0, "wavelength_m": 0.9, "octaves": 0.1},
         {"wavelength_m": 0.03, "octaves": 0.3, "gain_dB": 0.2},
+    ),
+    Case(
+        "dipped_welds",
+        "rail",
+        lambda c, v: with_irregularity(c, dips=(Dips(**v),)),
+        {"depth_m": 1e-3, "length_m": 0.8},
+        {"depth_m": 0.15, "length_m": 0.1},
     ),
     Case(
         "rail_joint",

@@ -22,7 +22,8 @@ class DippedWelds(Effect):
     """Welds that lie so deep that wheels fly over them."""
 
     KIND = "dipped_welds"
-    FAMILY = "contact"
+    ID = "dipped_welds"
+    FAMILY = "dips of the rail"
     DOMAIN = "irregularity"
 
     depth_m: float

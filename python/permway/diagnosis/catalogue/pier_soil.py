@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from permway.diagnosis.catalogue._change import fixed_mass, fresh, with_line
+from permway.diagnosis.catalogue._lines import coordinate
 from permway.diagnosis.catalogue._roles import Layer, bearings, reaches
-from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.laws import Hysteretic, Parallel, Series, Springpot
 from permway.laws.base import Law
@@ -43,6 +43,9 @@ AT_HZ = 10.0
 SHARED_M = 1.5
 """Ends of two girders no farther apart may stand on one pier."""
 
+COMPLIANCE, MASS_KG = (0.5, 3.0), (1e5, 2.5)
+"""Usual, and the factor of one standard deviation."""
+
 COMPLIANCES = (0.1, 0.4, 1.6)
 PIER_HZ = (10.0, 25.0, 50.0, 100.0)
 """Begun from: of the soil, over a bearing's; and where the pier on the soil alone would ring."""
@@ -73,13 +76,13 @@ def _soil(stiffness: float, loss_factor: float, radiation: float) -> Law:
 
 def _below(layer: Layer, stiffness: float, *, shared: bool = False) -> Hypothesis:
     free = (
-        log_free("compliance", "1", 0.5, 3.0),
-        log_free("mass_kg", "kg", 1e5, 2.5),
+        log_free("compliance", "1", *COMPLIANCE),
+        log_free("mass_kg", "kg", *MASS_KG),
         log_free("loss_factor", "1", 0.15, 2.0),
         log_free("radiation", "1", 0.1, 3.0),
     )
     starts = tuple(
-        (_at(free[0], c), _at(free[1], stiffness / (c * (2.0 * np.pi * f) ** 2)), 0.0, 0.0)
+        (coordinate(c, *COMPLIANCE), coordinate(stiffness / (c * (2.0 * np.pi * f) ** 2), *MASS_KG), 0.0, 0.0)
         for c in COMPLIANCES
         for f in PIER_HZ
     )
@@ -140,9 +143,3 @@ def _on_shared(campaign: Campaign, layer: Layer, soil: Law, mass_kg: float) -> C
         ),
         laws={**line.laws, name: soil},
     )
-
-
-def _at(free: Free, value: float) -> float:
-    """The coordinate of a value, or the limit next to it."""
-    one = float(np.log(free.value(1.0) / free.value(0.0)))
-    return float(np.clip(np.log(value / free.value(0.0)) / one, *free.limits))

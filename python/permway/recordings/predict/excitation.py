@@ -47,6 +47,8 @@ def profile(model: Model, known: IrregularityKnown, condition: Condition, grid: 
     for band in known.bands:
         x = np.log2(speed / frequency / band.wavelength_m) / band.octaves
         values = values * (1.0 + (10.0 ** (0.1 * band.gain_dB) - 1.0) * np.exp(-0.5 * x**2))
+    for dips in known.dips:
+        values = values + 2.0 * np.pi / speed * dips.density(2.0 * np.pi * frequency / speed)
     if known.contact_patch_m:
         across = 2.0 * np.pi * frequency / speed * known.contact_patch_m
         values = values / (1.0 + 0.25 * np.pi * across**3)
