@@ -103,6 +103,15 @@ def test_places_are_read_as_the_generator_writes_them(tmp_path: Path) -> None:
     assert [s.placed for s in score(folder(tmp_path, cases), FAMILIES)] == [True, False]
 
 
+def test_a_sensor_is_the_same_however_its_place_is_written(tmp_path: Path) -> None:
+    wrong = {"id": "sensor_gain", "domain": "measurement", "place": {"channels": ["rail@42.0"]}}
+    said = [{**effect("sensor_gain", "sensor_gain"), "domain": "measurement"} for _ in range(2)]
+    for one, name in zip(said, ("rail@42", "rail@4.2"), strict=True):
+        one["place"] = {"x": None, "within": None, "channels": [name]}
+    cases = {f"single-{i}": (truth(wrong), verdict("measurement", one)) for i, one in enumerate(said)}
+    assert [s.placed for s in score(folder(tmp_path, cases), FAMILIES)] == [True, False]
+
+
 GAIN = {"id": "sensor_gain", "family": "level", "domain": "path", "place": {"x_m": [30.0, 30.0]}, "parameters": {}}
 
 

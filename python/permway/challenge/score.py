@@ -234,9 +234,15 @@ def _there(true: Mapping[str, Any], said: Mapping[str, Any], domain: str | None,
         return stretch is not None and stretch[0] - NEAR_M <= x[-1] and x[0] <= stretch[1] + NEAR_M
     channels = true.get("channels")
     if isinstance(channels, list) and said.get("channels"):
-        return bool(set(channels) & set(said["channels"]))
+        return bool({_channel(name) for name in channels} & {_channel(name) for name in said["channels"]})
     # "on board", or all of a kind.
     return True
+
+
+def _channel(name: str) -> str:
+    """The same for "rail@42" and "rail@42.0"."""
+    body, at, x = name.partition("@")
+    return f"{body}@{float(x):g}" if at else name
 
 
 def _covered(concealed: Iterable[Mapping[str, Any]], effects: Iterable[Mapping[str, Any]]) -> list[bool]:
