@@ -170,13 +170,13 @@ def picture(scores: dict[str, Any], path: Path) -> None:
         (("found", "found"), ("placed", "at its place"), ("family", "family named"))
     ):
         at = [index + 0.18 * (shift - 1) for index in range(len(rows))]
-        _shares(power, at, [row[key] for row in rows], [row["cases"] for row in rows], text)
+        _shares(power, at, [row[key] for row in rows], text)
     power.set_xticks(range(len(rows)), [f"{_range(row)}\nn = {row['cases']}" for row in rows], fontsize=8)
     power.set(xlabel="deviance of what is concealed", ylabel="share of cases", ylim=(-0.02, 1.02))
     power.legend(fontsize=8, frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3)
     claims = scores["reliability"]
     worth.plot([0, 1], [0, 1], color="0.7", linewidth=1)
-    _shares(worth, [r["mean"] for r in claims], [r["true"] for r in claims], [r["claims"] for r in claims], "")
+    _shares(worth, [r["mean"] for r in claims], [r["true"] for r in claims], "")
     for row in claims:
         share = row["true"]["count"] / row["claims"]
         worth.annotate(f"{row['claims']}", (row["mean"], share), (5, -9), textcoords="offset points", fontsize=8)
@@ -186,12 +186,15 @@ def picture(scores: dict[str, Any], path: Path) -> None:
     figure.savefig(path, dpi=130, metadata={"Software": None})
 
 
-def _shares(axes: Any, at: list[float], told: list[dict[str, float]], of: list[int], label: str) -> None:
-    """Shares with their 90 % intervals."""
-    shares = [row["count"] / count for row, count in zip(told, of, strict=True)]
-    below = [max(0.0, share - row["low"]) for row, share in zip(told, shares, strict=True)]
-    above = [max(0.0, row["high"] - share) for row, share in zip(told, shares, strict=True)]
-    axes.errorbar(at, shares, [below, above], fmt="o", markersize=5, linewidth=1, label=label)
+def _shares(axes: Any, at: list[float], told: list[dict[str, float]], label: str) -> None:
+    """Shares with their 90 % intervals; none of nothing."""
+    kept = [(x, row, row["count"] / row["of"]) for x, row in zip(at, told, strict=True) if row["of"]]
+    reach = [
+        [max(0.0, share - row["low"]) for _, row, share in kept],
+        [max(0.0, row["high"] - share) for _, row, share in kept],
+    ]
+    at, shares = [x for x, _, _ in kept], [share for _, _, share in kept]
+    axes.errorbar(at, shares, reach, fmt="o", markersize=5, linewidth=1, label=label)
 
 
 def _range(row: dict[str, Any]) -> str:

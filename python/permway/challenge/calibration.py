@@ -31,7 +31,7 @@ def power(scored: Iterable[Scored]) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        `from`, `to` (None for no end), `cases`, and of each figure the count and its 90 % interval.
+        `from`, `to` (None for no end), `cases`, and of each figure the count, of how many, and its 90 % interval.
     """
     weighed = [(s, s.deviance) for s in scored if s.deviance is not None and s.found is not None]
     rows = []
@@ -39,8 +39,10 @@ def power(scored: Iterable[Scored]) -> list[dict[str, Any]]:
         mine = [s for s, deviance in weighed if low <= deviance < high]
         if mine:
             row: dict[str, Any] = {"from": _end(low), "to": _end(high), "cases": len(mine)}
-            for figure in ("found", "placed", "family"):
-                row[figure] = _told([bool(getattr(s, figure)) for s in mine])
+            row["found"] = _told([bool(s.found) for s in mine])
+            row["placed"] = _told([bool(s.placed) for s in mine])
+            # What no catalogue holds has no name to be told.
+            row["family"] = _told([bool(s.family) for s in mine if s.concealed_family])
             rows.append(row)
     return rows
 
@@ -101,5 +103,5 @@ def _end(value: float) -> float | None:
 
 
 def _told(values: Sequence[bool]) -> dict[str, float]:
-    low, high = interval(sum(values), len(values))
-    return {"count": sum(values), "low": round(low, 3), "high": round(high, 3)}
+    low, high = interval(sum(values), len(values)) if values else (0.0, 1.0)
+    return {"count": sum(values), "of": len(values), "low": round(low, 3), "high": round(high, 3)}
