@@ -14,7 +14,7 @@ from permway.diagnosis.clock import Clock
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.elements import ELEMENTS, Element
 from permway.diagnosis.gather import gather
-from permway.diagnosis.grammar import alike, hypotheses
+from permway.diagnosis.grammar import _bodies, alike, hypotheses
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.search import Finalist, search
@@ -128,3 +128,32 @@ def test_what_no_name_explains_is_described_and_no_further_names_are_sought(tmp_
     assert effect.place.x is not None
     assert effect.place.x == pytest.approx((6.6, 8.4), abs=0.4)
     assert "drop" not in stages
+
+
+SPRING = next(e for e in ELEMENTS if e.name == "spring")
+
+
+@pytest.mark.parametrize("stiffness", [-1e6, -3e6])
+def test_a_weak_pull_has_no_name(tmp_path: Path, stiffness: float) -> None:
+    """Masses on springs mimic it; what BIC asks of a free stiffness hides that they do it worse."""
+
+    def pulled(campaign: Campaign) -> Campaign:
+        joints = Joints(between=("deck", "ground"), law="pulled", at=(7.0,))
+        law = SPRING.law({"stiffness_N_per_m": stiffness, "loss_factor": 0.05})
+        return with_joints(campaign, joints, laws={"pulled": law})
+
+    verdict = diagnose(simulate(tmp_path / "c", 8, amend=pulled).campaign, threads=1).verdict
+    (effect,) = verdict.effects
+    assert (verdict.status, effect.name, effect.place.body) == ("described", None, "deck")
+    assert "a spring of -" in effect.law.words
+
+
+def test_bodies_that_tell_as_much_are_all_looked_at() -> None:
+    """Layers of a track move together: slowly, none is told from another."""
+
+    def told(name: str, gain: float) -> Found:
+        return cast(Found, SimpleNamespace(spot=Spot("body", name, (6.0, 6.0)), surplus=gain))
+
+    joint = cast(Found, SimpleNamespace(spot=Spot("joint", "pad", (6.0, 6.0)), surplus=85.0))
+    found = [told("base", 80.0), joint, told("girder", 78.7), told("base", 78.0), told("rail", 40.0)]
+    assert [one.spot.name for one in _bodies(found)] == ["base", "girder"]

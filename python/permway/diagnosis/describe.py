@@ -10,6 +10,7 @@ import numpy as np
 from permway.diagnosis import decide, grammar
 from permway.diagnosis.choose import lines, penalty
 from permway.diagnosis.clock import Clock
+from permway.diagnosis.compete import Ring
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Hypothesis, Situation, Where
 from permway.diagnosis.locate import scanned
@@ -79,7 +80,8 @@ class Description:
         if described is None:
             return False
         # While something else is missing, what was found first may be bent beyond belief by that.
-        return (named.fit.heat < UNFIT and beyond_belief(named)) or self._closes(described, named.fit)
+        strange = beyond_belief(named) or self._blind(named.fit)
+        return (named.fit.heat < UNFIT and strange) or self._closes(described, named.fit)
 
     def of(self, rounds: Sequence[Round], accepted: Sequence[Finalist]) -> Round | None:
         """Small elements, where no named effect explains what a free stiffness does, if they do it better.
@@ -92,19 +94,18 @@ class Description:
         rounds : sequence of Round
         accepted : sequence of Finalist
         """
-        least, twice, explained, strange, short = rounds[0].threshold, _twice(accepted), 0.0, False, False
+        least, twice, explained, strange, blind = rounds[0].threshold, _twice(accepted), 0.0, False, False
         if accepted:
             best = accepted[-1].fit
             explained = decide.explained(self.base, best, self.left(best))
             # Of a large gap a small share may still be far more than errors explain.
             left = explained < 1.0 - OPEN or best.heat > UNFIT
-            strange, short = beyond_belief(accepted[0]), self._outdone(best)
-            if accepted[0].hypothesis.domain != "path" or not (left or strange or short or twice is not None):
+            strange, blind = beyond_belief(accepted[0]), self._blind(best)
+            if accepted[0].hypothesis.domain != "path" or not (left or strange or blind or twice is not None):
                 return None
         else:
             best = self.base
-            asks = self.found[0].degrees * np.log(lines(best)) if self.found else np.inf
-            if not (self.found and self.found[0].gain - asks > least) and not self._outdone(best):
+            if not self._tells(least):
                 return None
         result = self._searched(least, twice)
         if not result.finalists:
@@ -113,19 +114,27 @@ class Description:
         better = best.objective - one.fit.objective - penalty(one.quick, result.ring)
         if twice is not None:
             # What stands for two effects has fewer constants, and need not do quite what both do.
-            better += sum(penalty(two.quick, result.ring) for two in accepted)
+            better += _asked(accepted, result.ring)
             better += ONE_FOR_TWO * (self.base.objective - best.objective)
-        elif explained > decide.EXPLAINED and not (strange or short or self._closes(result, best)):
+        elif blind and better + _asked(accepted, result.ring) > least:
+            return result
+        elif explained > decide.EXPLAINED and not strange and not self._closes(result, best):
             return None
         return result if better > 0.0 else None
 
-    def _outdone(self, named: Fit) -> bool:
-        """Whether a free stiffness at one place tells something, and gains more than all that was named."""
-        if self.searched is not self.base or not self.found:
-            # About a bent base gains are told of blunted records.
+    def _tells(self, least: float) -> bool:
+        """Whether a free stiffness at one place tells so much that small elements may explain it."""
+        if not self.found:
             return False
+        first = self.found[0]
+        # About a bent base the scan is of blunted records, and tells less surely.
+        tells = self.searched is self.base and first.surplus > TELLS
+        return tells or first.gain - first.degrees * np.log(lines(self.base)) > least
+
+    def _blind(self, named: Fit) -> bool:
+        """Whether what BIC asks of a free stiffness is more than the share of the gap that may stay open."""
         gained = self.base.objective - named.objective
-        return self.found[0].surplus > max(TELLS, gained)
+        return bool(self.found) and OPEN * gained < self.found[0].degrees * np.log(lines(self.base))
 
     def _closes(self, described: Round, named: Fit) -> bool:
         """Whether a description closes most of the gap to a free stiffness, and half of what a name leaves."""
@@ -135,10 +144,19 @@ class Description:
         return explained > decide.EXPLAINED and 1.0 - explained < decide.HALF * gap
 
     def _searched(self, least: float, twice: Finalist | None) -> Round:
-        """Elements at the most telling place, or where one effect was found twice."""
+        """Elements at the most telling place, or where one effect was found twice; from either base."""
         if twice is None and self._plain is not None:
             return self._plain
-        found, like = self.found, None
+        result = self._from(self.searched, self.found, least, twice)
+        if not result.finalists and self.searched is not self.base:
+            self.clock("locate")
+            result = self._from(self.base, scanned(self.base), least, twice)
+        if twice is None:
+            self._plain = result
+        return result
+
+    def _from(self, start: Fit, found: tuple[Found, ...], least: float, twice: Finalist | None) -> Round:
+        like = None
         if twice is not None:
             at, like = twice.hypothesis.locate(twice.values), twice.values
             if at.x_m is None:
@@ -149,24 +167,21 @@ class Description:
                 there = at.x_m[0]
                 found = tuple(sorted(found, key=lambda f: abs(f.spot.x_m[0] - there)))
             found = tuple(sorted(found, key=lambda f: f.spot.name != at.what))
-        situation = Situation(self.searched, found)
-        result = self._held(grammar.hypotheses(situation, like), least)
-        if result.finalists:
-            first = result.finalists[0]
-            ended = dict(zip((f.name for f in first.fit.free), first.fit.z.tolist(), strict=True))
-            z = tuple(ended[name] for name in first.own)
-            near = tuple(grammar.alike(situation, like, first.hypothesis, z))
-            others = self._held(near, least).finalists if near else ()
-            rivals = [*result.finalists, *others]
-            result = replace(result, finalists=tuple(sorted(rivals, key=lambda f: -standing(f, rivals))))
-        if twice is None:
-            self._plain = result
-        return result
+        situation = Situation(start, found)
+        result = self._held(start, grammar.hypotheses(situation, like), least)
+        if not result.finalists:
+            return result
+        first = _simplest(result.finalists, result.ring)[0]
+        ended = dict(zip((f.name for f in first.fit.free), first.fit.z.tolist(), strict=True))
+        z = tuple(ended[name] for name in first.own)
+        near = tuple(grammar.alike(situation, like, first.hypothesis, z))
+        others = self._held(start, near, least).finalists if near else ()
+        return replace(result, finalists=_simplest([*result.finalists, *others], result.ring))
 
-    def _held(self, hypotheses: Iterable[Hypothesis], least: float) -> Round:
+    def _held(self, start: Fit, hypotheses: Iterable[Hypothesis], least: float) -> Round:
         """Held against the records, beside nothing else."""
         return search(
-            self.searched,
+            start,
             hypotheses,
             learnt_base=self.base,
             prefix="1.",
@@ -174,6 +189,21 @@ class Description:
             most=FOLLOWED,
             progress=self.clock,
         )
+
+
+def _simplest(rivals: Sequence[Finalist], ring: Ring) -> tuple[Finalist, ...]:
+    """The best first: by BIC, for of two descriptions that do as well the one of fewer constants says more.
+
+    Where none fits, by what they do to blunted responses, as effects are ranked.
+    """
+    if min(one.fit.heat for one in rivals) > UNFIT:
+        return tuple(sorted(rivals, key=lambda f: -standing(f, rivals)))
+    return tuple(sorted(rivals, key=lambda f: f.fit.objective + penalty(f.quick, ring)))
+
+
+def _asked(accepted: Sequence[Finalist], ring: Ring) -> float:
+    """What BIC asks of all that was named."""
+    return sum(penalty(one.quick, ring) for one in accepted)
 
 
 def _twice(accepted: Sequence[Finalist]) -> Finalist | None:
