@@ -65,3 +65,15 @@ def test_another_place_is_fitted_where_the_first_asks_for_what_nobody_would_beli
     # The effect's own size may be what it likes.
     assert elsewhere([(first, fit(9.0, "1.factor"))], followed) == []
     assert elsewhere([], followed) == []
+
+
+def test_another_place_that_does_as_well_is_fitted_too() -> None:
+    """Absorbers all along the rail, and on the deck alone: a step from the base does not tell which."""
+    deck, rail = quick("absorber", 9000.0, "mass_kg"), quick("absorber", 8990.0, "mass_kg", at_m=9.0)
+    between = quick("absorber", 8950.0, "mass_kg", "share")
+    found = finalists_of([deck, rail, between], RING, 10.0)
+    assert [id(q) for q in found] == [id(deck), id(between), id(rail)]
+    assert said(deck, quick("absorber", 8800.0, "mass_kg", at_m=9.0)) == [("absorber", 9000.0)]
+    # Where the place is free the best one reaches the other.
+    hung = quick("hung", 900.0, "mass_kg", "x_m"), quick("hung", 899.0, "mass_kg", "x_m", at_m=2.0)
+    assert said(*hung) == [("hung", 900.0)]

@@ -25,6 +25,12 @@ RIVAL = 0.3
 CLOSE = 0.7
 """Share of the best finalist's gain from which a rival may yet be the better one."""
 
+TIED = 0.99
+"""Share of the gain of a form's best from which another place of it is a finalist, too."""
+
+PLACES = ("x_m", "centre_m")
+"""Constants by which one hypothesis reaches other places."""
+
 BEYOND = 5.0
 """Standard deviations of its prior beyond which nobody would believe a parameter."""
 
@@ -55,9 +61,14 @@ def chosen_of(screened: Sequence[Quick], ring: Ring, most: int) -> list[Quick]:
 
 
 def finalists_of(followed: Sequence[Quick], ring: Ring, threshold: float) -> list[Quick]:
-    """The best of each effect that passes the threshold, and of its other forms that do nearly as well."""
+    """The best of each effect that passes the threshold, and of its other forms that do nearly as well.
+
+    Where the place is none of a form's constants, the next best place, too, if it does as well: a step from the
+    base does not tell the whole rail from the rail on the deck.
+    """
     found: dict[tuple[str, ...], Quick] = {}
     leading: dict[str, float] = {}
+    tied: list[Quick] = []
     for quick in followed:
         form, entry = quick.hypothesis.form, quick.hypothesis.entry
         best = max(leading.values(), default=quick.gain)
@@ -66,7 +77,15 @@ def finalists_of(followed: Sequence[Quick], ring: Ring, threshold: float) -> lis
         if passes and form not in found and (nearly or (entry not in leading and len(leading) < FINALISTS)):
             found[form] = quick
             leading.setdefault(entry, quick.gain)
-    return list(found.values())[: FINALISTS + 1]
+        elif passes and form in found and not tied and _ties(quick, found[form]):
+            tied.append(quick)
+    return [*list(found.values())[: FINALISTS + 1], *tied]
+
+
+def _ties(quick: Quick, best: Quick) -> bool:
+    """Whether a hypothesis of the same form does as well at a place that the best cannot reach."""
+    reaches = set(PLACES) & {f.name for f in best.hypothesis.free}
+    return not reaches and quick.gain > TIED * best.gain
 
 
 def elsewhere(fitted: Sequence[tuple[Quick, Fit]], followed: Sequence[Quick]) -> list[Quick]:
