@@ -341,6 +341,22 @@ def test_a_bearing_apart_is_found(
     assert right / left == pytest.approx(factor, rel=0.15)
 
 
+@pytest.mark.injection
+@pytest.mark.parametrize("factor", [0.4, 2.5])
+def test_of_two_girders_that_meet_one_may_have_the_other_bearing(
+    factor: float, situations: Callable[[str], tuple[Situation, Campaign]], tmp_path: Path
+) -> None:
+    hypotheses = entries()["bearing_stiffness"].hypotheses
+    own = [h for h in hypotheses(situations("two spans")[0]) if h.variant == "one girder"]
+    assert len(own) == 2
+    fit, situation = of(read(tmp_path, "two spans"), 3, lambda base: own[1].amend(base, {"factor": factor}))
+    ring = Ring(fit)
+    best = max((ring.quick(h) for h in hypotheses(situation)), key=lambda q: q.gain)
+    values = {"factor": factor}
+    assert best.hypothesis.law(values) == own[1].law(values)
+    assert ring.full(best, most_steps=25).values()["factor"] == pytest.approx(factor, rel=0.15)
+
+
 def test_a_stretch_changes_whole_joints_and_fades_between(
     situations: Callable[[str], tuple[Situation, Campaign]],
 ) -> None:
