@@ -7,6 +7,7 @@ and order. All suites are shown, the last one first: the history of what was fou
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -198,10 +199,15 @@ def _shares(axes: Any, at: list[float], told: list[dict[str, float]], label: str
 
 
 def _range(row: dict[str, Any]) -> str:
-    low, high = row["from"], row["to"]
+    low, high = (None if end is None else _short(end) for end in (row["from"], row["to"]))
     if low is None:
-        return f"below {high:g}"
-    return f"from {low:g}" if high is None else f"{low:g} to {high:g}"
+        return f"below {high}"
+    return f"from {low}" if high is None else f"{low} to {high}"
+
+
+def _short(value: float) -> str:
+    """Thousands as powers of ten."""
+    return f"{value:g}" if value < 1000.0 else f"$10^{{{round(math.log10(value))}}}$"
 
 
 def main() -> None:
