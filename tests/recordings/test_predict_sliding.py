@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from permway.errors import SolveError
 from permway.model.file import Frequencies, Model
 from permway.model.irregularity import GermanLow
 from permway.model.presets import slab_track_viaduct_32m
@@ -11,7 +12,8 @@ from permway.model.vehicle import Vehicle
 from permway.model.vehicle_additions import AirSpring, AnyAddition, DamperSeries, FlexibleMode, Resonator, Slider
 from permway.model.vehicle_presets import crh380a
 from permway.recordings.predict.motion import influence
-from permway.recordings.predict.sliding import retuned, with_vehicle
+from permway.recordings.predict.sliding import retuned, shares, with_vehicle
+from permway.response.sliding import Remainder
 from permway.response.train import Train
 
 LINES_HZ = np.geomspace(0.3, 300.0, 60)
@@ -70,3 +72,15 @@ def test_sliders_that_move_otherwise(cars: int, additions: tuple[AnyAddition, ..
         expected = influence(with_vehicle(model, moving), LINES_HZ, at_contacts)
         size = np.abs(expected).max(axis=(1, 2), keepdims=True)
         np.testing.assert_allclose(influence_of(moving) / size, expected / size, rtol=0.0, atol=1e-10)
+
+
+def test_forces_whose_density_is_no_density_are_said_and_where() -> None:
+    """Of two ties: all but one force is well, for rounding; what takes power away is not."""
+    alike = np.full((3, 2, 2), 4.0 + 0.0j)
+    rows = np.eye(2)
+    root = shares(Remainder(rows, alike), np.array([0.1, 0.3]))
+    np.testing.assert_allclose(root @ root.conj().swapaxes(1, 2), alike[:2], rtol=1e-5)
+    wrong = alike.copy()
+    wrong[1] = [[1.0, 2.0], [2.0, 1.0]]
+    with pytest.raises(SolveError, match="negative density at 0.25 Hz"):
+        shares(Remainder(rows, wrong), np.array([0.0, 0.25]))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from permway.arrays import Complexes, Reals
+from permway.errors import SolveError
 from permway.model.file import Model
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_additions import FlexibleMode
@@ -124,6 +125,11 @@ def shares(left: Remainder, frequency_Hz: Reals) -> Complexes:
     -------
     ndarray of complex128, shape (F, ties, sources)
         N per root of hertz.
+
+    Raises
+    ------
+    SolveError
+        If their density has no root, beyond what rounding does.
     """
     place = np.clip(frequency_Hz / STEP_HZ, 0.0, len(left.density) - 1.001)
     at = place.astype(np.int64)
@@ -131,7 +137,16 @@ def shares(left: Remainder, frequency_Hz: Reals) -> Complexes:
     density = (1.0 - away) * left.density[at] + away * left.density[at + 1]
     size = np.einsum("fii->f", density).real + np.finfo(float).tiny
     # Forces that are all but one another leave eigenvalues that rounding may put below zero.
-    return np.asarray(np.linalg.cholesky(density + (ROUNDING * size)[:, None, None] * np.eye(density.shape[1])))
+    lifted = density + (ROUNDING * size)[:, None, None] * np.eye(density.shape[1])
+    try:
+        return np.asarray(np.linalg.cholesky(lifted))
+    except np.linalg.LinAlgError:
+        least = np.linalg.eigvalsh(lifted)[:, 0] / size
+        worst = int(np.argmin(least))
+        raise SolveError(
+            f"what the sliders give beside their dashpots has a negative density at {frequency_Hz[worst]:g} Hz "
+            f"({least[worst]:.2g} of its power)"
+        ) from None
 
 
 def with_vehicle(model: Model, vehicle: Vehicle) -> Model:
