@@ -82,5 +82,5 @@ def test_forces_whose_density_is_no_density_are_said_and_where() -> None:
     np.testing.assert_allclose(root @ root.conj().swapaxes(1, 2), alike[:2], rtol=1e-5)
     wrong = alike.copy()
     wrong[1] = [[1.0, 2.0], [2.0, 1.0]]
-    with pytest.raises(SolveError, match="negative density at 0.25 Hz"):
+    with pytest.raises(SolveError, match=r"negative density at 0\.25 Hz"):
         shares(Remainder(rows, wrong), np.array([0.0, 0.25]))
