@@ -40,6 +40,15 @@ def test_a_name_is_credited_unless_its_model_neither_fits_nor_is_believed(
     assert _credit(replace(fit, heat=heat, z=z)) == pytest.approx(credit)
 
 
+@pytest.mark.parametrize(("each", "credit"), [(1.3, 1.0), (1.5, UNFIT / 20.0)])
+def test_parameters_that_are_all_off_are_not_believed_though_none_is_far_off(
+    fit: Fit, each: float, credit: float
+) -> None:
+    known = fit.evidence.campaign.parameters.known
+    z = np.array([each if f.name in known else 0.0 for f in fit.free])
+    assert _credit(replace(fit, heat=20.0, z=z)) == pytest.approx(credit)
+
+
 @pytest.mark.parametrize(
     ("before", "after", "little"),
     [

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 from types import SimpleNamespace
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import pytest
+from permway.diagnosis import describe
 from permway.diagnosis.bases import bases
 from permway.diagnosis.catalogue._change import fixed_mass, hung_mass, with_joints
 from permway.diagnosis.clock import Clock
@@ -157,3 +158,35 @@ def test_bodies_that_tell_as_much_are_all_looked_at() -> None:
     joint = cast(Found, SimpleNamespace(spot=Spot("joint", "pad", (6.0, 6.0)), surplus=85.0))
     found = [told("base", 80.0), joint, told("girder", 78.7), told("base", 78.0), told("rail", 40.0)]
     assert [one.spot.name for one in _bodies(found)] == ["base", "girder"]
+
+
+@pytest.mark.parametrize(("misfit", "described"), [(1.2, False), (30.0, True)])
+def test_a_fault_of_the_measurement_that_leaves_a_misfit_may_have_been_something_else(
+    misfit: float, described: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Resonators of a name that was ruled out were taken for a sensor's delay, at a misfit of 511."""
+
+    def fit(heat: float, objective: float) -> Any:
+        return SimpleNamespace(heat=heat, objective=objective)
+
+    base, told = fit(600.0, 9e4), SimpleNamespace(surplus=8e3, gain=8e3, degrees=24)
+    delay = SimpleNamespace(
+        fit=fit(misfit, 8e4), hypothesis=SimpleNamespace(domain="measurement", entry="sensor_delay", free=())
+    )
+    resonators = SimpleNamespace(
+        fit=fit(1.0, 1e3), quick=SimpleNamespace(hypothesis=SimpleNamespace(free=()), gain=1.0)
+    )
+    elements = SimpleNamespace(finalists=(resonators,), ring=SimpleNamespace(fit=None))
+    for name, stand_in in {
+        "_searched": lambda *_: elements,
+        "left": lambda *_: (),
+        "_blind": lambda *_: False,
+        "_closes": lambda *_: True,
+    }.items():
+        monkeypatch.setattr(describe.Description, name, stand_in)
+    monkeypatch.setattr(describe, "beyond_belief", lambda _: False)
+    monkeypatch.setattr(describe, "penalty", lambda *_: 0.0)
+    monkeypatch.setattr(describe.decide, "explained", lambda *_: 0.1)
+    description = describe.Description(cast(Any, base), cast(Any, base), cast(Any, (told,)), Clock(None))
+    found = description.of(cast(Any, [SimpleNamespace(threshold=10.0)]), cast(Any, [delay]))
+    assert (found is elements) is described

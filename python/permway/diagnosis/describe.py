@@ -101,7 +101,11 @@ class Description:
             # Of a large gap a small share may still be far more than errors explain.
             left = explained < 1.0 - OPEN or best.heat > UNFIT
             strange, blind = beyond_belief(accepted[0]), self._blind(best)
-            if accepted[0].hypothesis.domain != "path" or not (left or strange or blind or twice is not None):
+            if accepted[0].hypothesis.domain != "path":
+                # What is missing in the path may have been taken for a fault of the measurement.
+                if best.heat < UNFIT or not self._tells(least):
+                    return None
+            elif not (left or strange or blind or twice is not None):
                 return None
         else:
             best = self.base

@@ -9,6 +9,7 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.diagnosis import decide
+from permway.diagnosis.bases import BENT
 from permway.diagnosis.catalogue import irregularity_level
 from permway.diagnosis.choose import BEYOND, lines
 from permway.diagnosis.decide import Conditions
@@ -180,10 +181,12 @@ def _status(effects: Sequence[Effect], proof: Proof, gap: float) -> Status:
 def _credit(amended: Fit) -> float:
     """Share of what an amended model explains that its name may be credited with, 0 to 1.
 
-    One that does not fit, and only with parameters that nobody would believe, has the wrong name.
+    One that does not fit, and only with parameters that nobody would believe, one of them or all together, has the
+    wrong name.
     """
     owner = amended.evidence.campaign.parameters.known
-    far = any(abs(z) > BEYOND for f, z in zip(amended.free, amended.z, strict=True) if f.name in owner)
+    z = np.array([z for f, z in zip(amended.free, amended.z, strict=True) if f.name in owner])
+    far = z.size > 0 and (float(np.abs(z).max()) > BEYOND or float(np.mean(z**2)) > BENT)
     return min(1.0, UNFIT / amended.heat) if far else 1.0
 
 
