@@ -8,7 +8,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from permway.challenge.case import _kinds
-from permway.challenge.effects import CATALOGUE, NONLINEAR, OUTSIDE, STRENGTHS, TWINS, Effect
+from permway.challenge.effects import (
+    CATALOGUE,
+    NONLINEAR,
+    OUTSIDE,
+    STRENGTHS,
+    TWINS,
+    Effect,
+    above_wheels,
+    recorders,
+    under_load,
+)
 from permway.challenge.mesh import Mesh
 from permway.challenge.plan import Plan
 from permway.diagnosis.catalogue import entries
@@ -16,6 +26,7 @@ from short_deck import TWO_SPANS, small_plan, small_site
 
 FREQUENCY = np.array([3.0, 11.0, 33.0, 90.0, 170.0, 290.0, 395.0])
 EVERY = CATALOGUE + OUTSIDE + NONLINEAR
+ONLY_UNDER_TRAIN = (under_load.PadPreload, under_load.PadFriction)
 
 
 def drawn(kind: type[Effect], strength: str = "strong", seed: int = 1) -> Effect:
@@ -41,7 +52,9 @@ def test_path_effect_is_reciprocal_passive_and_felt(kind: type[Effect], base: np
     assert np.allclose(moved / scale, np.swapaxes(moved, 1, 2) / scale, atol=1e-8)
     loss = -(moved - np.conj(np.swapaxes(moved, 1, 2))) / 2j
     assert np.linalg.eigvalsh(loss / scale).min() > -1e-9
-    assert np.abs(np.log(np.abs(moved / base))).max() > 0.02
+    # A hammer does not feel what pads are under a train.
+    assert np.array_equal(moved, base) or np.abs(np.log(np.abs(moved / base))).max() > 0.02
+    assert np.array_equal(moved, base) == (kind in ONLY_UNDER_TRAIN)
     assert [plan.line_gain, plan.shapes, plan.wheel_profiles, plan.channel_gain] == [{}, [], [], {}]
 
 
@@ -52,7 +65,10 @@ def test_other_effects_leave_the_track_alone(kind: type[Effect], base: np.ndarra
     assert np.array_equal(receptance(plan), base)
 
 
-@pytest.mark.parametrize("kind", [kind for kind in EVERY if kind.DOMAIN == "vehicle"], ids=lambda kind: kind.KIND)
+FELT = [kind for kind in EVERY if kind.DOMAIN == "vehicle" and kind is not above_wheels.SecondSource]
+
+
+@pytest.mark.parametrize("kind", FELT, ids=lambda kind: kind.KIND)
 def test_vehicle_effect_is_felt_on_board(kind: type[Effect]) -> None:
     changed, plain = small_plan(small_site()), small_plan(small_site())
     drawn(kind).apply(changed)
@@ -69,12 +85,14 @@ def test_truth_of_an_effect_says_what_where_and_how_much(kind: type[Effect]) -> 
     truth = json.loads(json.dumps(drawn(kind).truth()))
     assert {"id", "kind", "family", "domain", "place", "parameters", "mechanical", "twins", "words"} == set(truth)
     assert truth["id"] in entries() if kind in CATALOGUE else truth["id"] in (None, *entries())
-    assert (truth["id"] is None) == (kind in OUTSIDE)
+    assert (truth["id"] is None) == (kind in OUTSIDE or kind is recorders.Clipping)
     assert truth["place"]
     assert truth["mechanical"]
 
 
-@pytest.mark.parametrize("kind", [k for k in EVERY if k.DOMAIN == "path"], ids=lambda kind: kind.KIND)
+@pytest.mark.parametrize(
+    "kind", [k for k in EVERY if k.DOMAIN == "path" and k not in ONLY_UNDER_TRAIN], ids=lambda kind: kind.KIND
+)
 def test_strength_orders_what_is_felt(kind: type[Effect], base: np.ndarray) -> None:
     felt = []
     for strength in STRENGTHS:

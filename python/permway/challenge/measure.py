@@ -15,6 +15,8 @@ from permway.challenge.irregularity import deviation, profile
 from permway.challenge.mesh import Mesh
 from permway.challenge.plan import FLOOR, Plan
 from permway.challenge.track import Spot
+from permway.challenge.under_train import Ridden
+from permway.challenge.vehicle import wheel_load
 
 GRID_HZ = ((0.25, 0.125), (24.0, 0.25), (40.0, 0.5), (100.0, 1.0))
 """Where the track is solved: from, step. Between the lines its receptance, which holds no lag, is smooth."""
@@ -82,8 +84,9 @@ def measure(plan: Plan, random: np.random.Generator) -> tuple[list[HammerTest], 
     samples = round(tests.seconds * tests.sampling_Hz)
     frequency = np.asarray(np.fft.rfftfreq(samples, 1.0 / tests.sampling_Hz), dtype=np.float64)
     chains = [_wander(plan, random, frequency, "sensor") for _ in tests.channels]
+    under_wheels = (grid, under)
     runs = [
-        _run(plan, random, index, np.column_stack(chains), off_dB, CubicSpline(grid, under))
+        _run(plan, random, index, np.column_stack(chains), off_dB, under_wheels)
         for index in range(len(tests.speeds_kmh))
     ]
     return hammers, runs
@@ -130,7 +133,7 @@ def _run(
     index: int,
     errors: Complexes,
     off_dB: Callable[[Reals], Reals],
-    under: CubicSpline[np.complex128],
+    under_wheels: tuple[Reals, Complexes],
 ) -> Run:
     tests, chain = plan.tests, plan.chain
     written = tests.speeds_kmh[index]
@@ -148,6 +151,7 @@ def _run(
     profiles = met[:, None] * late
     for extra in plan.wheel_profiles:
         profiles = profiles + np.fft.rfft(extra(times, speed), axis=1)[:, kept].T
+    under = CubicSpline(*_as_ridden(plan, under_wheels, lines, profiles, samples))
     profiles = plan.vehicle.leaving(lines, under, profiles, samples=samples)
     track = under(lines)
     moved = plan.vehicle.respond(lines, track, profiles, bins=np.flatnonzero(kept), samples=samples)
@@ -164,7 +168,22 @@ def _run(
         if not chain.clean:
             size = np.sqrt(0.5 * FLOOR * tests.sampling_Hz) * plan.channel_noise.get(channel, 1.0)
             values[:, column] += size * random.standard_normal(samples)
+        for recorder in plan.recorders:
+            values[:, column] = recorder(channel, values[:, column])
     return Run(written, tests.sampling_Hz, tests.channels, values)
+
+
+def _as_ridden(
+    plan: Plan, under_wheels: tuple[Reals, Complexes], lines: Reals, profiles: Complexes, samples: int
+) -> tuple[Reals, Complexes]:
+    """Grid and receptance under the wheels, the supports as this run finds them."""
+    grid, _ = under_wheels
+    if not plan.supports:
+        return under_wheels
+    wheels: list[Spot] = [("rail", x) for x in plan.layout.wheels_m(plan.values["vehicle"])]
+    temperature = plan.tests.temperatures_C[0] + plan.chain.warmer_C[0]
+    ridden = Ridden(plan.track, wheels, plan.vehicle, wheel_load(plan.values), temperature)
+    return grid, ridden.receptance(plan.supports, grid, lines_Hz=lines, profiles=profiles, samples=samples)
 
 
 def _window(frequency_Hz: Reals) -> Reals:

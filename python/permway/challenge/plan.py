@@ -11,6 +11,7 @@ from permway.challenge.assembly import assemble
 from permway.challenge.beams import Complexes, Reals
 from permway.challenge.layout import Layout, Tests, Values
 from permway.challenge.track import Spot, Track
+from permway.challenge.under_train import Support
 from permway.challenge.vehicle import Vehicle, vehicle
 
 Transfer = Callable[[Reals], Complexes]
@@ -65,6 +66,10 @@ class Plan:
         Added under the wheels: of times (s) and true speed (m/s), shape (4, N), m.
     hums : list of callable
         Added to channels: of a channel's name and times, shape (N,), m/s2.
+    supports : list of Support
+        What the track's links are under a train, where that is not what they are under a hammer.
+    recorders : list of callable
+        From what a channel reads to what is recorded of it: of the channel's name and values, shape (N,), m/s2.
     """
 
     layout: Layout
@@ -80,6 +85,8 @@ class Plan:
     shapes: list[Callable[[Reals, float], Reals]] = field(default_factory=list)
     wheel_profiles: list[Callable[[Reals, float], Reals]] = field(default_factory=list)
     hums: list[Callable[[str, Reals], Reals]] = field(default_factory=list)
+    supports: list[Support] = field(default_factory=list)
+    recorders: list[Callable[[str, Reals], Reals]] = field(default_factory=list)
     speed_factor: list[float] = field(default_factory=list)
 
     def gain_of(self, gains: list[Transfer], frequency_Hz: Reals) -> Complexes:

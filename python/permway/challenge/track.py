@@ -68,7 +68,7 @@ class Link:
         Points; near each other along x, or the bandwidth suffers.
     law : str
         Name of a law in the track's `laws`.
-    scale : float
+    scale : float or complex
         Factor on the law.
     after : tuple of bool
         At a break: whether the point is on the part behind it. Empty for before.
@@ -76,7 +76,7 @@ class Link:
 
     spots: tuple[Spot, ...]
     law: str
-    scale: float = 1.0
+    scale: complex = 1.0
     after: tuple[bool, ...] = ()
 
 

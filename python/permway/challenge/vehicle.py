@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,22 @@ Arm = dict[int, float]
 """A combination of degrees of freedom: number to factor."""
 
 Law = Callable[[Reals], Complexes]
+
+
+@dataclass(frozen=True)
+class Force:
+    """A random force on a combination of degrees of freedom.
+
+    Parameters
+    ----------
+    arm : Arm
+    spectrum : callable
+        Of frequencies (Hz) and their distance: amplitudes of the two-sided series, N.
+    """
+
+    arm: Arm
+    spectrum: Callable[[Reals, float], Complexes]
+
 
 BODY, PITCH, WHEELS = 0, 1, (6, 7, 8, 9)
 
@@ -44,6 +60,8 @@ class Vehicle:
         A force that no law describes.
     hertz : Hertz or None
         A contact that wheels may leave; linear contacts without it.
+    forces : list of Force
+        Beside what the profile does; not in a vehicle that slides.
     """
 
     masses: list[float]
@@ -54,6 +72,7 @@ class Vehicle:
     contact: float
     slider: Slider | None = None
     hertz: Hertz | None = None
+    forces: list[Force] = field(default_factory=list)
 
     def add(self, mass: float) -> int:
         """Add a degree of freedom; its number."""
@@ -124,7 +143,11 @@ class Vehicle:
         """
         read = self._rows(self.channels.values())
         if self.slider is None:
-            return np.asarray(np.einsum("fcw,fw->fc", self.influence(frequency_Hz, track), profiles))
+            arms = self._rows([force.arm for force in self.forces])
+            parts = read @ self._moved(frequency_Hz, track, arms)
+            line = float(frequency_Hz[1] - frequency_Hz[0])
+            drives = [samples * force.spectrum(frequency_Hz, line) for force in self.forces]
+            return np.asarray(np.einsum("fcw,fw->fc", parts, np.column_stack([profiles, *drives])))
         along = self._rows([arm for arm, name in self.ties if name == self.slider.tie])
         moved = self._moved(frequency_Hz, track, along)
         driven = np.einsum("fdw,fw->fd", moved[:, :, : len(self.wheels)], profiles)

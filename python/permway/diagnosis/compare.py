@@ -141,7 +141,7 @@ def compare(
         If no record can be predicted, or a file cannot be read.
     """
     steps = _Steps(progress, 3 if raw_only else 34)
-    kept, left_out = predictable(campaign)
+    kept, left_out, _ = predictable(campaign)
     steps.one()
     evidence = gather(campaign, kept, threads=threads)
     steps.one()

@@ -50,8 +50,8 @@ def deviance(
         if progress is not None:
             progress(stage)
 
-    plain, _ = bases(gather(twin, predictable(twin)[0], threads=threads), Clock(told))
-    datasets = predictable(campaign)[0]
+    plain, _ = bases(gather(twin, predictable(twin, screened=False).kept, threads=threads), Clock(told))
+    datasets = predictable(campaign, screened=False).kept
     there = plain.evidence.selected(plain.evidence.records).datasets
     mine, others = ([d.record.name for d in sets] for sets in (datasets, there))
     if mine != others:

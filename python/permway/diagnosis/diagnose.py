@@ -26,7 +26,7 @@ from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.rounds import effects
 from permway.diagnosis.sampling import corrected, sampled
 from permway.diagnosis.search import Finalist, Progress, Round
-from permway.diagnosis.speak import Proof, mixed_up, verdict_of
+from permway.diagnosis.speak import Proof, mixed_up, verdict_of, with_spoilt
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict_parts import NextMeasurement
 from permway.errors import InputError
@@ -72,7 +72,7 @@ def diagnose(
         raise InputError("must not be negative", where="draws", value=draws, remedy="0 is for curvature alone")
     clock = Clock(progress)
     clock("read")
-    kept, left_out = predictable(campaign)
+    kept, left_out, spoilt = predictable(campaign)
     evidence = gather(campaign, kept, threads=threads)
     clock("recalibrate")
     base, searched = bases(evidence, clock)
@@ -107,7 +107,7 @@ def diagnose(
         verdict_of(base, rounds, accepted, found, left, proof, advice) if mixed is None else mixed_up(base, mixed)
     )
     return Diagnosis(
-        verdict=said.model_copy(update={"ruled_out": ruled_out}),
+        verdict=with_spoilt(said, spoilt).model_copy(update={"ruled_out": ruled_out}),
         base=base,
         amended=amended,
         found=found,

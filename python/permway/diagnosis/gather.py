@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -17,24 +18,50 @@ from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
 from permway.recordings.predict import added_to, predict, why_not
+from permway.recordings.spoilt import Spoilt, sound
 
 
-def predictable(campaign: Campaign) -> tuple[list[Dataset], dict[str, str]]:
-    """Read a campaign's records: those that can be predicted, and of the others by name why not.
+class Readable(NamedTuple):
+    """What of a campaign's records can be used.
+
+    Attributes
+    ----------
+    kept : list of Dataset
+    left_out : dict of str to str
+        Why not, by name of a record, or of a record and its channel.
+    spoilt : tuple of Spoilt
+        Channels that are left out because their samples are no measurement.
+    """
+
+    kept: list[Dataset]
+    left_out: dict[str, str]
+    spoilt: tuple[Spoilt, ...]
+
+
+def predictable(campaign: Campaign, *, screened: bool = True) -> Readable:
+    """Read a campaign's records: those that can be predicted, and of the others why not.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    screened : bool
+        Whether channels that screening finds spoilt are left out.
 
     Raises
     ------
     InputError
-        If none can be predicted, or a file cannot be read.
+        If none can be predicted, all are spoilt, or a file cannot be read.
     """
-    datasets = campaign.load()
+    whole, spoilt = sound(campaign) if screened else (campaign, ())
+    datasets = whole.load()
     reasons = {dataset.record.name: why_not(campaign, dataset) for dataset in datasets}
     left_out = {name: str(why) for name, why in reasons.items() if why is not None}
     kept = [dataset for dataset in datasets if reasons[dataset.record.name] is None]
     if not kept:
         name, why = next(iter(left_out.items()))
         raise InputError("no record can be predicted", where=f"records.{name}", remedy=why)
-    return kept, left_out
+    left_out |= {f"{one.record}: {one.channel}": f"{one.kind}: {one.what}" for one in spoilt}
+    return Readable(kept, left_out, spoilt)
 
 
 def gather(

@@ -81,7 +81,7 @@ def rivals(
     InputError
         If no record can be predicted.
     """
-    evidence = independent(gather(campaign, predictable(campaign)[0], threads=threads))
+    evidence = independent(gather(campaign, predictable(campaign).kept, threads=threads))
     fit = replace(recalibrate(evidence, learn=False, reweigh=True), heat=1.0)
     ring = Ring(fit)
     offered = list(hypotheses(Situation(fit, scanned(fit)), ruled_out))

@@ -97,7 +97,7 @@ def separability(
     """
     say = progress or (lambda stage, done, total: None)
     say("read", 0, 0)
-    datasets, _ = predictable(campaign)
+    datasets = predictable(campaign).kept
     datasets = [
         replace(dataset, data=dataset.data.assign({name: right[name] for name in right.data_vars}))
         for dataset, right in zip(datasets, predict(campaign, datasets, threads=threads), strict=True)

@@ -34,6 +34,7 @@ from permway.diagnosis.verdict_parts import (
     Recalibrated,
     Weight,
 )
+from permway.recordings.spoilt import Spoilt
 
 LABELS = "sensor_labels"
 """Name of the fault that channels carry each other's labels."""
@@ -162,6 +163,29 @@ def mixed_up(base: Fit, mixed: Mislabelled) -> Verdict:
         law=Mechanics(words=mixed.words),
     )
     return Verdict(status="measurement", effects=(effect,), recalibrated=Recalibrated(before=_moved(base)))
+
+
+def with_spoilt(said: Verdict, spoilt: Sequence[Spoilt]) -> Verdict:
+    """The verdict with channels whose samples are no measurement, which nothing was estimated from."""
+    if not spoilt:
+        return said
+    faults: dict[tuple[str, str], list[Spoilt]] = {}
+    for one in spoilt:
+        faults.setdefault((one.channel, one.kind), []).append(one)
+    effects = tuple(
+        Effect(
+            domain="measurement",
+            place=Place(channels=(channel,)),
+            name=kind.replace(" ", "_"),
+            law=Mechanics(words="; ".join(f"{one.record}: {one.what}" for one in ones) + "; left out"),
+        )
+        for (channel, kind), ones in faults.items()
+    )
+    status: Status = "measurement" if said.status == "recalibrated" else said.status
+    # Through a check: a copy would not be.
+    return Verdict.model_validate(
+        said.model_dump(by_alias=True) | {"status": status, "effects": [*said.effects, *effects]}
+    )
 
 
 def _status(effects: Sequence[Effect], proof: Proof, gap: float) -> Status:

@@ -44,9 +44,13 @@ def sentence(verdict: Verdict) -> str:
         case "recalibrated":
             parts = ["Nothing is missing beyond what the stated tolerances allow", _seen(verdict)]
         case "insufficient":
-            suspect = f"the suspicion is {_named(verdict.effects[0])}" if verdict.effects else ""
+            # What screening found is no suspicion: it has no class.
+            suspects = [effect for effect in verdict.effects if effect.class_]
+            spoilt = [_named(effect) for effect in verdict.effects if not effect.class_]
+            suspect = f"the suspicion is {_named(suspects[0])}" if suspects else ""
             words = "Nothing that was tried explains enough of these records to be called missing"
-            parts = [words, suspect, _seen(verdict), _advice(verdict)]
+            sure = f"at fault is {' and '.join(spoilt)}" if spoilt else ""
+            parts = [words, suspect, sure, _seen(verdict), _advice(verdict)]
         case "named":
             parts = [_named(verdict.effects[0]), _more(verdict), _better(verdict), _open(verdict)]
         case "measurement":

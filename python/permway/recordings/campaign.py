@@ -132,6 +132,11 @@ class Campaign:
         """
         return Campaign(self.said, model, self.folder, self.parameters.on(model))
 
+    def with_records(self, records: Sequence[Record]) -> Campaign:
+        """The campaign with some of its records, or of their channels, alone."""
+        said = self.said.model_copy(update={"records": tuple(records)})
+        return Campaign(said, self.model, self.folder, self.parameters)
+
     def summary(self) -> dict[str, str | int]:
         """What there is, for people and machines."""
         return {

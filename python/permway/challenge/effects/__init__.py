@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from permway.challenge.effects import (
+    above_wheels,
+    blows,
     bridge,
     fasteners,
     layers,
@@ -10,8 +12,11 @@ from permway.challenge.effects import (
     measuring,
     on_board,
     outside,
+    recorders,
     running_surface,
     sliding,
+    under_load,
+    uneven,
 )
 from permway.challenge.effects.base import STRENGTHS, Domain, Effect, Site, Strength
 
@@ -25,6 +30,9 @@ CATALOGUE: tuple[type[Effect], ...] = (
     fasteners.RailAbsorbers,
     fasteners.BaseplateMass,
     fasteners.SupportGradient,
+    under_load.PadPreload,
+    uneven.SupportScatter,
+    uneven.SlabWarping,
     layers.MortarVoid,
     layers.SlabJoints,
     layers.ViscousLayer,
@@ -32,12 +40,18 @@ CATALOGUE: tuple[type[Effect], ...] = (
     bridge.GirderCrack,
     bridge.BearingStiffness,
     bridge.PierSoil,
+    bridge.SecondTrack,
     on_board.DamperSeries,
     on_board.AxleboxAbsorber,
     on_board.BodyBending,
     on_board.WheelsetBending,
+    above_wheels.AirSpring,
+    above_wheels.BogieBending,
+    above_wheels.SecondSource,
     running_surface.WheelPolygon,
     running_surface.RailCorrugation,
+    blows.WheelFlat,
+    blows.RailJoints,
     running_surface.ContactFilter,
     running_surface.IrregularityLevel,
     measuring.SensorGain,
@@ -63,5 +77,13 @@ OUTSIDE: tuple[type[Effect], ...] = (
 )
 """Effects that no catalogue names."""
 
-NONLINEAR: tuple[type[Effect], ...] = (sliding.PrimaryFriction, sliding.BlowOffDamper, leaving.DippedWelds)
-"""Effects that depend on amplitude."""
+NONLINEAR: tuple[type[Effect], ...] = (
+    sliding.PrimaryFriction,
+    sliding.BlowOffDamper,
+    leaving.DippedWelds,
+    under_load.PadFriction,
+    under_load.ClosingGap,
+    recorders.Clipping,
+    recorders.ClockDrift,
+)
+"""Effects that depend on amplitude, or change in time."""

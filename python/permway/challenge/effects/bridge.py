@@ -11,7 +11,7 @@ from permway.challenge.beams import Complexes, Reals
 from permway.challenge.effects.base import Effect, Site, Strength, between, interval, size, three
 from permway.challenge.effects.fasteners import resonator
 from permway.challenge.plan import Plan
-from permway.challenge.track import Link
+from permway.challenge.track import Link, grounded
 
 
 @dataclass(frozen=True)
@@ -167,3 +167,51 @@ class PierSoil(Effect):
     def mechanical(self) -> str:
         """In words."""
         return f"a pier of {self.pier_kg:g} kg on soil of {self.soil_N_per_m:.3g} N/m under each bearing"
+
+
+@dataclass(frozen=True)
+class SecondTrack(Effect):
+    """The other track's mass on the girder, part of it on its pads."""
+
+    KIND = "second_track"
+    ID = "second_track"
+    FAMILY = "girder"
+
+    mass_kg_per_m: float
+    sprung: float
+    tuned_Hz: float
+    loss: float
+
+    @classmethod
+    def draw(cls, random: np.random.Generator, strength: Strength, site: Site) -> Self:
+        """Mass by strength: a girder has some 12 t/m."""
+        mass = size(random, strength, 400.0, 1200.0, 3500.0)
+        return cls(mass, between(random, 0.05, 0.3), between(random, 60.0, 250.0), between(random, 0.1, 0.3))
+
+    def apply(self, plan: Plan) -> None:
+        """Lay it on the girder at each station, with the share of the length between the middles of its bays."""
+        spring = self.sprung * (2.0 * np.pi * self.tuned_Hz) ** 2 * (1.0 + 1j * self.loss)
+
+        def law(f: Reals, _: float) -> Complexes:
+            square = (2.0 * np.pi * f) ** 2
+            sprung = spring * self.sprung * square / (spring - self.sprung * square)
+            return np.asarray(-self.mass_kg_per_m * ((1.0 - self.sprung) * square + sprung))
+
+        plan.track.laws["second_track"] = grounded(law)
+        deck, spacing = plan.layout.deck, plan.layout.spacing_m
+        for index, x in enumerate(deck):
+            share = spacing * (0.5 if index in (0, len(deck) - 1) else 1.0)
+            plan.track.links.append(Link((("girder", x),), "second_track", share))
+
+    @property
+    def place(self) -> dict[str, Any]:
+        """The whole girder."""
+        return {"body": "girder", "x_m": None}
+
+    @property
+    def mechanical(self) -> str:
+        """In words."""
+        return (
+            f"a second track of {self.mass_kg_per_m:g} kg/m on the girder, {self.sprung:g} of it on pads at "
+            f"{self.tuned_Hz:g} Hz"
+        )

@@ -17,7 +17,8 @@ FREE_FREE = 4.730040745
 """First root of cos x cosh x = 1: the first bending of a free beam."""
 
 
-def _hysteretic_tie(mass: float, tuned_Hz: float, loss: float) -> Any:
+def hysteretic_tie(mass: float, tuned_Hz: float, loss: float) -> Any:
+    """A spring on which a mass is tuned."""
     value = mass * (2.0 * np.pi * tuned_Hz) ** 2 * (1.0 + 1j * loss)
     return lambda f: np.full(f.shape, value)
 
@@ -81,7 +82,7 @@ class AxleboxAbsorber(Effect):
 
     def apply(self, plan: Plan) -> None:
         """Hang it on."""
-        plan.vehicle.laws["absorber"] = _hysteretic_tie(self.mass_kg, self.tuned_Hz, self.loss)
+        plan.vehicle.laws["absorber"] = hysteretic_tie(self.mass_kg, self.tuned_Hz, self.loss)
         for wheelset in self.wheelsets:
             hung = plan.vehicle.add(self.mass_kg)
             plan.vehicle.ties.append(({WHEELS[wheelset - 1]: 1.0, hung: -1.0}, "absorber"))
@@ -122,13 +123,13 @@ class BodyBending(Effect):
         vehicle, v = plan.vehicle, plan.values["vehicle"]
         mass = 0.25 * v["half"] * v["Mc"]
         number = vehicle.add(mass)
-        vehicle.laws["bending"] = _hysteretic_tie(mass, self.frequency_Hz, self.loss)
-        at_bogie = _first_bending(0.5 + 0.5 * v["lc"] / BODY_LENGTH_M)
+        vehicle.laws["bending"] = hysteretic_tie(mass, self.frequency_Hz, self.loss)
+        at_bogie = first_bending(0.5 + 0.5 * v["lc"] / BODY_LENGTH_M)
         for arm, name in vehicle.ties:
             if name == "secondary":
                 arm[number] = at_bogie
         vehicle.ties.append(({number: 1.0}, "bending"))
-        vehicle.channels["carbody"][number] = _first_bending(0.5)
+        vehicle.channels["carbody"][number] = first_bending(0.5)
 
     @property
     def place(self) -> dict[str, Any]:
@@ -141,7 +142,7 @@ class BodyBending(Effect):
         return f"the car body bends at {self.frequency_Hz:g} Hz, loss factor {self.loss:g}"
 
 
-def _first_bending(share: float) -> float:
+def first_bending(share: float) -> float:
     """Shape of the first bending of a free beam, 1 at its ends, at a share of its length."""
     x = FREE_FREE * share
     ratio = (np.cosh(FREE_FREE) - np.cos(FREE_FREE)) / (np.sinh(FREE_FREE) - np.sin(FREE_FREE))
@@ -172,7 +173,7 @@ class WheelsetBending(Effect):
         whole = v["half"] * v["Mw"]
         boxes = self.share * whole
         joint = boxes * (whole - boxes) / whole
-        vehicle.laws["axle"] = _hysteretic_tie(joint, self.frequency_Hz, self.loss)
+        vehicle.laws["axle"] = hysteretic_tie(joint, self.frequency_Hz, self.loss)
         moved = {}
         for index, wheel in enumerate(WHEELS):
             vehicle.masses[wheel] = whole - boxes

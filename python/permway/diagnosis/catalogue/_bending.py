@@ -30,7 +30,7 @@ def bending(
     ratio, times the part's mass, is the `participation`; of either sign, and 0 without an effect. The shape's
     modulus at the springs is given: it says how much the mode weighs on the springs, which hardly shows.
     """
-    read = sensors_on(situation.campaign, on.removesuffix("s"))
+    read = sensors_on(situation, on.removesuffix("s"))
     if vehicle_of(situation.campaign) is None or not read:
         return
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from permway.diagnosis.catalogue._runs import on_board
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import FITS
 from permway.model.vehicle import Vehicle
@@ -38,10 +39,10 @@ def with_addition(campaign: Campaign, addition: AnyAddition) -> Campaign:
     )
 
 
-def sensors_on(campaign: Campaign, part: str) -> list[str]:
-    """Sensors that read the vertical motion of a part: "wheelset", "wheelset2", "bogie", "body"."""
+def sensors_on(situation: Situation, part: str) -> list[str]:
+    """Sensors of runs that read the vertical motion of a part: "wheelset", "wheelset2", "bogie", "body"."""
     found = []
-    for sensor in campaign.said.sensors:
+    for sensor in on_board(situation):
         if sensor.degree is None or not sensor.predicted or sensor.degree.endswith("pitch"):
             continue
         if sensor.degree.split(".")[1].startswith(part):

@@ -49,11 +49,11 @@ def _at(part: Part, channels: tuple[str, ...], _: Mapping[str, float]) -> Where:
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """One for all wheelsets, and for those whose axle boxes deviate most one each."""
     campaign = situation.campaign
-    if vehicle_of(campaign) is None or not sensors_on(campaign, "wheelset"):
+    if vehicle_of(campaign) is None or not sensors_on(situation, "wheelset"):
         return
-    places: list[tuple[Part, tuple[str, ...]]] = [("wheelsets", tuple(sensors_on(campaign, "wheelset")))]
+    places: list[tuple[Part, tuple[str, ...]]] = [("wheelsets", tuple(sensors_on(situation, "wheelset")))]
     for number in (1, 2, 3, 4):
-        read = sensors_on(campaign, f"wheelset{number}")
+        read = sensors_on(situation, f"wheelset{number}")
         if read:
             places.append((cast(Part, f"wheelset{number}"), tuple(read)))
     single = sorted(places[1:], key=lambda place: -_deviating(situation, place[1]))[:MOST]

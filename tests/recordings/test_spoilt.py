@@ -1,0 +1,95 @@
+"""Channels whose samples are spoilt: told, and left out of what is estimated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from permway.arrays import Reals
+from permway.diagnosis.gather import predictable
+from permway.diagnosis.speak import with_spoilt
+from permway.diagnosis.verdict import Verdict
+from permway.diagnosis.verdict_parts import ClassMember, Effect, Place
+from permway.errors import InputError
+from permway.recordings.campaign import Campaign
+from permway.recordings.importers.sheet import import_sheet
+from permway.recordings.spoilt import Spoilt, sound
+from sheets import make_folder
+
+CLIPPED = Spoilt("run", "axlebox2", "clipping", "4 samples flat at 3")
+
+
+@pytest.fixture
+def campaign(tmp_path: Path) -> Campaign:
+    return import_sheet(make_folder(tmp_path / "folder"), tmp_path / "imported")
+
+
+def alter(campaign: Campaign, run: int, change: Callable[[Reals], None]) -> None:
+    """Write a run's file anew, its samples changed."""
+    path = [campaign.path(record) for record in campaign.said.records if record.statistic == "csd"][run]
+    with np.load(path) as stored:
+        content = dict(stored)
+    change(content["acceleration"])
+    np.savez(path, **content)
+
+
+def clip(column: int) -> Callable[[Reals], None]:
+    def change(values: Reals) -> None:
+        most = 1.5 * values[:, column].std()
+        values[:, column] = np.clip(values[:, column], -most, most)
+
+    return change
+
+
+def test_a_sound_campaign_is_left_as_it_is(campaign: Campaign) -> None:
+    whole, spoilt = sound(campaign)
+    assert whole is campaign
+    assert spoilt == ()
+
+
+def test_a_clipped_channel_is_left_out_of_the_run_in_which_it_is(campaign: Campaign) -> None:
+    alter(campaign, 1, clip(1))
+    kept, left_out, spoilt = predictable(campaign)
+    assert [(one.channel, one.kind) for one in spoilt] == [("axlebox2", "clipping")]
+    assert list(left_out) == [f"{spoilt[0].record}: axlebox2"]
+    first, second = (one.data for one in kept if one.record.statistic == "csd")
+    assert "axlebox2" in first["channel"].values
+    assert [*second["channel"].values] == [name for name in first["channel"].values if name != "axlebox2"]
+    everything = predictable(campaign, screened=False)
+    assert [one.data["channel"].size for one in everything.kept if one.record.statistic == "csd"] == [6, 6]
+
+
+def test_a_run_with_no_channel_left_is_left_out(campaign: Campaign) -> None:
+    def die(values: Reals) -> None:
+        values[:] = 0.5
+
+    alter(campaign, 0, die)
+    kept, _, spoilt = predictable(campaign)
+    assert {one.kind for one in spoilt} >= {"dead"}
+    assert len([one for one in kept if one.record.statistic == "csd"]) == 1
+    runs = tuple(record for record in campaign.said.records if record.statistic == "csd")
+    with pytest.raises(InputError, match="every record is spoilt"):
+        sound(campaign.with_records(runs[:1]))
+
+
+def test_a_verdict_says_what_was_spoilt() -> None:
+    plain = with_spoilt(Verdict(status="recalibrated"), [CLIPPED])
+    assert (plain.status, plain.effects[0].name) == ("measurement", "clipping")
+    assert plain.effects[0].place.channels == ("axlebox2",)
+    assert "at fault" in plain.sentence
+    assert "4 samples flat at 3" in plain.sentence
+    unsure = with_spoilt(Verdict(status="insufficient"), [CLIPPED])
+    assert unsure.status == "insufficient"
+    assert "suspicion" not in unsure.sentence
+    assert "at fault is axlebox2: run: 4 samples flat at 3; left out (clipping)" in unsure.sentence
+    lost = Effect(
+        domain="path",
+        place=Place(joint="pad"),
+        name="fastener_loss",
+        class_=(ClassMember(name="fastener_loss", probability=0.95),),
+    )
+    both = with_spoilt(Verdict(status="named", effects=(lost,)), [CLIPPED])
+    assert [effect.name for effect in both.effects] == ["fastener_loss", "clipping"]
+    assert with_spoilt(plain, []) is plain
