@@ -115,7 +115,7 @@ class Effect(VerdictPart):
     bands: tuple[Span, ...] = ()
     """Bands in which it shows, each from and to in Hz."""
     name: Named | None = None
-    """Its id in the catalogue; null if the data allow several, or none fits."""
+    """Its id in the catalogue, or what screening calls it; null if the data allow several, or none fits."""
     class_: tuple[ClassMember, ...] = Field(default=(), alias="class")
     """Effects that these data cannot tell apart, the most probable first."""
     law: Mechanics = Mechanics()
