@@ -190,3 +190,18 @@ def test_a_fault_of_the_measurement_that_leaves_a_misfit_may_have_been_something
     description = describe.Description(cast(Any, base), cast(Any, base), cast(Any, (told,)), Clock(None))
     found = description.of(cast(Any, [SimpleNamespace(threshold=10.0)]), cast(Any, [delay]))
     assert (found is elements) is described
+
+
+def test_what_is_alike_all_along_the_rail_is_tried_wherever_it_tells_most(tmp_path: Path) -> None:
+    """Resonators on a rail over three spans told most of one girder, where no element explained them."""
+    campaign = simulate(tmp_path / "c", 8).campaign
+    _, searched = bases(gather(campaign, threads=1), Clock(None))
+    deck = [one for one in scanned(searched) if one.spot.name != "rail"]
+    rail = [one for one in scanned(searched) if one.spot.name == "rail"]
+    assert rail[0].spot.kind == "body"
+    offered = list(hypotheses(Situation(searched, (*deck, *rail))))
+    assert any(h.family == "resonator on the body at every joint of pad" for h in offered)
+    layers = {h.locate({}).what for h in offered if h.family == "springpot beside every joint of the layer"}
+    assert layers == {one.spot.name for one in deck if one.spot.kind == "joint"}
+    alone = [h for h in hypotheses(Situation(searched, tuple(rail))) if h.family.endswith("every joint of pad")]
+    assert len(alone) == len({h.family for h in alone})

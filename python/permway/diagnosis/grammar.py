@@ -8,7 +8,7 @@ description, not a name.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +16,7 @@ import numpy as np
 from permway.arrays import Reals
 from permway.diagnosis.catalogue._change import fresh, with_joints, with_law
 from permway.diagnosis.catalogue._interval import shares, spacing_of, stations_of
+from permway.diagnosis.catalogue._roles import fasteners
 from permway.diagnosis.elements import ELEMENTS, Element
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation, Where, linear_free, log_free
@@ -48,7 +49,9 @@ Values = Mapping[str, float]
 
 
 def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hypothesis]:
-    """Each element at the most telling joint, in its whole layer, and at the most telling place of a body or some.
+    """Each element at the most telling joint and place of a body, or some, in every layer, and all along the rail.
+
+    What is alike all along a track is told by no one place: where it tells most may be of another body.
 
     Parameters
     ----------
@@ -58,24 +61,38 @@ def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hyp
     """
     joint = next((f for f in situation.found if f.spot.kind == "joint"), None)
     bodies = _bodies(situation.found)[: 1 if like is not None else None]
+    layers = _first(f for f in situation.found if f.spot.kind == "joint")
+    along = bodies if like is not None else _with_rail(situation, bodies)
     for element in ELEMENTS:
         if not element.ground and joint is not None:
             yield _at_joint(situation, element, joint)
             yield _over_joints(situation, element, joint)
-            yield _in_layer(element, joint)
+            yield from (_in_layer(element, layer) for layer in layers)
         for body in bodies:
             yield _on_body(element, body, like)
             yield _over_body(situation, element, body, like)
+        for body in along:
             yield from _at_supports(situation, element, body, like)
+
+
+def _first(found: Iterable[Found]) -> list[Found]:
+    """The most telling place of each body or law."""
+    best: dict[str, Found] = {}
+    for one in found:
+        best.setdefault(one.spot.name, one)
+    return list(best.values())
+
+
+def _with_rail(situation: Situation, bodies: Sequence[Found]) -> list[Found]:
+    """And of what pads hold, where it is none of them."""
+    carried = {layer.upper for layer in fasteners(situation.campaign.model.line)}
+    others = _first(f for f in situation.found if f.spot.kind == "body" and f.spot.name in carried)
+    return [*bodies, *(one for one in others if all(one is not body for body in bodies))]
 
 
 def _bodies(found: Sequence[Found]) -> list[Found]:
     """The most telling place of a body, and of others that tell as much: layers of a track move together."""
-    best: dict[str, Found] = {}
-    for one in found:
-        if one.spot.kind == "body":
-            best.setdefault(one.spot.name, one)
-    kept = list(best.values())
+    kept = _first(one for one in found if one.spot.kind == "body")
     return [one for one in kept if kept[0].surplus - one.surplus < AS_MUCH]
 
 
