@@ -30,8 +30,10 @@ def bending(
     ratio, times the part's mass, is the `participation`; of either sign, and 0 without an effect. The shape's
     modulus at the springs is given: it says how much the mode weighs on the springs, which hardly shows.
     """
+    if vehicle_of(situation.campaign) is None:
+        return
     read = sensors_on(situation, on.removesuffix("s"))
-    if vehicle_of(situation.campaign) is None or not read:
+    if not read:
         return
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from permway.diagnosis.catalogue._pads import factors, loss_factor, measured_under, pad_laws, scaled, with_factors
+from permway.diagnosis.catalogue._roles import fasteners, laws_of
+from permway.diagnosis.catalogue._under_wheels import levelled
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, between_free, log_free
 from permway.recordings.campaign import Campaign
 
@@ -15,12 +17,13 @@ DOMAIN: Domain = "path"
 FAMILY = "load-dependent pad"
 SUMMARY = (
     "Under the train the stiffness falls by s X / (1 + X) and the loss grows by s q 2 sqrt(X) / (1 + X), both "
-    "over the stiffness under the hammer; X = a^1.2, a the amplitude, as the speed."
+    "over the stiffness under the hammer; X = a^1.2, a the amplitude, as the speed, and as the rail spreads a "
+    "wheel's force."
 )
 PARAMETERS = {
     "softening": "1, 0 to 0.8: s, share of the stiffness that large amplitudes take",
     "unstrained_factor": "1, 0.4 to 2.5: stiffness under the hammer over the base's, which fits both at once",
-    "relative_amplitude": "1, 0.1 to 10: a at the train's mean speed, over that where half of it is taken",
+    "relative_amplitude": "1, 0.1 to 10: a below a wheel at the train's mean speed, over that where half is taken",
     "loss_share": "1, 0.1 to 1: q",
 }
 SIGNATURE = (
@@ -56,17 +59,24 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     if not names or not {"hammer", "train"} <= kinds:
         return
 
+    fastened = laws_of(fasteners(line))
+    spread = [name for name in names if name in fastened]
+
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         campaign = scaled(campaign, names, values["unstrained_factor"])
-        line = campaign.model.line
+        if values["softening"] == 0.0:
+            return campaign
         speeds = {c.name: c.speed_m_per_s for c in measured_under(campaign) if c.speed_m_per_s is not None}
         mean = sum(speeds.values()) / len(speeds)
+        campaign, levels = levelled(campaign, spread, speeds)
+        line = campaign.model.line
+        levels |= {name: [(name, 1.0)] for name in names if name not in spread}
         changed: dict[str, dict[str, float]] = {}
         for condition, speed in speeds.items():
             amplitude = values["relative_amplitude"] * speed / mean
-            ratio, added = payne(values["softening"], amplitude, values["loss_share"])
             changed[condition] = {}
-            for law in names:
+            for law, share in (one for many in levels.values() for one in many):
+                ratio, added = payne(values["softening"], amplitude * share, values["loss_share"])
                 before = loss_factor(line, law)
                 after = min((before + added) / ratio, LARGEST_LOSS)
                 changed[condition].update(factors(line, law, ratio, after / before))
@@ -87,7 +97,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         starts=((-1.2, 0.0, 0.0, 0.0), (-1.2, 0.5, 0.0, 0.0), (-0.3, 1.0, 0.0, 0.0)),
         law=lambda v: (
             f"{payne(v['softening'], v['relative_amplitude'], v['loss_share'])[0]:.2f} of the stiffness is left "
-            "under the train at its mean speed"
+            "below a wheel at the train's mean speed"
         ),
         size="softening",
         none=0.0,

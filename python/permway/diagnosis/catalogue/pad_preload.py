@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 
+import numpy as np
+
+from permway.arrays import Reals
 from permway.diagnosis.catalogue._pads import factors, measured_under, pad_laws, scaled, with_factors
+from permway.diagnosis.catalogue._roles import fasteners, laws_of
+from permway.diagnosis.catalogue._under_wheels import pressed
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_parts import Condition
@@ -12,9 +18,12 @@ from permway.recordings.campaign_parts import Condition
 ID = "pad_preload"
 DOMAIN: Domain = "path"
 FAMILY = "load-dependent pad"
-SUMMARY = "The pads' stiffness under the load L is r^(L/L0) times that without; L0 is the train's mean."
+SUMMARY = (
+    "A fastener's stiffness under the load L is 1 + (r - 1) L / L0 times that without; L0 is what the one below a "
+    "wheel carries of the train's mean, and others less, as the rail spreads it."
+)
 PARAMETERS = {
-    "stiffness_ratio": "1, 0.41 to 3.8: r, stiffness under the train over that without load",
+    "stiffness_ratio": "1, 0.41 to 3.8: r, stiffness below a wheel over that without load",
     "unloaded_factor": "1, 0.4 to 2.5: stiffness without load over the base's, which fits both at once",
 }
 SIGNATURE = (
@@ -27,6 +36,8 @@ CONFUSED_WITH = {
     "irregularity_level": "a level moves all on-board channels by one factor at all frequencies",
 }
 SOURCE = "Wu and Thompson, Journal of Sound and Vibration 219 (1999) 881-904"
+LEAST_LEFT = 0.05
+"""Of the stiffness, where two wheels together would take more than all."""
 
 
 def loads(conditions: list[Condition]) -> dict[str, float]:
@@ -40,20 +51,32 @@ def loads(conditions: list[Condition]) -> dict[str, float]:
     return found
 
 
+def _stiffened(share: Reals, more: float) -> Reals:
+    return np.maximum(1.0 + more * share, LEAST_LEFT)
+
+
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """One for all pads, if records were taken under two loads, as with and without a train."""
     names = pad_laws(situation.campaign.model.line)
     if not names or len(set(loads(measured_under(situation.campaign)).values())) < 2:
         return
 
+    fastened = laws_of(fasteners(situation.campaign.model.line))
+    spread = [name for name in names if name in fastened]
+
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         campaign = scaled(campaign, names, values["unloaded_factor"])
-        line = campaign.model.line
-        changed = {}
-        for condition, load in loads(measured_under(campaign)).items():
-            ratio = values["stiffness_ratio"] ** load
-            changed[condition] = {p: f for law in names for p, f in factors(line, law, ratio).items()}
-        return with_factors(campaign, changed)
+        line, more = campaign.model.line, values["stiffness_ratio"] - 1.0
+        conditions = {c.name: c for c in measured_under(campaign)}
+        below, alike = {}, {}
+        for condition, load in loads(list(conditions.values())).items():
+            near = conditions[condition].kind == "train" and campaign.model.train is not None
+            if near and more != 0.0:
+                below[condition] = partial(_stiffened, more=more * load)
+            ratio = 1.0 + more * load
+            others = [name for name in names if not (near and name in spread)]
+            alike[condition] = {p: f for law in others for p, f in factors(line, law, ratio).items()}
+        return with_factors(pressed(campaign, spread, below) if below else campaign, alike)
 
     yield Hypothesis(
         entry=ID,
@@ -64,7 +87,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         locate=lambda _: Where(what=", ".join(names)),
         # The base fits the hammer, or the train, or lies between.
         starts=((0.0, 0.0), (0.0, -1.2), (1.0, -2.4), (-1.0, 0.0)),
-        law=lambda v: f"{v['stiffness_ratio']:.2f} times as stiff under the train as without",
+        law=lambda v: f"{v['stiffness_ratio']:.2f} times as stiff below a wheel as without",
         size="stiffness_ratio",
         none=1.0,
     )

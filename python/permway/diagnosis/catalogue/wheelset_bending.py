@@ -67,8 +67,10 @@ def _starts(loudest_Hz: float, size: float) -> Iterator[tuple[float, float, floa
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """One, of all wheelsets alike, if axle boxes are read."""
+    if vehicle_of(situation.campaign) is None:
+        return
     read = sensors_on(situation, "wheelset")
-    if vehicle_of(situation.campaign) is None or not read:
+    if not read:
         return
     frequencies = loudest_Hz(situation, read, 20.0, 600.0, most=2)
     yield Hypothesis(
