@@ -62,3 +62,15 @@ def test_what_was_screened_about_a_base_of_other_lines_is_screened_again(tmp_pat
     assert np.isfinite(ring.promise(quick))
     other = replace(quick, columns=None, direction=quick.direction[:-3])
     assert ring.promise(other) == np.inf
+
+
+def test_a_fit_begins_with_the_base_as_it_was_where_a_straight_line_led_astray(tmp_path: Path) -> None:
+    fit = recalibrate(gather(simulate(tmp_path / "c", 4).campaign, threads=1))
+    ring = Ring(fit)
+    (hypothesis, *_) = sensor_gain.hypotheses(Situation(fit, ()))
+    quick = ring.quick(hypothesis)
+    count = fit.z.size
+    near = ring.full(replace(quick, columns=None), most_steps=0)
+    np.testing.assert_array_equal(near.z[:count], quick.base_z)
+    astray = replace(quick, columns=None, base_z=quick.base_z + 3.0)
+    np.testing.assert_array_equal(ring.full(astray, most_steps=0).z[:count], fit.z)

@@ -205,3 +205,19 @@ def test_what_is_alike_all_along_the_rail_is_tried_wherever_it_tells_most(tmp_pa
     assert layers == {one.spot.name for one in deck if one.spot.kind == "joint"}
     alone = [h for h in hypotheses(Situation(searched, tuple(rail))) if h.family.endswith("every joint of pad")]
     assert len(alone) == len({h.family for h in alone})
+
+
+@pytest.mark.parametrize(("left", "instead"), [(1.0, True), (9.0, False)])
+def test_a_description_that_does_not_fit_itself_ends_no_search(
+    left: float, instead: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An inertance under a crack closed most of the gap that damped pads left, at a misfit of 9."""
+    one = SimpleNamespace(fit=SimpleNamespace(heat=left))
+    named = SimpleNamespace(fit=SimpleNamespace(heat=22.0), hypothesis=SimpleNamespace(domain="path"))
+    monkeypatch.setattr(describe.Description, "of", lambda *_: SimpleNamespace(finalists=(one,)))
+    monkeypatch.setattr(describe.Description, "_blind", lambda *_: False)
+    monkeypatch.setattr(describe.Description, "_closes", lambda *_: True)
+    monkeypatch.setattr(describe, "beyond_belief", lambda _: False)
+    nothing = cast(Any, SimpleNamespace())
+    description = describe.Description(nothing, nothing, (), Clock(None))
+    assert description.instead(cast(Any, SimpleNamespace(finalists=(named,)))) is instead

@@ -69,7 +69,10 @@ def test_the_tutorial_s_diagnosis_says_what_its_page_says(tmp_path: Path) -> Non
     assert verdict.status == "named"
     assert verdict.sentence in " ".join(page.split())
     factor = verdict.effects[0].parameters["factor"]
-    assert [round(v, 4) for v in (factor.value, factor.low, factor.high)] == [0.049, 0.0481, 0.05]
+    assert f"{factor.value:.4f} (90 %: {factor.low:.4f} to {factor.high:.4f})" in page
+    script = (DOCS / "how-to" / "verdict-script.md").read_text("utf-8")
+    for name, one in verdict.effects[0].parameters.items():
+        assert f"{name} = {one.value:.4g} {one.unit} ({one.low:.4g} to {one.high:.4g})" in script
 
 
 def survey(folder: Path) -> Path:

@@ -17,7 +17,7 @@ from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.quick import Quick, stacked, weaker
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.refit import moved
-from permway.diagnosis.tangent import STEP
+from permway.diagnosis.tangent import STEP, Problem
 from permway.errors import InputError, SolveError
 
 STEPS_BACK = 4
@@ -269,6 +269,13 @@ class Ring:
         moved = linalg.cho_solve(self.factor, np.column_stack([cross, base.slope]))
         return inner - float(cross @ moved[:, 0]), own - float(cross @ moved[:, 1])
 
+    def _heated(self, problem: Problem, z: Reals) -> float:
+        """Heated objective at a place; infinite where the model cannot be solved."""
+        state = problem.at(z)
+        if state is None:
+            return np.inf
+        return self.whitener.square(state.deviations) / self.fit.heat + float(z @ z)
+
     def full(
         self,
         quick: Quick,
@@ -280,15 +287,22 @@ class Ring:
     ) -> Fit:
         """Fit base and effect together, from where the quick look ended.
 
+        It moved the base in a straight line. Where that does worse than no effect, as over the ends of an earlier
+        effect's stretch, the base is begun with as it was.
+
         See :func:`permway.diagnosis.recalibrate.recalibrate`.
         """
         build, free = stacked(self.fit.build, quick.hypothesis, prefix)
         known = self._about(quick.hypothesis).fit
+        problem = Problem(self.evidence, build, (*self.fit.free, *free))
+        ended, unmoved = (np.concatenate([base_z, quick.z]) for base_z in (quick.base_z, known.z))
+        astray = self._heated(problem, ended)
+        start = unmoved if astray > max(self.start, self._heated(problem, unmoved)) else ended
         return recalibrate(
             self.evidence,
             build=build,
             free=(*self.fit.free, *free),
-            start=np.concatenate([quick.base_z, quick.z]),
+            start=start,
             learn=False,
             slopes=None if quick.columns is None else np.hstack([known.jacobian, quick.columns]),
             most_steps=most_steps,

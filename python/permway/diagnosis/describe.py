@@ -81,7 +81,9 @@ class Description:
             return False
         # While something else is missing, what was found first may be bent beyond belief by that.
         strange = beyond_belief(named) or self._blind(named.fit)
-        return (named.fit.heat < UNFIT and strange) or self._closes(described, named.fit)
+        # What does not fit itself is not all that is missing: names may yet explain it together.
+        fits = described.finalists[0].fit.heat < UNFIT
+        return (named.fit.heat < UNFIT and strange) or (fits and self._closes(described, named.fit))
 
     def of(self, rounds: Sequence[Round], accepted: Sequence[Finalist]) -> Round | None:
         """Small elements, where no named effect explains what a free stiffness does, if they do it better.

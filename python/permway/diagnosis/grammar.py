@@ -15,7 +15,7 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.diagnosis.catalogue._change import fresh, with_joints, with_law
-from permway.diagnosis.catalogue._interval import shares, spacing_of, stations_of
+from permway.diagnosis.catalogue._interval import shares, spacing_of, span_of, stations_of
 from permway.diagnosis.catalogue._roles import fasteners
 from permway.diagnosis.elements import ELEMENTS, Element
 from permway.diagnosis.fit import Free
@@ -275,8 +275,7 @@ def _stretch(
         return with_joints(campaign, joints, laws={name: element.law(values)})
 
     def locate(values: Values) -> Where:
-        half = 0.5 * values["length_m"]
-        return Where(found.spot.name, (values["centre_m"] - half, values["centre_m"] + half))
+        return Where(found.spot.name, span_of(x, values["centre_m"], values["length_m"], step))
 
     made = _made(element, place, free, locate({"centre_m": centre, "length_m": STRETCHES[0] * step}), amend)
     lengths = [(length - STRETCHES[0]) / 3.0 for length in (*STRETCHES, MOST * longest / step)]

@@ -92,7 +92,7 @@ INJECTED: dict[str, tuple[str, list[Values], dict[str, float]]] = {
     "support_gradient": ("viaduct", strengths("ratio", 1.15, 1.4, 2.2), {"ratio": 0.1}),
     "slab_warping": (
         "viaduct",
-        strengths("factor", 0.7, 0.4, 0.05, length_m=2.5),
+        strengths("factor", 0.7, 0.4, 0.05, length_m=2.5, sharpness=1.5),
         {"length_m": 0.15},
     ),
     "girder_local_modes": (
@@ -128,7 +128,7 @@ INJECTED: dict[str, tuple[str, list[Values], dict[str, float]]] = {
     ),
     "second_track": (
         "viaduct",
-        strengths("mass_kg_per_m", 100.0, 300.0, 900.0, sprung=0.1, frequency_Hz=90.0),
+        strengths("mass_kg_per_m", 100.0, 300.0, 900.0, sprung=0.1, frequency_Hz=90.0, loss_factor=0.15),
         {"frequency_Hz": 0.1},
     ),
     "pier_soil": (

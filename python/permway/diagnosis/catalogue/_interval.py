@@ -49,3 +49,10 @@ def shares(x: Reals, centre_m: float, length_m: float, step_m: float) -> Reals:
     away = (np.abs(x - centre_m) - 0.5 * length_m) / step_m
     # A place on the border counts as within, whatever its last digit.
     return np.asarray(np.clip((OUTSIDE - away) / (OUTSIDE - WHOLE), 0.0, 1.0).round(12))
+
+
+def span_of(x: Reals, centre_m: float, length_m: float, step_m: float) -> tuple[float, float]:
+    """First and last of the joints that have half of the change or more; the stretch itself if none has, m."""
+    mine = x[shares(x, centre_m, length_m, step_m) >= 0.5]
+    half = 0.5 * length_m
+    return (float(mine.min()), float(mine.max())) if mine.size else (centre_m - half, centre_m + half)

@@ -8,8 +8,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import ndtri
 
+from permway.arrays import Reals
 from permway.diagnosis.catalogue._glance import Glance
-from permway.diagnosis.catalogue._interval import spacing_of, stations_of, weakened
+from permway.diagnosis.catalogue._interval import span_of, stations_of, weakened
+from permway.diagnosis.catalogue._roles import spacing
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Hypothesis, Situation, Where, between_free, linear_free
 from permway.recordings.campaign import Campaign
@@ -47,7 +49,8 @@ def local_loss(
     places : sequence of float
         Where to look if the scan names no joint of the law, m.
     """
-    step = spacing_of(situation.campaign.model.line, law)
+    x = stations_of(situation.campaign.model.line, law)
+    step = spacing(x)
     told = situation.joints(law, most=40)
     taken: list[float] = []
     for centre in [f.spot.x_m[0] for f in told] or places:
@@ -57,20 +60,21 @@ def local_loss(
     glance = Glance(situation.fit) if telling and told[0].surplus > SURPLUS else None
     looked = [] if glance is None else _looked(situation, glance, law, taken[:CENTRES])
     for found in looked:
-        yield _hypothesis(law, step, taken[0], found, entry, family)
+        yield _hypothesis(law, x, taken[0], found, entry, family)
     for centre in [] if looked else taken[:most]:
-        yield _hypothesis(law, step, centre, None, entry, family)
+        yield _hypothesis(law, x, centre, None, entry, family)
 
 
 def _hypothesis(
-    law: str, step: float, centre: float, found: tuple[float, float, float] | None, entry: str, family: str
+    law: str, x: Reals, centre: float, found: tuple[float, float, float] | None, entry: str, family: str
 ) -> Hypothesis:
+    step = spacing(x)
+
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         return weakened(campaign, law, values["centre_m"], values["length_m"], values["factor"])
 
     def locate(values: Mapping[str, float]) -> Where:
-        half = 0.5 * values["length_m"]
-        return Where(what=law, x_m=(values["centre_m"] - half, values["centre_m"] + half))
+        return Where(what=law, x_m=span_of(x, values["centre_m"], values["length_m"], step))
 
     if found is None:
         middle, length, sigma = centre, 3.0 * step, 2.0 * step

@@ -18,6 +18,7 @@ PARAMETERS = {
     "mass_kg_per_m": "kg/m, 47 to 48000: of the second track, the model's share",
     "sprung": "1, 0.01 to 0.9: of it that stands on springs",
     "frequency_Hz": "Hz, 10 to 1500: of that part",
+    "loss_factor": "1, 0.007 to 3: of its springs",
 }
 SIGNATURE = (
     "All bending frequencies of the girder fall by one factor, beyond what its density may; around the other "
@@ -28,8 +29,6 @@ CONFUSED_WITH = {
     "girder_crack": "frequencies fall each by its own factor there",
 }
 SOURCE = "EN 1991-1-1, annex A: permanent load of tracks; Fryba, Dynamics of Railway Bridges (1996)"
-LOSS = 0.15
-"""Of the springs: a pad's."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
@@ -46,7 +45,7 @@ def _of(name: str) -> Hypothesis:
             name,
             {
                 "second_track": fixed_mass(mass * (1.0 - sprung)),
-                "second_rails": hung_mass(mass * sprung, values["frequency_Hz"], LOSS),
+                "second_rails": hung_mass(mass * sprung, values["frequency_Hz"], values["loss_factor"]),
             },
         )
 
@@ -58,10 +57,11 @@ def _of(name: str) -> Hypothesis:
             log_free("mass_kg_per_m", "kg/m", 1500.0, 2.0),
             between_free("sprung", "1", 0.01, 0.9),
             log_free("frequency_Hz", "Hz", 120.0, 1.65),
+            log_free("loss_factor", "1", 0.15, 1.6),
         ),
         amend=amend,
         locate=lambda _: Where(what=name),
-        starts=tuple((mass, -0.8, z) for mass in (-3.0, -1.5, 0.0) for z in (-1.6, -0.8, 0.0, 0.8)),
+        starts=tuple((mass, -0.8, z, 0.0) for mass in (-3.0, -1.5, 0.0) for z in (-1.6, -0.8, 0.0, 0.8)),
         law=lambda v: (
             f"{v['mass_kg_per_m']:.3g} kg/m more, {v['sprung']:.2f} of it on springs at {v['frequency_Hz']:.3g} Hz"
         ),

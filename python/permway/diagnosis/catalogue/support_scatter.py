@@ -16,10 +16,12 @@ from permway.recordings.campaign import Campaign
 ID = "support_scatter"
 DOMAIN: Domain = "path"
 FAMILY = "uneven support"
-SUMMARY = "The logarithm of the pads' stiffness is a sum of cosines of 1 to 4 half waves over the structure."
+SUMMARY = (
+    "The logarithm of the pads' stiffness is a sum of cosines of 1 to 4, or to 10, half waves over the structure."
+)
 PARAMETERS = {
-    f"wave{order}": f"1, -2 to 2: coefficient of {order} half wave{'s' if order > 1 else ''}"
-    for order in (1, 2, 3, 4)
+    f"wave{order}": f"1, -{most} to {most}: coefficient of {order} half wave(s)"
+    for order, most in enumerate([2.0] * 4 + [1.2] * 6, start=1)
 }
 SIGNATURE = "Responses of the rail differ from place to place as of softer and stiffer pads, with no place apart."
 CONFUSED_WITH = {
@@ -27,12 +29,11 @@ CONFUSED_WITH = {
     "fastener_loss": "hammer points at every fastener nearby",
 }
 SOURCE = "Wu and Thompson (2000), Acta Acustica 86, 313-321; Oscarsson (2002), Vehicle System Dynamics 37, 59-79"
-ORDERS = (1, 2, 3, 4)
+FEW, MANY = tuple(range(1, 5)), tuple(range(1, 11))
+"""Half waves: of what changes slowly along the structure, and of what changes within some metres."""
+
 SPREAD = 0.25
 """Standard deviation of a coefficient."""
-
-STARTS = tuple(tuple(sign * float(other == order) for other in ORDERS) for order in ORDERS for sign in (1.5, -1.5))
-"""One wave at a time, up and down."""
 
 FEWEST = 8
 
@@ -45,29 +46,37 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         carried = [layer for layer in mine if layer.lower != GROUND] or mine
         x = np.concatenate([layer.x for layer in carried])
         if x.size >= FEWEST:
-            yield _of(law, float(x.min()), float(x.max()))
+            yield _of(law, float(x.min()), float(x.max()), FEW)
+            if x.size >= FEWEST * len(MANY) / len(FEW):
+                yield _of(law, float(x.min()), float(x.max()), MANY)
 
 
-def _of(law: str, low: float, high: float) -> Hypothesis:
+def _of(law: str, low: float, high: float, orders: tuple[int, ...]) -> Hypothesis:
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         def factors(x: Reals) -> Reals:
             along = np.pi * (x - low) / (high - low)
             inside = (x >= low - 1e-6) & (x <= high + 1e-6)
-            waves = sum(values[f"wave{order}"] * np.cos(order * along) for order in ORDERS)
+            waves = sum(values[f"wave{order}"] * np.cos(order * along) for order in orders)
             return np.asarray(np.where(inside, np.exp(waves), 1.0))
 
         return with_factors(campaign, law, factors)
 
+    # Ten that are as large as can be make a factor of e to the power of twelve.
+    most = 2.0 if orders is FEW else 1.2
     return Hypothesis(
         entry=ID,
         domain=DOMAIN,
         family=FAMILY,
-        free=tuple(linear_free(f"wave{order}", "1", 0.0, SPREAD, -2.0, 2.0) for order in ORDERS),
+        free=tuple(linear_free(f"wave{order}", "1", 0.0, SPREAD, -most, most) for order in orders),
         amend=amend,
         locate=lambda _: Where(what=law, x_m=(low, high)),
-        starts=STARTS,
+        # One wave at a time, up and down.
+        starts=tuple(
+            tuple(sign * float(other == order) for other in orders) for order in orders for sign in (1.5, -1.5)
+        ),
+        variant="" if orders is FEW else "many waves",
         law=lambda v: (
             "pads differ by a factor of e to the power of "
-            + " ".join(f"{v[f'wave{order}']:+.2f} cos({order} pi x/L)" for order in ORDERS)
+            + " ".join(f"{v[f'wave{order}']:+.2f} cos({order} pi x/L)" for order in orders)
         ),
     )
