@@ -74,6 +74,8 @@ class _Lines(FrozenModel):
     harmonics : int, optional
         How many; by default as many as the record's band holds.
     decay : float
+    flat_to : float, optional
+        Order m up to which lines are nearly alike, as those of short dips are: a (1 + (n/m)^2)^(-decay/2).
     width : float
         Standard deviation of a line's frequency over the frequency, of a bell; 0 for a pure line.
     """
@@ -81,7 +83,14 @@ class _Lines(FrozenModel):
     amplitude_m: NonNegativeFloat
     harmonics: int | None = Field(default=None, ge=1, le=10_000, strict=True)
     decay: Number = Field(default=1.0, ge=0.0, le=10.0)
+    flat_to: float | None = Field(default=None, gt=0.0, le=1e5)
     width: float = Field(default=0.0, ge=0.0, le=0.3)
+
+    def amplitude(self, number: Reals) -> Reals:
+        """Of lines by their number, m."""
+        if self.flat_to is None:
+            return np.asarray(self.amplitude_m * number**-self.decay)
+        return np.asarray(self.amplitude_m * (1.0 + (number / self.flat_to) ** 2) ** (-0.5 * self.decay))
 
 
 class TrackLines(_Lines):
@@ -91,7 +100,7 @@ class TrackLines(_Lines):
     ----------
     length_m : float
         Of rails between welds, of spans, of the distance between supports.
-    amplitude_m, harmonics, decay, width
+    amplitude_m, harmonics, decay, flat_to, width
         See :class:`_Lines`.
     """
 
@@ -107,7 +116,7 @@ class WheelLines(_Lines):
         Of the first line, per turn: 18 for a polygon of 18 sides, 1 for a flat.
     wheel : int, optional
         1 is the leading wheelset; by default every wheelset, independent of each other.
-    amplitude_m, harmonics, decay, width
+    amplitude_m, harmonics, decay, flat_to, width
         See :class:`_Lines`.
     """
 

@@ -103,7 +103,7 @@ class RailJoints(Effect):
     @classmethod
     def draw(cls, random: np.random.Generator, strength: Strength, site: Site) -> Self:
         """Depth by strength."""
-        every = float(random.choice([12.5, 18.0, 25.0, 36.0]))
+        every = float(random.choice([12.5, 15.0, 18.0, 25.0]))
         depth = size(random, strength, 4e-5, 1.2e-4, 4e-4)
         return cls(every, depth, between(random, 0.3, 0.9), round(float(random.random()), 3))
 

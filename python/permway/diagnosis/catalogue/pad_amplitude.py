@@ -23,7 +23,7 @@ SUMMARY = (
 PARAMETERS = {
     "softening": "1, 0 to 0.8: s, share of the stiffness that large amplitudes take",
     "unstrained_factor": "1, 0.4 to 2.5: stiffness under the hammer over the base's, which fits both at once",
-    "relative_amplitude": "1, 0.1 to 10: a below a wheel at the train's mean speed, over that where half is taken",
+    "relative_amplitude": "1, 0.1 to 30: a below a wheel at the train's mean speed, over that where half is taken",
     "loss_share": "1, 0.1 to 1: q",
 }
 SIGNATURE = (

@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from permway.diagnosis.catalogue._excite import stays
+from permway.diagnosis.catalogue._excite import stays, with_irregularity
 from permway.diagnosis.catalogue._lines import FACTOR, coordinate, repeats
 from permway.diagnosis.catalogue._runs import combs, excesses
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, log_free
+from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_excitation import TrackLines
 
 ID = "rail_joint"
 DOMAIN: Domain = "irregularity"
 FAMILY = "tied to speed over length"
-SUMMARY = "Lines a n^-p in the profile at all multiples n of V / L, L the length of a rail."
+SUMMARY = (
+    "Lines in the profile at all multiples n of V / L, L the length of a rail: a n^-p, or of dips of a length d "
+    "a / (1 + (n d / L)^2)."
+)
 PARAMETERS = {
     "length_m": "m, 5 to 120, and no longer than a run resolves: L",
     "amplitude_m": "m, 4.1e-8 to 2.4e-3: a, of the first line",
     "decay": "1, 0 to 2: p; 0 for short dips, 2 for a kink",
+    "dip_m": "m, 0.05 to 9: d",
 }
 SIGNATURE = "A comb of lines of all on-board channels that goes with the speed; no frequency response."
 CONFUSED_WITH = {
@@ -35,6 +41,9 @@ CENTRE_M, LENGTH_FACTOR, AMPLITUDE_M = 25.0, 2.0, 1e-5
 USUAL_M = (10.0, 12.0, 12.5, 15.0, 18.0, 20.0, 24.0, 25.0, 30.0, 36.0, 50.0, 60.0, 100.0, 120.0)
 """Usual lengths of rails, slabs and panels: tried also where no comb stands out in power."""
 
+
+DIP_M, DIP_FACTOR = 0.6, 1.9
+"""Length of a dip as known beforehand, and to which factor."""
 
 RESOLVED = 3.0
 """Lines of an estimate between two of a comb, at least: closer, a comb is a level and no more."""
@@ -90,3 +99,39 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         ),
         size="amplitude_m",
     )
+    yield Hypothesis(
+        entry=ID,
+        domain=DOMAIN,
+        family=FAMILY,
+        free=(
+            _length(longest),
+            log_free("amplitude_m", "m", AMPLITUDE_M, FACTOR),
+            log_free("dip_m", "m", DIP_M, DIP_FACTOR),
+        ),
+        amend=_dips,
+        locate=stays("rail"),
+        starts=tuple(
+            (
+                coordinate(1.0 / c.per_speed, CENTRE_M, LENGTH_FACTOR),
+                coordinate(c.amplitude_m, AMPLITUDE_M, FACTOR),
+                z,
+            )
+            for c in combs(runs, every, harmonics=None, decay=0.2, most=3) + found
+            for z in (0.0, 1.0)
+        ),
+        law=lambda v: (
+            f"{1e6 * v['amplitude_m']:.3g} um every {v['length_m']:.4g} m, of dips {v['dip_m']:.2g} m long"
+        ),
+        size="amplitude_m",
+        variant="dips",
+    )
+
+
+def _dips(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
+    added = TrackLines(
+        length_m=values["length_m"],
+        amplitude_m=values["amplitude_m"],
+        decay=2.0,
+        flat_to=values["length_m"] / values["dip_m"],
+    )
+    return with_irregularity(campaign, series=(*campaign.said.irregularity.series, added))

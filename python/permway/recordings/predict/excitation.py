@@ -108,7 +108,7 @@ def lines(grid: Grid, first_Hz: float, series: TrackLines | WheelLines) -> Reals
     last = int(high * reach / first_Hz)
     last = last if series.harmonics is None else min(last, series.harmonics)
     number = np.arange(max(1, int(low / reach / first_Hz)), last + 1, dtype=np.float64)
-    power = 0.5 * (series.amplitude_m * number**-series.decay) ** 2
+    power = 0.5 * series.amplitude(number) ** 2
     return deposit(grid, number * first_Hz, power, series.width)
 
 
