@@ -7,17 +7,17 @@ from collections.abc import Iterator, Mapping
 from permway.diagnosis.catalogue._change import fixed_mass, hung_mass
 from permway.diagnosis.catalogue._hung import spread_over
 from permway.diagnosis.catalogue._roles import girders
-from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, between_free, log_free
+from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.recordings.campaign import Campaign
 
 ID = "second_track"
 DOMAIN: Domain = "path"
 FAMILY = "girder"
-SUMMARY = "A mass per metre on the girder, of which a share stands on springs of one frequency."
+SUMMARY = "A mass per metre on the girder, and another that stands on springs of one frequency."
 PARAMETERS = {
-    "mass_kg_per_m": "kg/m, 47 to 48000: of the second track, the model's share",
-    "sprung": "1, 0.01 to 0.9: of it that stands on springs",
-    "frequency_Hz": "Hz, 10 to 1500: of that part",
+    "mass_kg_per_m": "kg/m, 47 to 48000: of the second track below its springs, the model's share",
+    "sprung": "1, 0.002 to 9: mass on springs over that",
+    "frequency_Hz": "Hz, 10 to 1500: of the mass on springs",
     "loss_factor": "1, 0.007 to 3: of its springs",
 }
 SIGNATURE = (
@@ -44,7 +44,7 @@ def _of(name: str) -> Hypothesis:
             campaign,
             name,
             {
-                "second_track": fixed_mass(mass * (1.0 - sprung)),
+                "second_track": fixed_mass(mass),
                 "second_rails": hung_mass(mass * sprung, values["frequency_Hz"], values["loss_factor"]),
             },
         )
@@ -55,15 +55,16 @@ def _of(name: str) -> Hypothesis:
         family=FAMILY,
         free=(
             log_free("mass_kg_per_m", "kg/m", 1500.0, 2.0),
-            between_free("sprung", "1", 0.01, 0.9),
+            log_free("sprung", "1", 0.15, 2.5),
             log_free("frequency_Hz", "Hz", 120.0, 1.65),
             log_free("loss_factor", "1", 0.15, 1.6),
         ),
         amend=amend,
         locate=lambda _: Where(what=name),
-        starts=tuple((mass, -0.8, z, 0.0) for mass in (-3.0, -1.5, 0.0) for z in (-1.6, -0.8, 0.0, 0.8)),
+        starts=tuple((mass, -0.3, z, 0.0) for mass in (-3.0, -1.5, 0.0, 1.0) for z in (-1.6, -0.8, 0.0, 0.8)),
         law=lambda v: (
-            f"{v['mass_kg_per_m']:.3g} kg/m more, {v['sprung']:.2f} of it on springs at {v['frequency_Hz']:.3g} Hz"
+            f"{v['mass_kg_per_m']:.3g} kg/m more, and {v['sprung']:.2g} times that on springs at "
+            f"{v['frequency_Hz']:.3g} Hz"
         ),
         size="mass_kg_per_m",
         none=0.0,
