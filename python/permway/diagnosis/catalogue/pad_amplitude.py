@@ -24,7 +24,7 @@ PARAMETERS = {
     "softening": "1, 0 to 0.8: s, share of the stiffness that large amplitudes take",
     "unstrained_factor": "1, 0.4 to 2.5: stiffness under the hammer over the base's, which fits both at once",
     "relative_amplitude": "1, 0.1 to 30: a below a wheel at the train's mean speed, over that where half is taken",
-    "loss_share": "1, 0.1 to 1: q",
+    "loss_share": "1, 0.04 to 2.2: q",
 }
 SIGNATURE = (
     "Frequency responses by a hammer and spectra on the train ask for different pads: softer and lossier under "
