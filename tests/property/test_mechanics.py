@@ -170,7 +170,8 @@ def solve(line, found, frequency, formulation):
 def test_power_that_enters_is_dissipated_in_the_joints(line, formulation, frequency, data):
     """Beams with ends and without loss: -Im(f^H H f) = sum of Im(k_j) |d_j|^2, twice the power over omega.
 
-    Measured by |f|^T |H| |f|, since the power may be a small part of what is only lent and given back.
+    Measured by |f|^T |H| |f|, since the power may be a small part of what is only lent and given back; powers of
+    forces so small that they have no normal number are none.
     """
     found = data.draw(places(line))
     part = st.floats(-1.0, 1.0)
@@ -181,7 +182,7 @@ def test_power_that_enters_is_dissipated_in_the_joints(line, formulation, freque
     enters = -np.einsum("s,fst,t->f", force.conj(), values, force).imag
     dissipated = (loss * np.abs(extension @ force) ** 2).sum(axis=1)
     lent = np.einsum("s,fst,t->f", np.abs(force), np.abs(values), np.abs(force))
-    assert (np.abs(enters - dissipated) <= TOLERANCE * lent).all()
+    assert (np.abs(enters - dissipated) <= TOLERANCE * lent + np.finfo(np.float64).tiny).all()
 
 
 @cases

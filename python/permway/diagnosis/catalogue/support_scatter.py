@@ -20,8 +20,8 @@ SUMMARY = (
     "The logarithm of the pads' stiffness is a sum of cosines of 1 to 4, or to 10, half waves over the structure."
 )
 PARAMETERS = {
-    f"wave{order}": f"1, -{most} to {most}: coefficient of {order} half wave(s)"
-    for order, most in enumerate([2.0] * 4 + [1.2] * 6, start=1)
+    f"wave{order}": f"1, -1.2 to 1.2: coefficient of {order} half wave{'s' if order > 1 else ''}"
+    for order in range(1, 11)
 }
 SIGNATURE = "Responses of the rail differ from place to place as of softer and stiffer pads, with no place apart."
 CONFUSED_WITH = {
