@@ -7,9 +7,14 @@ from pathlib import Path
 
 import pytest
 from permway.challenge import write
+from permway.challenge.case import write_truth
 from permway.challenge.effects.recorders import Clipping
+from permway.challenge.score import score
 from permway.diagnosis.diagnose import diagnose
+from permway.diagnosis.speak import with_spoilt
+from permway.diagnosis.verdict import Verdict
 from permway.recordings.importers.sheet import import_sheet
+from permway.recordings.spoilt import Spoilt
 from short_deck import small_case
 
 
@@ -24,3 +29,17 @@ def test_clipping_is_said_and_nothing_else(tmp_path: Path, channel: str) -> None
     assert {(e.name, e.place.channels) for e in verdict.effects} == {("clipping", (channel,))}
     assert all(channel in name for name in found.comparison.left_out)
     assert len(found.comparison.left_out) == len(case.tests.speeds_kmh)
+
+
+def test_what_screening_names_is_scored_as_named(tmp_path: Path) -> None:
+    case = replace(small_case(), effects=(Clipping("carbody", 1.5),))
+    name = "nonlinear-7"
+    (tmp_path / "truth").mkdir()
+    write_truth(case, tmp_path / "truth" / f"{name}.json")
+    verdict = with_spoilt(
+        Verdict(status="recalibrated"), [Spoilt("run", "carbody", "clipping", "4 samples flat at 3")]
+    )
+    (tmp_path / "verdicts" / name).mkdir(parents=True)
+    verdict.write(tmp_path / "verdicts" / name / "verdict.json")
+    (one,) = score(tmp_path, {"fastener_loss": "local loss of support"})
+    assert (one.found, one.placed, one.family, one.in_class, one.false_name) == (True, True, True, True, False)

@@ -150,7 +150,8 @@ def _scored(
     said = tuple(e["name"] or "|".join(m["name"] for m in e["class"]) or "not named" for e in effects)
     ids = tuple(e["id"] or e.get("mechanical") or "unknown" for e in concealed)
     known = {families.get(e["id"], e.get("family")) for e in concealed if e["id"]}
-    false = any(e["name"] and families.get(e["name"]) not in known for e in effects)
+    # What is named and not in the catalogue, as by screening, is its own family.
+    false = any(e["name"] and families.get(e["name"], e["name"]) not in known for e in effects)
     if not concealed:
         flags: tuple[bool | None, ...] = (None, None, None, None)
     else:
@@ -158,7 +159,10 @@ def _scored(
         flags = (
             bool(effects),
             any(_there(first["place"], e["place"], first.get("domain"), e["domain"]) for e in effects),
-            any(first["id"] and families.get(e["name"] or "") == families.get(first["id"]) for e in effects),
+            any(
+                first["id"] and families.get(e["name"] or "", e["name"]) == families.get(first["id"], first["id"])
+                for e in effects
+            ),
             any(first["id"] in [m["name"] for m in e["class"]] or first["id"] == e["name"] for e in effects)
             if first["id"]
             else None,

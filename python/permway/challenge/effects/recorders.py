@@ -21,9 +21,9 @@ class Clipping(Effect):
     """A channel on board whose range was set too small."""
 
     KIND = "clipping"
-    FAMILY = "range"
+    ID = "clipping"
+    FAMILY = "clipping"
     DOMAIN = "measurement"
-    WORDS = ("clip", "range")
 
     channel: str
     times_rms: float
