@@ -27,11 +27,11 @@ class Force:
     ----------
     arm : Arm
     spectrum : callable
-        Of frequencies (Hz) and their distance: amplitudes of the two-sided series, N.
+        Of frequencies (Hz): amplitudes of the two-sided series, N.
     """
 
     arm: Arm
-    spectrum: Callable[[Reals, float], Complexes]
+    spectrum: Callable[[Reals], Complexes]
 
 
 BODY, PITCH, WHEELS = 0, 1, (6, 7, 8, 9)
@@ -145,8 +145,7 @@ class Vehicle:
         if self.slider is None:
             arms = self._rows([force.arm for force in self.forces])
             parts = read @ self._moved(frequency_Hz, track, arms)
-            line = float(frequency_Hz[1] - frequency_Hz[0])
-            drives = [samples * force.spectrum(frequency_Hz, line) for force in self.forces]
+            drives = [samples * force.spectrum(frequency_Hz) for force in self.forces]
             return np.asarray(np.einsum("fcw,fw->fc", parts, np.column_stack([profiles, *drives])))
         along = self._rows([arm for arm, name in self.ties if name == self.slider.tie])
         moved = self._moved(frequency_Hz, track, along)

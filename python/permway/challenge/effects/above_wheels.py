@@ -134,7 +134,7 @@ class SecondSource(Effect):
         """Noise through a resonance, another in each run."""
         random = np.random.default_rng(self.seed)
 
-        def spectrum(f: Reals, line_Hz: float) -> Complexes:
+        def spectrum(f: Reals) -> Complexes:
             ratio = f / self.centre_Hz
             shape = ratio / np.abs(1.0 - ratio**2 + 1j * ratio / self.quality)
             level = self.rms_N / np.sqrt(2.0 * np.sum(shape**2))
