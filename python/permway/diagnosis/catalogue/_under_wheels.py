@@ -88,6 +88,7 @@ def levelled(campaign: Campaign, laws: Collection[str], conditions: Collection[s
     """
     line, joints, copies = campaign.model.line, list(campaign.model.line.joints), dict(campaign.model.line.laws)
     levels: Levels = {}
+    gone: list[int] = []
     for layer in fasteners(line):
         if layer.law not in laws:
             continue
@@ -95,7 +96,9 @@ def levelled(campaign: Campaign, laws: Collection[str], conditions: Collection[s
         shares = [share_of_load(campaign, campaign.condition(name), layer, squared=True) for name in conditions]
         share = np.mean(shares, axis=0)
         levels.setdefault(layer.law, [(layer.law, FAR)])
-        joints[layer.index] = joints[layer.index].model_copy(update={"at": tuple(x[share < LEVELS[0]].tolist())})
+        far = x[share < LEVELS[0]]
+        gone += [layer.index] if not far.size else []
+        joints[layer.index] = joints[layer.index].model_copy(update={"at": tuple(far.tolist())})
         for low, high in pairwise((*LEVELS, np.inf)):
             mine = (share >= low) & (share < high)
             if not mine.any():
@@ -105,4 +108,5 @@ def levelled(campaign: Campaign, laws: Collection[str], conditions: Collection[s
             at = tuple(x[mine].tolist())
             joints.append(layer.joints.model_copy(update={"law": name, "at": at}))
             levels[layer.law].append((name, float(share[mine].mean())))
-    return with_line(campaign, joints=tuple(joints), laws=copies), levels
+    kept = tuple(joint for index, joint in enumerate(joints) if index not in gone)
+    return with_line(campaign, joints=kept, laws=copies), levels
