@@ -39,7 +39,7 @@ def per_profile(tmp_path_factory: pytest.TempPathFactory) -> np.ndarray:
     return influence(campaign.model, LINES_HZ, track["receptance"].values)
 
 
-def expected(campaign: Campaign, per_profile: np.ndarray) -> np.ndarray:
+def expected(campaign: Campaign, per_profile: np.ndarray, duration_s: float | None = None) -> np.ndarray:
     sensors = [campaign.sensor(name) for name in ("axle", "axle3", "floor")]
     return expected_csd(
         campaign.model,
@@ -51,6 +51,7 @@ def expected(campaign: Campaign, per_profile: np.ndarray) -> np.ndarray:
         ESTIMATE_HZ,
         segment_s=1.0,
         interpolated=False,
+        duration_s=duration_s,
     )
 
 
@@ -177,6 +178,36 @@ def test_bands_patch_and_levels_are_their_formulas(tmp_path: Path, per_profile: 
     for said, factor in cases:
         found = expected(campaign_with(tmp_path, said), per_profile)[:, 0, 0].real - 1e-6
         assert found == pytest.approx(factor * plain, rel=0.01)
+
+
+def test_a_slow_clock_takes_from_cross_spectra_what_it_takes_from_samples(
+    tmp_path: Path, per_profile: np.ndarray
+) -> None:
+    slow, seconds = 1e-4, 100.0
+    late = campaign_with(tmp_path, {}, {"clock_slow": slow})
+    with pytest.raises(InputError, match="duration_s"):
+        expected(late, per_profile)
+    right = expected(campaign_with(tmp_path, {}), per_profile)
+    found = expected(late, per_profile, seconds)
+    random = np.random.default_rng(1)
+    lines = random.uniform(5.0, 85.0, 1500)
+    sizes = random.standard_normal(lines.size) + 1j * random.standard_normal(lines.size)
+    t = np.arange(round(seconds * SAMPLING_HZ)) / SAMPLING_HZ
+    x = np.zeros((2, t.size))
+    for frequency, size in zip(lines, sizes, strict=True):
+        for row, times in enumerate((t * (1.0 - slow), t)):
+            x[row] += (size * np.exp(2j * np.pi * frequency * times)).real
+    data = cross_spectra(x, sampling_Hz=SAMPLING_HZ, segment_s=1.0).sel(frequency=ESTIMATE_HZ)
+    power, shared = data["psd"].values[0], data["csd"].values[0, 1]
+
+    def smooth(values: np.ndarray) -> np.ndarray:
+        return np.convolve(values, np.ones(9) / 9.0, "valid")
+
+    seen = smooth(shared) / smooth(power)
+    said = smooth(found[:, 0, 2] / right[:, 0, 2])
+    assert np.abs(said[0]) > 0.95 and np.abs(said[-1]) < 0.80
+    assert np.abs(seen - said).max() < 0.1
+    np.testing.assert_allclose(found[:, [0, 1, 2], [0, 1, 2]], right[:, [0, 1, 2], [0, 1, 2]])
 
 
 @pytest.mark.parametrize(

@@ -64,6 +64,8 @@ class Chain(FrozenModel):
         What is read over what is there.
     delay_s : float
         What is read comes so much later.
+    clock_slow : float
+        How much slower its clock runs than that of the others, relative: the delay grows so over a run.
     polarity : 1 or -1
         -1 for a sensor mounted, or wired, the wrong way round.
     mount_Hz : float, optional
@@ -81,6 +83,7 @@ class Chain(FrozenModel):
 
     gain: PositiveFloat = 1.0
     delay_s: Number = Field(default=0.0, ge=-10.0, le=10.0)
+    clock_slow: Number = Field(default=0.0, ge=-0.01, le=0.01)
     polarity: Literal[1, -1] = 1
     mount_Hz: PositiveFloat | None = None
     mount_loss_factor: NonNegativeFloat = 0.05

@@ -191,6 +191,7 @@ CASES = (
         none=np.inf,
     ),
     Case("sensor_delay", "axle3", chain("axle3", dict), {"delay_s": 1.5e-3}, {"delay_s": 0.15}),
+    Case("sensor_delay", "axle3", chain("axle3", dict), {"clock_slow": 4e-5}, {"clock_slow": 0.15}),
     Case(
         "noise_floor",
         "floor",

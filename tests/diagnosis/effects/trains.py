@@ -22,7 +22,7 @@ from permway.recordings.campaign import Campaign, read_campaign
 from permway.recordings.campaign_load import Dataset, log_variance
 from permway.recordings.predict import predict
 
-AVERAGES, BLOWS = 120, 16
+AVERAGES, BLOWS, DURATION_S = 120, 16, 60.0
 HAMMER_HZ = np.geomspace(8.0, 160.0, 30)
 RUN_HZ = np.arange(4.0, 141.0)
 RAIL = {"from_m": 0.0, "to_m": 24.0, "spacing_m": 0.6}
@@ -148,6 +148,7 @@ def blank(campaign: Campaign) -> list[Dataset]:
             names = {"channel": list(ON_BOARD), "channel2": list(ON_BOARD), "frequency": RUN_HZ}
             data = _ones("csd", names)
             data["psd"] = (("channel", "frequency"), np.ones((len(ON_BOARD), RUN_HZ.size)))
+            data.attrs["duration_s"] = DURATION_S
         found.append(Dataset(record, campaign.condition(record.condition), data))
     return found
 

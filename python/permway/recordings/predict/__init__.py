@@ -167,6 +167,7 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
                 _frequency(data),
                 segment_s=record.segment_s,
                 interpolated=record.interpolated_Hz is not None,
+                duration_s=data.attrs.get("duration_s"),
                 left=work.left,
             )
             power = np.einsum("fcc->cf", matrix).real

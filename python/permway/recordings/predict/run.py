@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from permway.arrays import Complexes, Reals
+from permway.errors import InputError
 from permway.model.file import Model
 from permway.recordings.campaign_parts import Condition, IrregularityKnown
 from permway.recordings.channel import Sensor
@@ -56,6 +57,7 @@ def expected_csd(
     *,
     segment_s: float,
     interpolated: bool,
+    duration_s: float | None = None,
     left: Sequence[Remainder] = (),
 ) -> Complexes:
     """Expectation of Welch's cross-spectral matrix with Hann's window, and the noise of the channels.
@@ -73,6 +75,8 @@ def expected_csd(
     segment_s : float
     interpolated : bool
         Whether the record was computed by interpolating transfer functions, lags and all, between `lines_Hz`.
+    duration_s : float, optional
+        Of the run, over which clocks run apart.
     left : sequence of Remainder
         Forces of suspensions that slide, as :func:`permway.recordings.predict.sliding.worked` gives them.
 
@@ -80,6 +84,11 @@ def expected_csd(
     -------
     ndarray of complex128, shape (F, sensors, sensors)
         E[x_i conj(x_j)], units of the sensors in SI squared per hertz.
+
+    Raises
+    ------
+    InputError
+        If clocks run apart and nobody says how long.
     """
     assert model.train is not None
     grid = grid_of(lines_Hz, estimate_Hz, segment_s)
@@ -113,12 +122,32 @@ def expected_csd(
         mixed = np.einsum("ntk,ntc->knc", shares(remainder, grid.frequency_Hz), fine)
         upper += np.sum([grid.expected(one, np.ones(grid.frequency_Hz.size)) for one in mixed], axis=0)
     rows, columns = np.triu_indices(len(sensors))
+    if any(sensor.chain.clock_slow for sensor in sensors):
+        if duration_s is None:
+            remedy = "give the dataset its attribute duration_s"
+            raise InputError("clocks run apart in a run of unknown length", where="duration_s", remedy=remedy)
+        upper *= _apart(sensors, estimate_Hz, segment_s, duration_s)
     # Of a matrix that is its own adjoint the upper triangle is enough.
     matrix = np.empty((estimate_Hz.size, len(sensors), len(sensors)), dtype=np.complex128)
     matrix[:, columns, rows] = upper.conj()
     matrix[:, rows, columns] = upper
     matrix += added_csd(sensors, lines_Hz, estimate_Hz, segment_s)
     return matrix
+
+
+def _apart(sensors: Sequence[Sensor], estimate_Hz: Reals, segment_s: float, duration_s: float) -> Complexes:
+    """What clocks that run apart leave of cross spectra: the mean over segments of a phase that grows.
+
+    Returns
+    -------
+    ndarray of complex128, shape (F, pairs)
+        Pairs in the order of the upper triangle.
+    """
+    slow = np.array([sensor.chain.clock_slow for sensor in sensors])
+    rows, columns = np.triu_indices(len(sensors))
+    turns = estimate_Hz[:, None] * (slow[rows] - slow[columns])
+    growing = np.sinc(turns * max(duration_s - segment_s, 0.0))
+    return np.asarray(growing * np.exp(-1j * np.pi * turns * duration_s))
 
 
 def added_csd(sensors: Sequence[Sensor], lines_Hz: Reals, estimate_Hz: Reals, segment_s: float) -> Reals:
