@@ -121,9 +121,11 @@ def test_of_several_effects_each_is_looked_for_and_the_strongest_counts(tmp_path
         "multiple-1": (truth(LOST, GAIN), verdict("named", lost, gain)),
         "multiple-2": (truth(LOST, GAIN), verdict("named", lost)),
         "multiple-3": (truth(LOST, GAIN), verdict("named", lost)),
+        "multiple-4": (truth(LOST, GAIN), verdict("named", lost)),
     }
     place = folder(tmp_path, cases)
     (place / "weights").mkdir()
+    (place / "weights" / "multiple-4.json").write_text('{"deviance": 790.0, "each": [800.0, 14.0]}')
     (place / "weights" / "multiple-3.json").write_text('{"deviance": 900.0, "each": [100.0, 800.0]}')
     scored = [(s.all_found, s.family, s.truth[0]) for s in score(place, FAMILIES)]
     assert scored == [
@@ -131,6 +133,8 @@ def test_of_several_effects_each_is_looked_for_and_the_strongest_counts(tmp_path
         (False, True, "fastener_loss"),
         # By what each does alone, the gain is the stronger one, and it was not found.
         (False, False, "sensor_gain"),
+        # Of the gain alone the records do not tell.
+        (None, True, "fastener_loss"),
     ]
 
 

@@ -50,7 +50,7 @@ class Scored:
     found, placed, family, in_class, false_name : bool or None
         Of the strongest concealed effect; None where that does not apply.
     all_found : bool or None
-        Whether each of several effects is found: at its place, and named or classed.
+        Whether each of several effects that the records tell of is found: at its place, and named or classed.
     mechanics : bool or None
         Whether the words that describe an effect of no catalogue say its mechanics.
     covered : tuple of bool
@@ -121,7 +121,9 @@ def score(folder: Path, families: Mapping[str, str], verdicts: Path | None = Non
             seconds = verdict.with_name("seconds.json")
             took = sum(json.loads(seconds.read_text()).values()) if seconds.is_file() else float("nan")
             true, said = json.loads(path.read_text()), json.loads(verdict.read_text())
-            scored = _scored(path.stem, _strongest_first(true, each.get(path.stem)), said, families, took)
+            alone = each.get(path.stem)
+            strongest, telling = _strongest_first(true, alone), _telling(true, alone)
+            scored = _scored(path.stem, strongest, said, families, took, telling)
             found.append(replace(scored, deviance=weighed.get(path.stem)))
     if not found:
         raise InputError("holds no verdict", where=str(folder), remedy="permway challenge run")
@@ -136,8 +138,20 @@ def _strongest_first(truth: Mapping[str, Any], each: Sequence[float] | None) -> 
     return {**truth, "effects": effects}
 
 
+def _telling(truth: Mapping[str, Any], each: Sequence[float] | None) -> int:
+    """How many effects the records tell of, each for itself; all, if that was not weighed."""
+    least = DIFFICULTY["hard"]
+    count = len(truth["effects"])
+    return count if each is None or len(each) != count else sum(one >= least for one in each)
+
+
 def _scored(
-    name: str, truth: Mapping[str, Any], verdict: Mapping[str, Any], families: Mapping[str, str], seconds: float
+    name: str,
+    truth: Mapping[str, Any],
+    verdict: Mapping[str, Any],
+    families: Mapping[str, str],
+    seconds: float,
+    telling: int,
 ) -> Scored:
     concealed = list(truth["effects"])
     effects = list(verdict["effects"]) if verdict["status"] in FOUND else []
@@ -181,8 +195,8 @@ def _scored(
         covered=tuple(_covered(concealed, effects)),
         harmed=harmed,
         seconds=float(seconds),
-        all_found=all(any(_same(one, e, families) for e in effects) for one in concealed)
-        if len(concealed) > 1
+        all_found=all(any(_same(one, e, families) for e in effects) for one in concealed[:telling])
+        if telling > 1
         else None,
         mechanics=_described(concealed[0], effects) if concealed and concealed[0].get("words") else None,
         gain_dB=_gained(verdict) if effects else None,

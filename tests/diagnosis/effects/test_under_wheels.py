@@ -1,4 +1,4 @@
-"""Fasteners near wheels in layers of their own: the same track, until a train changes them."""
+"""Fasteners near wheels: in layers of their own, and by the load that the rail spreads to them."""
 
 from __future__ import annotations
 
@@ -32,3 +32,17 @@ def test_levels_hold_every_fastener_once(tmp_path: Path, monkeypatch: pytest.Mon
     np.testing.assert_array_equal(
         np.unique(changed.model.line.stiffness(frequency)), np.unique(line.stiffness(frequency))
     )
+
+
+def test_springs_carry_what_stands_on_them_and_on_an_even_bed_as_winkler_says() -> None:
+    x, wheels, rigidity, spring = np.arange(-12.0, 12.0, 0.1), np.array([-1.25, 1.25]), 6.4e6, 5e6
+    carried = _under_wheels._carried(x, np.full(x.size, spring), rigidity, wheels)
+    assert carried.sum() == pytest.approx(2.0, rel=1e-6)
+    b = (spring / 0.1 / (4.0 * rigidity)) ** 0.25
+    along = b * np.abs(x[:, None] - wheels)
+    bed = 0.05 * b * (np.exp(-along) * (np.cos(along) + np.sin(along))).sum(axis=1)
+    np.testing.assert_allclose(carried, bed, atol=0.01 * bed.max())
+    # What is stiffer where the wheels stand draws load there.
+    below = np.abs(x) < 1.5
+    drawn = _under_wheels._carried(x, np.where(below, 2.0, 1.0) * spring, rigidity, wheels)
+    assert drawn[below].sum() > 1.05 * carried[below].sum()

@@ -15,7 +15,7 @@ from permway.recordings.campaign import Campaign
 ID = "sensor_delay"
 DOMAIN: Domain = "measurement"
 FAMILY = "sensor dynamics"
-SUMMARY = "What one sensor reads comes tau later, a phase of -2 pi f tau; or ever later, as its clock is slow by e."
+SUMMARY = "What one sensor reads comes tau late, a phase of -2 pi f tau; or ever later, as its clock is slow by e."
 PARAMETERS = {
     "delay_s": "s, -0.02 to 0.02: tau",
     "clock_slow": "1, -5e-4 to 5e-4: e; over a run of length T cross spectra lose sin(pi f e T) / (pi f e T)",
