@@ -4,7 +4,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TablesError", "__version__", "solve_line", "vectors"]
+__all__ = ["TablesError", "__version__", "cross_spectra", "solve_line", "spread", "vectors"]
 
 __version__: Final[str]
 vectors: Final[str]
@@ -33,3 +33,10 @@ def solve_line(
     NDArray[np.complex128] | None,
     list[tuple[int, str, str]],
 ]: ...
+
+_Rows = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
+
+def spread(
+    rows: _Rows, values: NDArray[np.complex128], late: NDArray[np.complex128]
+) -> NDArray[np.complex128]: ...
+def cross_spectra(smear: _Rows, fine: NDArray[np.complex128]) -> NDArray[np.complex128]: ...

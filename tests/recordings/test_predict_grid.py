@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from permway.recordings.predict.grid import cubic_weights, grid_of, halved, solved_lines
+from permway.recordings.predict.grid import grid_of, halved, interpolating, solved_lines
 
 ESTIMATE_HZ = np.arange(5.0, 200.0)
 
@@ -17,10 +17,10 @@ def test_cubics_are_met_exactly_on_uneven_lines() -> None:
     lines = np.array([1.0, 1.25, 1.5, 2.0, 3.0, 4.0, 7.0])
     at = np.linspace(1.0, 7.0, 97)
     for power in range(4):
-        np.testing.assert_allclose(cubic_weights(lines, at) @ lines**power, at**power, rtol=1e-12)
-    np.testing.assert_array_equal((cubic_weights(lines, lines).toarray()).round(12), np.eye(lines.size))
+        np.testing.assert_allclose(interpolating(lines, at) @ lines**power, at**power, rtol=1e-12)
+    np.testing.assert_array_equal((interpolating(lines, lines).toarray()).round(12), np.eye(lines.size))
     # Of fewer lines the polynomial through all.
-    np.testing.assert_allclose(cubic_weights(lines[:2], at[:3]) @ lines[:2], at[:3])
+    np.testing.assert_allclose(interpolating(lines[:2], at[:3]) @ lines[:2], at[:3])
 
 
 def test_a_resonance_of_a_wheel_on_its_track_keeps_its_peak() -> None:
@@ -46,8 +46,21 @@ def test_a_record_that_was_straight_between_lines_is_met_exactly() -> None:
     ]
     found = grid.spread(resonance(lines), straight=True)
     np.testing.assert_allclose(found[:, 0], parts[0] + 1j * parts[1], atol=1e-12)
-    np.testing.assert_allclose(
-        grid.expected(found, np.ones(grid.frequency_Hz.size)),
-        grid.expected_between([resonance(lines)], np.ones(grid.frequency_Hz.size)),
-        rtol=1e-9,
-    )
+
+
+def test_what_wheels_do_late_is_summed_on_the_grid_and_smeared_pair_by_pair() -> None:
+    """Both loops of the core, against products of whole arrays."""
+    random = np.random.default_rng(3)
+    lines = solved_lines(ESTIMATE_HZ, 1.0, None)
+    grid = grid_of(lines, ESTIMATE_HZ, 1.0)
+    channels, wheels = 5, 4
+    parts = random.standard_normal((2, lines.size, channels, wheels))
+    late = np.exp(2j * np.pi * random.random((grid.frequency_Hz.size, wheels)))
+    values = parts[0] + 1j * parts[1]
+    fine = grid.spread(values, late, straight=False)
+    there = np.tensordot(grid.cubic.toarray(), values, axes=1)
+    np.testing.assert_allclose(fine, np.einsum("ncw,nw->nc", there, late), atol=1e-12)
+    density = 1.0 + random.random(grid.frequency_Hz.size)
+    rows, columns = np.triu_indices(channels)
+    pairs = density[:, None] * fine[:, rows] * fine[:, columns].conj()
+    np.testing.assert_allclose(grid.expected(fine, density), grid.smear @ pairs, atol=1e-11)

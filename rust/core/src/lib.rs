@@ -25,6 +25,7 @@ pub mod shaft;
 pub mod small;
 pub mod sweep;
 pub mod waves;
+pub mod welch;
 
 /// Complex number of the whole core; the same type as faer's `c64`.
 #[allow(non_camel_case_types)]

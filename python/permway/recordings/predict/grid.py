@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 from scipy import sparse
 
+from permway import _core
 from permway.arrays import Complexes, Reals
 
 PER_LINE = 16
@@ -34,44 +35,37 @@ class Grid:
     ----------
     frequency_Hz : ndarray, shape (N,)
     step_Hz : float
-    left : ndarray of int, shape (N,)
-        The solved line below each point.
-    share : ndarray, shape (N, 1)
-        How much of the way to the next solved line.
-    cubic : sparse array, shape (N, L)
-        From the solved lines to the grid by cubics through the four nearest.
+    cubic, straight : sparse array, shape (N, L)
+        From the solved lines to the grid: by cubics through the four nearest, and linear between them.
     smear : sparse array, shape (F, N)
         Power of Hann's spectral window about every line of the estimate, each row of sum 1.
-    moments : sparse array, shape (n, N)
-        From a density to the n numbers of a sparse array (F, 3 (L - 1)): by interval between solved lines the sums
-        of window times density times `share` to the powers 0, 1, 2.
-    columns, pointers : ndarray of int
-        Where those numbers stand.
     """
 
     frequency_Hz: Reals
     step_Hz: float
-    left: np.ndarray
-    share: Reals
     cubic: sparse.csr_array
+    straight: sparse.csr_array
     smear: sparse.csr_array
-    moments: sparse.csr_array
-    columns: np.ndarray
-    pointers: np.ndarray
 
-    def spread(self, values: Complexes, *, straight: bool) -> Complexes:
-        """From the solved lines, (L, k) to (N, k): linear between them if `straight`, else by cubics.
+    def spread(self, values: Complexes, late: Complexes | None = None, *, straight: bool) -> Complexes:
+        """From the solved lines to the grid: linear between them if `straight`, else by cubics.
 
         Straight lines clip a resonance 4 Hz wide between lines 1 Hz apart by 6 %, cubics by 2 %, and between lines
         half as far apart by 0.3 %.
+
+        Parameters
+        ----------
+        values : ndarray of complex128, shape (L, C) or (L, C, W)
+        late : ndarray of complex128, shape (N, W), optional
+            What the W are multiplied by on the grid, before they are summed.
+
+        Returns
+        -------
+        ndarray of complex128, shape (N, C)
         """
-        if not straight:
-            return weighed(self.cubic, values)
-        steps = np.diff(values, axis=0)
-        found = steps[self.left]
-        found *= self.share
-        found += values[self.left]
-        return np.asarray(found)
+        if late is None:
+            late, values = np.ones((self.frequency_Hz.size, 1), dtype=np.complex128), values[:, :, None]
+        return _core.spread(_rows(self.straight if straight else self.cubic), np.ascontiguousarray(values), late)
 
     def expected(self, fine: Complexes, density: Reals) -> Complexes:
         """What Welch's method expects of a source, channel against channel.
@@ -88,43 +82,11 @@ class Grid:
         ndarray of complex128, shape (F, C (C + 1) / 2)
             The upper triangle, row by row.
         """
-        scaled = fine * np.sqrt(density)[:, None]
-        return weighed(self.smear, _pairs(scaled, scaled))
-
-    def expected_between(self, sources: Sequence[Complexes], density: Reals) -> Complexes:
-        """The same of independent sources of one density, given at the solved lines and linear between them.
-
-        Between two lines a product of what two channels read is a parabola, so the window's moments by interval
-        are enough, and no product is taken on the grid.
-
-        Parameters
-        ----------
-        sources : sequence of ndarray of complex128, shape (L, C)
-        density : ndarray, shape (N,)
-        """
-        intervals, channels = sources[0].shape[0] - 1, sources[0].shape[1]
-        parabolas = np.zeros((3, intervals, channels * (channels + 1) // 2), dtype=np.complex128)
-        for values in sources:
-            start, step = values[:-1], np.diff(values, axis=0)
-            parabolas[0] += _pairs(start, start)
-            parabolas[1] += _pairs(start, step) + _pairs(step, start)
-            parabolas[2] += _pairs(step, step)
-        parabolas = parabolas.reshape(3 * intervals, -1)
-        shape = (self.pointers.size - 1, len(parabolas))
-        weights = sparse.csr_array((self.moments @ density, self.columns, self.pointers), shape=shape)
-        return weighed(weights, parabolas)
+        return _core.cross_spectra(_rows(self.smear), fine * np.sqrt(density)[:, None])
 
 
-def _pairs(one: Complexes, other: Complexes) -> Complexes:
-    """Products of one with the other's conjugate, (n, C) each: upper triangle, row by row, (n, C (C + 1) / 2)."""
-    left, right = np.ascontiguousarray(one.T), np.ascontiguousarray(other.conj().T)
-    channels = len(left)
-    found = np.empty((channels * (channels + 1) // 2, one.shape[0]), dtype=np.complex128)
-    stop = 0
-    for channel in range(channels):
-        start, stop = stop, stop + channels - channel
-        np.multiply(left[channel], right[channel:], out=found[start:stop])
-    return np.ascontiguousarray(found.T)
+def _rows(weights: sparse.csr_array) -> tuple[np.ndarray, np.ndarray, Reals]:
+    return weights.indptr, weights.indices, weights.data
 
 
 def weighed(weights: sparse.csr_array, values: Complexes) -> Complexes:
@@ -152,28 +114,28 @@ def _grid(lines: bytes, estimate: bytes, segment_s: float) -> Grid:
     step = 1.0 / (segment_s * PER_LINE)
     count = int(np.floor((lines_Hz[-1] - lines_Hz[0]) / step + 1e-9)) + 1
     fine = np.asarray(lines_Hz[0] + step * np.arange(count), dtype=np.float64)
-    left = np.clip(np.searchsorted(lines_Hz, fine, side="right") - 1, 0, lines_Hz.size - 2)
-    share = np.clip((fine - lines_Hz[left]) / (lines_Hz[left + 1] - lines_Hz[left]), 0.0, 1.0)
-    smear = _window(fine, estimate_Hz, segment_s)
-    cubic = cubic_weights(lines_Hz, fine)
-    return Grid(fine, step, left, share[:, None], cubic, smear, *_moments(smear, left, share, lines_Hz.size - 1))
+    cubic, straight = (interpolating(lines_Hz, fine, through) for through in (4, 2))
+    return Grid(fine, step, cubic, straight, _window(fine, estimate_Hz, segment_s))
 
 
-def cubic_weights(x: Reals, at: Reals) -> sparse.csr_array:
-    """Weights of values at ascending x for those at other places, by Lagrange's cubics through the four nearest.
+def interpolating(x: Reals, at: Reals, through: int = 4) -> sparse.csr_array:
+    """Weights of values at ascending x for those at other places, by Lagrange's polynomials through the nearest.
 
     Parameters
     ----------
     x : ndarray, shape (L,)
-        Of fewer than four, the polynomial through all.
+        Of fewer than are asked for, the polynomial through all.
     at : ndarray, shape (N,)
-        Not beyond the ends of x.
+        Not beyond the ends of x, but for rounding.
+    through : int
+        How many of the nearest: 4 for cubics, 2 for straight lines.
 
     Returns
     -------
     sparse array, shape (N, L)
     """
-    many = min(4, x.size)
+    many = min(through, x.size)
+    at = np.clip(at, x[0], x[-1])
     first = np.clip(np.searchsorted(x, at, side="right") - many // 2, 0, x.size - many)
     columns = first[:, None] + np.arange(many)
     nodes = x[columns]
@@ -185,22 +147,8 @@ def cubic_weights(x: Reals, at: Reals) -> sparse.csr_array:
         ],
         axis=1,
     )
-    pointers = many * np.arange(at.size + 1)
-    return sparse.csr_array((weights.ravel(), columns.ravel(), pointers), shape=(at.size, x.size))
-
-
-def _moments(
-    smear: sparse.csr_array, left: np.ndarray, share: Reals, intervals: int
-) -> tuple[sparse.csr_array, np.ndarray, np.ndarray]:
-    window = smear.tocoo()
-    line, point = window.coords
-    keys = [(3 * line.astype(np.int64) + power) * intervals + left[point] for power in range(3)]
-    values = [window.data * share[point] ** power for power in range(3)]
-    there, at = np.unique(np.concatenate(keys), return_inverse=True)
-    cells = (at, np.tile(point, 3))
-    moments = sparse.csr_array((np.concatenate(values), cells), shape=(there.size, left.size))
-    row, column = np.divmod(there, 3 * intervals)
-    return moments, column, np.searchsorted(row, np.arange(smear.shape[0] + 1))
+    pointers = many * np.arange(at.size + 1, dtype=np.int32)
+    return sparse.csr_array((weights.ravel(), columns.ravel().astype(np.int32), pointers), shape=(at.size, x.size))
 
 
 def _window(fine: Reals, estimate_Hz: Reals, segment_s: float) -> sparse.csr_array:
@@ -213,7 +161,7 @@ def _window(fine: Reals, estimate_Hz: Reals, segment_s: float) -> sparse.csr_arr
         rows.append(np.full(near.size, index))
         columns.append(near)
         values.append(power / power.sum())
-    at = (np.concatenate(rows), np.concatenate(columns))
+    at = (np.concatenate(rows).astype(np.int32), np.concatenate(columns).astype(np.int32))
     return sparse.csr_array((np.concatenate(values), at), shape=(estimate_Hz.size, fine.size))
 
 
@@ -241,7 +189,7 @@ def _halving(solved: bytes, segment_s: float) -> tuple[Reals, sparse.csr_array]:
     wide = np.flatnonzero((np.diff(lines_Hz) > 0.9 / segment_s) & (lines_Hz[:-1] < HALVED_LINES / segment_s))
     lines = np.insert(lines_Hz, wide + 1, 0.5 * (lines_Hz[wide] + lines_Hz[wide + 1]))
     lines.flags.writeable = False
-    return lines, cubic_weights(lines_Hz, lines)
+    return lines, interpolating(lines_Hz, lines)
 
 
 def solved_lines(

@@ -19,28 +19,12 @@ from permway.recordings.predict.motion import influence, pushed, wheels_of
 from permway.recordings.predict.sliding import shares
 from permway.response.sliding import Remainder
 
-__all__ = ["amplitudes", "expected_csd", "influence", "solved_lines", "wheels_of"]
-
-
-def amplitudes(
-    model: Model, condition: Condition, sensors: Sequence[Sensor], frequency_Hz: Reals, per_profile: Complexes
-) -> Complexes:
-    """What is there to be read, in SI, per profile under the leading wheel, shape (F, sensors).
-
-    Parameters
-    ----------
-    per_profile : ndarray of complex128, shape (F, sensors, wheels)
-        Of the sensors' degrees: see :func:`influence`. It holds no lag, so it may be interpolated over frequency.
-    """
-    wheels = wheels_of(model, condition)
-    late = _late(frequency_Hz.tobytes(), ((wheels[0] - wheels) / speed_of(condition)).tobytes())
-    moved = np.einsum("fsw,fw->fs", per_profile, late)
-    return np.asarray(moved * _there(sensors, frequency_Hz))
+__all__ = ["expected_csd", "influence", "solved_lines", "wheels_of"]
 
 
 @lru_cache(maxsize=8)
 def _late(lines: bytes, lag: bytes) -> Complexes:
-    """Phase by which what meets the leading wheel is late at each wheel, shape (F, wheels)."""
+    """Phase by which what meets the leading wheel comes later to each wheel, shape (F, wheels)."""
     found = np.asarray(np.exp((-2j * np.pi * np.frombuffer(lines))[:, None] * np.frombuffer(lag)))
     found.flags.writeable = False
     return found
@@ -95,32 +79,34 @@ def expected_csd(
     degrees = model.train.vehicle.degrees
     chosen = [degrees.index(str(sensor.degree)) for sensor in sensors]
     mine = per_profile[:, chosen, :]
+    fine_Hz = grid.frequency_Hz
     flat = all(sensor.chain.flat for sensor in sensors)
-    chains = _chains(sensors, grid.frequency_Hz[:1] if flat else grid.frequency_Hz)
+    chains = _chains(sensors, fine_Hz[:1] if flat else fine_Hz)
+    wheels = wheels_of(model, condition)
+    lag = ((wheels[0] - wheels) / speed_of(condition)).tobytes()
 
-    def expected(sources: Sequence[Complexes], density: Reals) -> Complexes:
-        """Of independent sources."""
-        if flat and interpolated:
-            return grid.expected_between([source * chains for source in sources], density)
-        parts = [grid.expected(grid.spread(source, straight=interpolated) * chains, density) for source in sources]
-        return np.asarray(np.sum(parts, axis=0))
+    def expected(source: Complexes, density: Reals) -> Complexes:
+        """Of what a source is read as at the solved lines, but for chains."""
+        return grid.expected(grid.spread(source, straight=interpolated) * chains, density)
 
     power = excitation.profile(model, known, condition, grid)
     if interpolated:
-        upper = expected([amplitudes(model, condition, sensors, lines_Hz, mine)], power)
+        moved = np.einsum("fsw,fw->fs", mine, _late(lines_Hz.tobytes(), lag))
+        upper = expected(moved * _there(sensors, lines_Hz), power)
     else:
-        spread = grid.spread(mine.reshape(lines_Hz.size, -1), straight=False).reshape(-1, *mine.shape[1:])
-        upper = grid.expected(amplitudes(model, condition, sensors, grid.frequency_Hz, spread) * chains, power)
-    for moved, density in _sources(model, known, condition, grid, lines_Hz, per_profile):
-        upper += expected([source[:, chosen] * _there(sensors, lines_Hz) for source in moved], density)
+        moved = grid.spread(mine, _late(fine_Hz.tobytes(), lag), straight=False)
+        upper = grid.expected(moved * _there(sensors, fine_Hz) * chains, power)
+    for sources, density in _sources(model, known, condition, grid, lines_Hz, per_profile):
+        for source in sources:
+            upper += expected(source[:, chosen] * _there(sensors, lines_Hz), density)
     for remainder in left:
         per_force = pushed(model.train.vehicle, lines_Hz, remainder.rows, per_profile)[:, :, chosen]
         per_force = per_force * _there(sensors, lines_Hz)[:, None, :]
         fine = grid.spread(per_force.reshape(lines_Hz.size, -1), straight=interpolated)
         fine = fine.reshape(-1, *per_force.shape[1:])
         fine *= chains[:, None, :]
-        mixed = np.einsum("ntk,ntc->knc", shares(remainder, grid.frequency_Hz), fine)
-        upper += np.sum([grid.expected(one, np.ones(grid.frequency_Hz.size)) for one in mixed], axis=0)
+        mixed = np.einsum("ntk,ntc->knc", shares(remainder, fine_Hz), fine)
+        upper += np.sum([grid.expected(one, np.ones(fine_Hz.size)) for one in mixed], axis=0)
     rows, columns = np.triu_indices(len(sensors))
     if any(sensor.chain.clock_slow for sensor in sensors):
         if duration_s is None:

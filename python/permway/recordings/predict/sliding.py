@@ -15,7 +15,7 @@ from permway.model.vehicle_additions import FlexibleMode
 from permway.recordings.campaign_parts import Condition, IrregularityKnown
 from permway.recordings.predict import excitation
 from permway.recordings.predict.excitation import speed_of
-from permway.recordings.predict.grid import Grid, cubic_weights, weighed
+from permway.recordings.predict.grid import Grid, interpolating, weighed
 from permway.recordings.predict.motion import influence, pushed, wheels_of
 from permway.response.sliding import Remainder, at_work, remainders, sliders_of
 
@@ -70,7 +70,7 @@ def worked(
     late = np.exp(-2j * np.pi * np.outer(uniform, (wheels[0] - wheels) / speed_of(condition)))
     rough = np.sqrt(_resampled(excitation.profile(model, known, condition, grid), grid.frequency_Hz, uniform))
     rough[uniform < lines_Hz[0]] = 0.0
-    between = cubic_weights(lines_Hz, np.clip(uniform, lines_Hz[0], lines_Hz[-1]))
+    between = interpolating(lines_Hz, np.clip(uniform, lines_Hz[0], lines_Hz[-1]))
     influence_of = retuned(model, lines_Hz, track)
 
     def motion(vehicle: Vehicle) -> Complexes:
