@@ -46,8 +46,8 @@ def test_what_wanders_over_an_octave_is_held_to_a_thousandth() -> None:
 
 
 def pair_columns(random: np.random.Generator, sensors: int, points: int, lines: int, count: int) -> PairColumns:
-    both = random.standard_normal((2, sensors, points, lines, count))
-    return PairColumns(both[0] + 1j * both[1])
+    phase = np.exp(2j * np.pi * random.random((sensors, points, lines)))
+    return PairColumns(random.standard_normal((sensors, points, lines, count)), phase)
 
 
 def dense(columns: PairColumns) -> Reals:
@@ -59,7 +59,7 @@ def dense(columns: PairColumns) -> Reals:
             for k in range(count):
                 whole = np.zeros((sensors, points, lines), dtype=np.complex128)
                 mine = (owner, slice(None)) if owner < sensors else (slice(None), owner - sensors)
-                whole[mine] = factor * columns.gains[(*mine, slice(None), k)]
+                whole[mine] = factor * (columns.gains[..., k] * columns.phase)[mine]
                 found.append(np.concatenate([whole.real.reshape(-1), whole.imag.reshape(-1)]))
     return np.stack(found, axis=1)
 
@@ -106,9 +106,7 @@ def test_a_whitener_is_the_inverse_of_the_covariance() -> None:
     # What is explained, taken out, leaves the noise's share: V^-1 times the values.
     left = values - whitener.smooth(whitener.explained(values), values.size)
     np.testing.assert_allclose(left, np.linalg.solve(covariance, values), atol=1e-9)
-    inverse = np.linalg.inv(
-        np.eye(whitener.factor.shape[0]) + whitener.pull(np.eye(sum(rows))) @ _roots(whitener, matrix)
-    )
+    inverse = np.linalg.inv(np.eye(whitener.count) + whitener.pull(np.eye(sum(rows))) @ _roots(whitener, matrix))
     np.testing.assert_allclose(whitener.variances(), np.diag(inverse), atol=1e-9)
 
 

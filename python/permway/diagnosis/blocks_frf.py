@@ -10,7 +10,7 @@ import xarray as xr
 
 from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks import SURE, Basis, Rows
-from permway.diagnosis.smooth import Origin, PairColumns, Smooth
+from permway.diagnosis.smooth import Origin, PairColumns, Smooth, as_complex, as_parts
 from permway.diagnosis.wander import Wander
 from permway.recordings.campaign_load import Dataset
 
@@ -87,9 +87,13 @@ class FrfBlock:
         self._there: Complexes = np.where(self._logarithmic, self._measured, expected)
         self._span = span or (float(self.frequency[0]), float(self.frequency[-1]))
         fine = Basis(float(self.frequency[0]), float(self.frequency[-1]), self.KNOTS_PER_OCTAVE)
-        errors = (self._there * self.weight)[..., None] * fine.values(self.frequency)
+        # Errors multiply: turned by the phase of what is there they are real.
+        there = np.abs(self._there)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            self._phase: Complexes = np.where(there > 0.0, self._there / there, 1.0)
+        self._relative: Reals = there * self.weight
+        errors = self._relative[..., None] * fine.values(self.frequency)
         self._directions, singular, _ = np.linalg.svd(errors, full_matrices=False)
-        self._across = np.ascontiguousarray(self._directions.conj().swapaxes(-1, -2))
         self._singular = singular
         self._last: tuple[xr.Dataset, Reals] | None = None
         self._shrink = 1.0 - 1.0 / np.sqrt(1.0 + (pair * singular) ** 2)
@@ -143,8 +147,13 @@ class FrfBlock:
 
     def white(self, values: Complexes) -> Complexes:
         """Takes out of weighted values (sensor, force, frequency) what the pairs' smooth errors would explain."""
-        within = self._across @ values[..., None]
-        return np.asarray(values - (self._directions @ (self._shrink[..., None] * within))[..., 0])
+        parts = as_parts((values * self._phase.conj())[..., None])
+        parts -= self._directions @ (self._shrink[..., None] * self._within(parts))
+        return np.asarray(as_complex(parts)[..., 0] * self._phase)
+
+    def _within(self, parts: Reals) -> Reals:
+        """Of real columns (sensor, force, frequency, k) what lies along each pair's directions, one for each."""
+        return np.asarray(self._directions.swapaxes(-1, -2) @ parts)
 
     def deviations(self, predicted: xr.Dataset) -> Reals:
         """Real parts, then imaginary parts."""
@@ -200,7 +209,9 @@ class FrfBlock:
         half = clean.size // 2
         white = (clean[:half] + 1j * clean[half:]).reshape(self.measured.shape)
         # Along its directions each pair's error was shrunk: taken back, it is of its own size again.
-        within = (self._across @ white[..., None])[..., 0] / (1.0 - self._shrink)
+        within = as_complex(self._within(as_parts((white * self._phase.conj())[..., None])))[..., 0] / (
+            1.0 - self._shrink
+        )
         pair = self.pair
         for _ in range(MOST_PAIR_STEPS):
             variance = (pair * self._singular) ** 2
@@ -220,10 +231,10 @@ class FrfBlock:
         wander = Wander(*self._span)
         sensors, points = (self.dataset.data[kind].values.astype(str) for kind in ("sensor", "force"))
         # Measured is what is there times the error: deviations grow by it.
-        spread = self._there * self.weight
-        gains = np.stack([self.white(spread * v) for v in wander.values(self.frequency).T], axis=-1)
+        gains = self._relative[..., None] * wander.values(self.frequency)
+        gains -= self._directions @ (self._shrink[..., None] * self._within(gains))
         names = [*(f"sensor {name}" for name in sensors), *(f"force {name}" for name in points)]
-        return Smooth(tuple(Origin(name, wander, 2) for name in names), PairColumns(gains))
+        return Smooth(tuple(Origin(name, wander, 2) for name in names), PairColumns(gains, self._phase))
 
 
 def _square(values: Complexes) -> Reals:

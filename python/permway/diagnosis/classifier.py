@@ -98,7 +98,7 @@ class _Simulated:
         sizes = {o.name: evidence.sizes[o.name] if o.fixed else CHAIN for o in origins}
         self.whitener = Whitener.of(evidence.columns, sizes, evidence.length)
         self.ring, self.count = ring, ring.fit.deviations.size
-        self.coefficients = self.whitener.factor.shape[0]
+        self.coefficients = self.whitener.count
 
     def nothing(self, random: np.random.Generator) -> Reals:
         """Smooth errors and noise."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -119,24 +118,21 @@ class PairColumns:
 
     Attributes
     ----------
-    gains : ndarray of complex, shape (sensors, points, F, functions)
-        What a gain does; a phase does i times as much.
+    gains : ndarray, shape (sensors, points, F, functions)
+        What a gain does, turned back by `phase`; a phase does i times as much.
+    phase : ndarray of complex, shape (sensors, points, F)
+        Of what is there, which errors multiply.
     """
 
-    gains: Complexes
-
-    def _complex(self, values: Reals) -> Complexes:
-        half = values.shape[0] // 2
-        sensors, points, lines, _ = self.gains.shape
-        return np.asarray((values[:half] + 1j * values[half:]).reshape(sensors, points, lines, -1))
-
-    @cached_property
-    def _adjoint(self) -> Complexes:
-        return np.ascontiguousarray(self.gains.conj().swapaxes(-1, -2))
+    gains: Reals
+    phase: Complexes
 
     def pull(self, values: Reals) -> Reals:
         """See :class:`Columns`."""
-        found = self._adjoint @ self._complex(values.reshape(values.shape[0], -1))
+        half = values.shape[0] // 2
+        turned = (values[:half] + 1j * values[half:]).reshape(*self.phase.shape, -1)
+        turned *= self.phase.conj()[..., None]
+        found = as_complex(self.gains.swapaxes(-1, -2) @ as_parts(turned))
         whole = np.concatenate([found.sum(axis=1), found.sum(axis=0)])
         both = np.stack([whole.real, whole.imag], axis=1)
         return np.asarray(both.reshape(-1, *values.shape[1:]))
@@ -145,27 +141,36 @@ class PairColumns:
         """See :class:`Columns`."""
         sensors, points, _, count = self.gains.shape
         both = coefficients.reshape(sensors + points, 2, count)
-        each = both[:, 0] + 1j * both[:, 1]
-        moved = (self.gains @ (each[:sensors, None] + each[None, sensors:])[..., None])[..., 0].reshape(-1)
+        parts = both[:sensors, None] + both[None, sensors:]
+        moved = as_complex(self.gains @ parts.swapaxes(-1, -2))[..., 0]
+        moved = (moved * self.phase).reshape(-1)
         return np.concatenate([moved.real, moved.imag])
 
     def gram(self) -> Reals:
-        """See :class:`Columns`."""
+        """See :class:`Columns`; gains and phases do not meet."""
         sensors, points, _, count = self.gains.shape
-        pairs = self._adjoint @ self.gains
-        whole = np.zeros((sensors + points, count, sensors + points, count), dtype=np.complex128)
+        pairs = self.gains.swapaxes(-1, -2) @ self.gains
+        whole = np.zeros((sensors + points, 2, count, sensors + points, 2, count))
         s, p = np.arange(sensors), sensors + np.arange(points)
-        whole[s, :, s, :] = pairs.sum(axis=1)
-        whole[p, :, p, :] = pairs.sum(axis=0)
-        whole[:sensors, :, sensors:] = pairs.transpose(0, 2, 1, 3)
-        whole[sensors:, :, :sensors] = pairs.transpose(1, 2, 0, 3)
-        real = np.empty((sensors + points, 2, count, sensors + points, 2, count))
-        real[:, 0, :, :, 0], real[:, 1, :, :, 1] = whole.real, whole.real
-        real[:, 0, :, :, 1], real[:, 1, :, :, 0] = -whole.imag, whole.imag
+        for part in range(2):
+            whole[s, part, :, s, part] = pairs.sum(axis=1)
+            whole[p, part, :, p, part] = pairs.sum(axis=0)
+            whole[:sensors, part, :, sensors:, part] = pairs.transpose(0, 2, 1, 3)
+            whole[sensors:, part, :, :sensors, part] = pairs.transpose(1, 2, 0, 3)
         size = 2 * (sensors + points) * count
-        return real.reshape(size, size)
+        return whole.reshape(size, size)
 
     def masked(self, rows: np.ndarray) -> PairColumns:
         """See :class:`Columns`; a line is left out with both its parts."""
         half = rows[: rows.size // 2]
-        return PairColumns(self.gains * half.reshape(self.gains.shape[:3])[..., None])
+        return PairColumns(self.gains * half.reshape(self.phase.shape)[..., None], self.phase)
+
+
+def as_parts(values: Complexes) -> Reals:
+    """Complex numbers as real ones, real and imaginary parts side by side along the last axis."""
+    return np.ascontiguousarray(values).view(np.float64)
+
+
+def as_complex(parts: Reals) -> Complexes:
+    """Parts side by side along the last axis as complex numbers."""
+    return np.ascontiguousarray(parts).view(np.complex128)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from scipy import linalg
+from scipy import linalg, sparse
 
 from permway.arrays import Reals
 from permway.diagnosis.smooth import Columns, Origin, Smooth
@@ -60,6 +61,20 @@ class AllColumns:
             moved[rows] = columns.push(coefficients[place])
         return moved
 
+    @cached_property
+    def apart(self) -> tuple[np.ndarray, ...]:
+        """Where coefficients stand that meet no others, as gains and phases of frequency responses do not."""
+        of = np.repeat(np.arange(len(self.counts)), self.counts)
+        rows, columns = np.nonzero(self.gram)
+        meet = sparse.coo_array((np.ones(rows.size), (of[rows], of[columns])), shape=2 * (len(self.counts),))
+        count, kind = sparse.csgraph.connected_components(meet, directed=False)
+        return tuple(np.flatnonzero(kind[of] == number) for number in range(count))
+
+    @property
+    def counts(self) -> list[int]:
+        """Coefficients of every part of every origin, in their order."""
+        return [o.wander.count for o in self.origins for _ in range(o.parts)]
+
     def masked(self, keep: np.ndarray) -> AllColumns:
         """The same with nothing outside some rows."""
         parts = [(rows, place, columns.masked(keep[rows])) for rows, place, columns in self.parts]
@@ -80,11 +95,19 @@ class Whitener:
     With columns B and coefficients of covariance D = R R' that of the deviations is I + B D B'. Its inverse is
     applied by Woodbury's identity, and quadratic forms come out as those of independent deviations less what is
     explained.
+
+    Attributes
+    ----------
+    columns : AllColumns
+    roots : tuple of ndarray
+        R, block by block.
+    factors : tuple of (ndarray of int, ndarray)
+        Of coefficients that meet no others: where they stand, and L of L L' = I + R' B' B R.
     """
 
     columns: AllColumns
     roots: tuple[Reals, ...]
-    factor: Reals
+    factors: tuple[tuple[np.ndarray, Reals], ...]
 
     @staticmethod
     def of(columns: AllColumns, sizes: Mapping[str, float], length: float) -> Whitener:
@@ -101,7 +124,16 @@ class Whitener:
             inner[start:stop] = root.T @ inner[start:stop]
             inner[:, start:stop] = inner[:, start:stop] @ root
         inner[np.diag_indices_from(inner)] += 1.0
-        return Whitener(columns, tuple(roots), linalg.cholesky(inner, lower=True, overwrite_a=True))
+        factors = [
+            (mine, linalg.cholesky(inner[np.ix_(mine, mine)], lower=True, overwrite_a=True))
+            for mine in columns.apart
+        ]
+        return Whitener(columns, tuple(roots), tuple(factors))
+
+    @property
+    def count(self) -> int:
+        """Number of coefficients."""
+        return int(self.columns.gram.shape[0])
 
     def pull(self, values: Reals) -> Reals:
         """`R' B' v`; values (n,) or (n, k)."""
@@ -113,7 +145,10 @@ class Whitener:
 
     def reduce(self, values: Reals) -> Reals:
         """`L^-1 R' B' v`, of which the squares are what is explained; values (n,) or (n, k)."""
-        return np.asarray(linalg.solve_triangular(self.factor, self.pull(values), lower=True, check_finite=False))
+        return self._each(
+            lambda factor, mine: linalg.solve_triangular(factor, mine, lower=True, check_finite=False),
+            self.pull(values),
+        )
 
     def square(self, values: Reals) -> float:
         """Quadratic form of the deviations, smooth errors integrated out."""
@@ -122,12 +157,23 @@ class Whitener:
 
     def explained(self, values: Reals) -> Reals:
         """The coefficients that explain most, independent and of unit variance beforehand."""
-        return np.asarray(linalg.cho_solve((self.factor, True), self.pull(values), check_finite=False))
+        return self._each(
+            lambda factor, mine: linalg.cho_solve((factor, True), mine, check_finite=False), self.pull(values)
+        )
+
+    def _each(self, solve: Callable[[Reals, Reals], Reals], pulled: Reals) -> Reals:
+        """Of coefficients apart from others each by its own factor."""
+        for place, factor in self.factors:
+            pulled[place] = solve(factor, pulled[place])
+        return pulled
 
     def variances(self) -> Reals:
         """Of the coefficients afterwards."""
-        inverse, _ = linalg.lapack.dtrtri(self.factor, lower=1)
-        return np.asarray((np.tril(inverse) ** 2).sum(axis=0))
+        found = np.empty(self.count)
+        for place, factor in self.factors:
+            inverse, _ = linalg.lapack.dtrtri(factor, lower=1)
+            found[place] = (np.tril(inverse) ** 2).sum(axis=0)
+        return found
 
     def smooth(self, coefficients: Reals, size: int) -> Reals:
         """What coefficients do to so many deviations."""
@@ -144,4 +190,4 @@ class Whitener:
     @property
     def log_determinant(self) -> float:
         """Of I + B D B'."""
-        return float(2.0 * np.log(np.diag(self.factor)).sum())
+        return sum(float(2.0 * np.log(np.diag(factor)).sum()) for _, factor in self.factors)
