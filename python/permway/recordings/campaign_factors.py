@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import partial
+from operator import mul
 from typing import TYPE_CHECKING
 
 from permway.errors import InputError
 from permway.model.file import Model
 from permway.recordings.campaign_parts import Condition
-from permway.recordings.campaign_paths import number_at, parse_path, with_value
+from permway.recordings.campaign_paths import leads, parse_path, with_numbers
 
 if TYPE_CHECKING:
     from permway.recordings.campaign import Campaign
@@ -34,13 +36,15 @@ def model_under(model: Model, factors: Factors) -> Model:
     InputError
         For a path that leads to no number of the model, or a product that the model refuses.
     """
-    for path, factor in factors:
-        steps = parse_path(path, "factors")
-        try:
-            model = with_value(model, steps, factor * number_at(model, steps))
-        except KeyError as error:
-            raise InputError(f"leads to no number: {error.args[0]}", where="factors", value=path) from error
-    return model
+    steps = [parse_path(path, "factors") for path, _ in factors]
+    try:
+        changed: Model = with_numbers(
+            model, [(at, partial(mul, factor)) for at, (_, factor) in zip(steps, factors, strict=True)]
+        )
+    except KeyError as error:
+        path = next(path for at, (path, _) in zip(steps, factors, strict=True) if not leads(model, at))
+        raise InputError(f"leads to no number: {error.args[0]}", where="factors", value=path) from error
+    return changed
 
 
 def campaign_under(campaign: Campaign, condition: Condition) -> Campaign:

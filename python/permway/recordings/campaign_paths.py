@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from functools import cache
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, lru_cache, partial
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -13,10 +13,12 @@ from permway.errors import InputError
 from permway.model.faults import model_error
 
 Steps = tuple[str | int, ...]
+Change = Callable[[float], float]
 
 _PART = re.compile(r"""(?:\.|^)([A-Za-z_][A-Za-z0-9_-]*)|\[(\d{1,9})\]|\["([^"\]]+)"\]""")
 
 
+@lru_cache(maxsize=4096)
 def parse_path(path: str, where: str) -> Steps:
     """Split a path into keys and indices.
 
@@ -79,53 +81,74 @@ def number_at(record: object, steps: Steps) -> float:
     KeyError
         If there is nothing, or no number.
     """
-    value = value_at(record, steps)
+    return _number(steps, value_at(record, steps))
+
+
+def _number(steps: Steps, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise KeyError(f"{written(steps)} is no number")
     return float(value)
 
 
-def with_value(record: Any, steps: Steps, value: float) -> Any:
-    """A copy with one number set; what lies beside the path is shared, not copied.
+def leads(record: object, steps: Steps) -> bool:
+    """Whether there is a number at a path."""
+    try:
+        number_at(record, steps)
+    except KeyError:
+        return False
+    return True
 
-    Of pydantic records only the one that holds the number is checked again, so a copy costs microseconds; what
+
+def with_numbers(record: Any, changes: Iterable[tuple[Steps, Change]]) -> Any:
+    """A copy with some numbers changed, those of one place in turn; what lies beside is shared, not copied.
+
+    Of pydantic records only those that hold the numbers are checked again, so a copy costs microseconds; what
     records say of each other (names, places) a number cannot upset, or the core finds it.
 
     Raises
     ------
     InputError
-        From the record that holds the number.
+        From the record that holds a number.
     KeyError
-        If the path leads nowhere.
+        If a path leads nowhere, or to no number.
     """
-    return _with(record, steps, 0, value)
+    found = [(steps, partial(_changed, steps, change)) for steps, change in changes]
+    return _with(record, found, 0) if found else record
 
 
-def _with(record: Any, steps: Steps, depth: int, value: float) -> Any:
-    if depth == len(steps):
-        return value
-    step = steps[depth]
-    new = _with(_child(record, step, steps[:depth]), steps, depth + 1, value)
+def _changed(steps: Steps, change: Change, value: object) -> float:
+    return change(_number(steps, value))
+
+
+def _with(record: Any, changes: Sequence[tuple[Steps, Callable[[object], float]]], depth: int) -> Any:
+    """All changes below a record, those that go the same way together."""
+    ways: dict[str | int, list[tuple[Steps, Callable[[object], float]]]] = {}
+    for steps, change in changes:
+        ways.setdefault(_key(record, steps[depth], steps[:depth]), []).append((steps, change))
+    news: dict[Any, Any] = {}
+    ends: tuple[Steps, ...] = ()
+    for key, mine in ways.items():
+        child = _at(record, key)
+        for steps, change in (pair for pair in mine if len(pair[0]) == depth + 1):
+            child, ends = change(child), (*ends, steps)
+        further = [pair for pair in mine if len(pair[0]) > depth + 1]
+        news[key] = _with(child, further, depth + 1) if further else child
     if isinstance(record, BaseModel):
-        name = _field(record, step)
-        assert name is not None
-        if depth + 1 < len(steps) and isinstance(new, BaseModel | Mapping | tuple):
-            return record.model_copy(update={name: new})
-        return _checked(record, name, new, steps)
+        if not ends and all(isinstance(new, BaseModel | Mapping | tuple) for new in news.values()):
+            return record.model_copy(update=news)
+        return _checked(record, news, (ends or (changes[0][0][: depth + 1],))[0])
     if isinstance(record, Mapping):
-        return {**record, step: new}
-    index = _index(record, step)
-    assert index is not None
-    return type(record)((*record[:index], new, *record[index + 1 :]))
+        return {**record, **news}
+    return type(record)(news.get(index, item) for index, item in enumerate(record))
 
 
-def _checked(record: BaseModel, name: str, value: object, steps: Steps) -> BaseModel:
-    """The record with one field changed, its own checks made again."""
+def _checked(record: BaseModel, news: Mapping[Any, object], steps: Steps) -> BaseModel:
+    """The record with some fields changed, its own checks made again."""
     fields = type(record).model_fields
     table = {field.alias or key: getattr(record, key) for key, field in fields.items()}
-    key = fields[name].alias or name
-    given = fields[name].annotation
-    table[key] = int(value) if given is int and isinstance(value, float) and value.is_integer() else value
+    for name, value in news.items():
+        whole = fields[name].annotation is int and isinstance(value, float) and value.is_integer()
+        table[fields[name].alias or name] = int(value) if whole else value  # type: ignore[call-overload]
     try:
         return type(record).model_validate(table)
     except ValidationError as error:
@@ -133,17 +156,30 @@ def _checked(record: BaseModel, name: str, value: object, steps: Steps) -> BaseM
 
 
 def _child(record: object, step: str | int, before: Steps) -> object:
+    return _at(record, _key(record, step, before))
+
+
+def _at(record: Any, key: str | int) -> object:
+    return getattr(record, str(key)) if isinstance(record, BaseModel) else record[key]
+
+
+def _key(record: object, step: str | int, before: Steps) -> str | int:
+    """What a step is to a record: a field by its own name, an item by its index.
+
+    Raises
+    ------
+    KeyError
+        If it has no such part.
+    """
+    found: str | int | None
     if isinstance(record, BaseModel):
-        name = _field(record, step)
-        if name is not None:
-            return getattr(record, name)
+        found = _field(record, step)
     elif isinstance(record, Mapping):
-        if step in record:
-            return record[step]
+        found = step if step in record else None
     else:
-        index = _index(record, step)
-        if index is not None:
-            return record[index]  # type: ignore[index]
+        found = _index(record, step)
+    if found is not None:
+        return found
     if isinstance(record, BaseModel):
         known = [field.alias or key for key, field in type(record).model_fields.items()]
     else:

@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from permway.errors import InputError
 from permway.model.file import Model, model_from_dict
-from permway.recordings.campaign_paths import Steps, number_at, parse_path, value_at, with_value
+from permway.recordings.campaign_paths import Steps, leads, number_at, parse_path, value_at, with_numbers
 from permway.recordings.parameters import Known, Parameter, known_of
 
 OWN = "campaign"
@@ -111,15 +111,12 @@ class ParameterSet:
                 name = next(n for n in values if any(p.kind == "table" for p in self._places[n]))
                 what = "acts on what a preset is made of, and the model was changed since"
                 raise InputError(what, where=name, remedy="spell the line out in the model file")
-            for place, new in numbers:
-                if place.kind == "table":
-                    table = with_value(table, place.steps, new(number_at(table, place.steps)))
+            table = with_numbers(table, [(place.steps, new) for place, new in numbers if place.kind == "table"])
             model = model_from_dict(table, folder=self._folder)
-        for place, new in numbers:
-            if place.kind == "model":
-                model = with_value(model, place.steps, new(number_at(model, place.steps)))
-            elif place.kind == "campaign":
-                own = with_value(own, place.steps, new(number_at(own, place.steps)))
+        model, own = (
+            with_numbers(record, [(place.steps, new) for place, new in numbers if place.kind == kind])
+            for record, kind in ((model, "model"), (own, "campaign"))
+        )
         return model, own
 
     def on(self, model: Model) -> ParameterSet:
@@ -127,7 +124,7 @@ class ParameterSet:
         other = copy.copy(self)
         other._model = model
         other._places = {
-            name: tuple(place for place in places if place.kind != "model" or _has(model, place.steps))
+            name: tuple(place for place in places if place.kind != "model" or leads(model, place.steps))
             for name, places in self._places.items()
         }
         # What a preset was made of is not in the new model.
@@ -147,10 +144,8 @@ class ParameterSet:
         steps = self._new(name, new, old)
         if any(place.kind == "table" for place, _ in steps):
             return None
-        for place, change in steps:
-            if place.kind == "model":
-                model = with_value(model, place.steps, change(number_at(model, place.steps)))
-        return model
+        changed: Model = with_numbers(model, [(place.steps, new) for place, new in steps if place.kind == "model"])
+        return changed
 
     def _nominal(self, name: str) -> float:
         if name not in self.known:
@@ -193,14 +188,6 @@ class ParameterSet:
             return number_at(record, steps)
         except KeyError as error:
             raise _no_number(error, where, path) from error
-
-
-def _has(model: Model, steps: Steps) -> bool:
-    try:
-        number_at(model, steps)
-    except KeyError:
-        return False
-    return True
 
 
 def _no_number(error: KeyError, where: str, path: str) -> InputError:

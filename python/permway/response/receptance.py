@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import get_args
 
 import numpy as np
@@ -15,9 +16,10 @@ from permway.errors import InputError
 from permway.model.bodies import Metres
 from permway.model.joint_table import JointTable
 from permway.model.line import Line
+from permway.model.segments import find
 from permway.records import FrozenModel
 from permway.response.core import Formulation as Formulation
-from permway.response.core import OnError, run
+from permway.response.core import OnError, Solved, run
 from permway.response.core import Progress as Progress
 
 CONVENTION = "exp(+i omega t), displacement and force positive down"
@@ -95,17 +97,11 @@ def receptance(
         If the line is singular, not finite or badly conditioned at a frequency.
     """
     frequency = check_sweep(frequency_Hz)
-    for where, chosen, choices in (
-        ("formulation", formulation, get_args(Formulation)),
-        ("on_error", on_error, get_args(OnError)),
-    ):
-        if chosen not in choices:
-            raise InputError("unknown", where=where, value=chosen, remedy=f"use one of {list(choices)}")
-    points = {"forces": check_places(line, forces, "forces"), "sensors": check_places(line, sensors, "sensors")}
-    solved = run(
+    solved = between(
         line,
         frequency,
-        points,
+        forces=forces,
+        sensors=sensors,
         temperature_C=temperature_C,
         formulation=formulation,
         extensions=extensions,
@@ -137,6 +133,41 @@ def receptance(
     return data
 
 
+def between(
+    line: Line,
+    frequency_Hz: ArrayLike,
+    *,
+    forces: Sequence[Place],
+    sensors: Sequence[Place],
+    temperature_C: float | None = None,
+    formulation: Formulation = "chain",
+    extensions: bool = False,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    on_error: OnError = "raise",
+) -> Solved:
+    """The same as plain arrays, for who solves thousands of times; see :func:`receptance`."""
+    frequency = check_sweep(frequency_Hz)
+    for where, chosen, choices in (
+        ("formulation", formulation, get_args(Formulation)),
+        ("on_error", on_error, get_args(OnError)),
+    ):
+        if chosen not in choices:
+            raise InputError("unknown", where=where, value=chosen, remedy=f"use one of {list(choices)}")
+    points = {"forces": check_places(line, forces, "forces"), "sensors": check_places(line, sensors, "sensors")}
+    return run(
+        line,
+        frequency,
+        points,
+        temperature_C=temperature_C,
+        formulation=formulation,
+        extensions=extensions,
+        threads=threads,
+        progress=progress,
+        on_error=on_error,
+    )
+
+
 def check_places(line: Line, places: Sequence[Place], where: str) -> dict[str, np.ndarray]:
     """Places as the core's columns: segment of each, and x.
 
@@ -149,13 +180,24 @@ def check_places(line: Line, places: Sequence[Place], where: str) -> dict[str, n
         if not isinstance(place, Place):
             raise InputError("must be a Place", where=f"{where}[{index}]", value=place)
     labels = [p.label for p in places]
-    for index, label in enumerate(labels):
-        if label in labels[:index]:
-            raise InputError(
-                "the name stands twice", where=f"{where}[{index}]", value=label, remedy="give each its own name"
-            )
-    found = [line.locate(p.body, p.x_m, where=f"{where}[{i}]") for i, p in enumerate(places)]
-    return {"body": np.array(found, dtype=np.int64), "x": np.array([p.x_m for p in places], dtype=np.float64)}
+    if len(set(labels)) < len(labels):
+        index = next(i for i, label in enumerate(labels) if label in labels[:i])
+        raise InputError(
+            "the name stands twice",
+            where=f"{where}[{index}]",
+            value=labels[index],
+            remedy="give each its own name",
+        )
+    found, x = np.zeros(len(places), dtype=np.int64), np.array([p.x_m for p in places], dtype=np.float64)
+    segments = line.segments()
+    for body in dict.fromkeys(p.body for p in places):
+        mine = [index for index, place in enumerate(places) if place.body == body]
+        found[mine] = find(segments, body, x[mine], partial(_which, where, mine))
+    return {"body": found, "x": x}
+
+
+def _which(where: str, indices: Sequence[int], index: int) -> str:
+    return f"{where}[{indices[index]}]"
 
 
 def check_sweep(frequency_Hz: ArrayLike) -> Reals:

@@ -12,7 +12,7 @@ from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.model.file import Model
 from permway.recordings.campaign_factors import Factors, model_under
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import Place, between
 
 Spot = tuple[str, float]
 """Body and x in m."""
@@ -155,7 +155,7 @@ def solve(sweep: Sweep, model: Model, *, threads: int | None = None) -> Answer:
         As :func:`permway.response.receptance.receptance`.
     """
     model = model_under(model, sweep.factors)
-    data = receptance(
+    solved = between(
         model.line,
         sweep.frequency_Hz,
         forces=sweep.forces,
@@ -164,7 +164,7 @@ def solve(sweep: Sweep, model: Model, *, threads: int | None = None) -> Answer:
         formulation=model.formulation,
         threads=threads,
     )
-    return Answer(sweep, data["receptance"].values)
+    return Answer(sweep, solved.receptance)
 
 
 def places_of(spots: Iterable[Spot]) -> tuple[Place, ...]:
