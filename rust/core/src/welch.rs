@@ -78,7 +78,10 @@ pub fn spread(
     let rows = weights.rows();
     let wheels = late.len().checked_div(rows).unwrap_or(0);
     let width = channels * wheels;
-    if width == 0 || late.len() != rows * wheels || !values.len().is_multiple_of(width) || out.len() != rows * channels
+    if width == 0
+        || late.len() != rows * wheels
+        || !values.len().is_multiple_of(width)
+        || out.len() != rows * channels
     {
         return Err(CoreError::Invalid(format!(
             "spread: {} values and {} lags for {channels} channels on {rows} places",

@@ -8,6 +8,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from permway.diagnosis.catalogue import _under_wheels
+from permway.errors import SolveError
 from simulated import simulate
 
 
@@ -46,3 +47,10 @@ def test_springs_carry_what_stands_on_them_and_on_an_even_bed_as_winkler_says() 
     below = np.abs(x) < 1.5
     drawn = _under_wheels._carried(x, np.where(below, 2.0, 1.0) * spring, rigidity, wheels)
     assert drawn[below].sum() > 1.05 * carried[below].sum()
+
+
+def test_springs_that_pull_hold_no_train_and_are_said() -> None:
+    """An earlier round may have given a layer a negative stiffness: no diagnosis falls over it."""
+    x = np.arange(-12.0, 12.0, 0.6)
+    with pytest.raises(SolveError, match=r"holds nothing: -5e\+06 N/m"):
+        _under_wheels._carried(x, np.full(x.size, -5e6), 6.4e6, np.array([-1.25, 1.25]))

@@ -12,6 +12,7 @@ from permway.arrays import Reals
 from permway.diagnosis.catalogue._change import REACH_M, fresh, with_line
 from permway.diagnosis.catalogue._pads import with_factors
 from permway.diagnosis.catalogue._roles import LOW_HZ, ROOM_C, Layer, fasteners, spacing
+from permway.errors import SolveError
 from permway.model.bodies import Beam
 from permway.model.changes import Change
 from permway.recordings.campaign import Campaign
@@ -90,7 +91,13 @@ def settled(campaign: Campaign, condition: Condition, layer: Layer, factor: Call
 
 
 def _carried(x: Reals, springs: Reals, rigidity: float, wheels: Reals) -> Reals:
-    """What springs below a beam carry of unit loads on it, at rest."""
+    """What springs below a beam carry of unit loads on it, at rest.
+
+    Raises
+    ------
+    SolveError
+        If they hold nothing, as where an earlier change made them pull.
+    """
     # To a millimetre: what is closer is one node.
     nodes, place = np.unique(np.round(np.concatenate([x, wheels]), 3), return_inverse=True)
     length = np.diff(nodes)
@@ -104,7 +111,13 @@ def _carried(x: Reals, springs: Reals, rigidity: float, wheels: Reals) -> Reals:
     np.add.at(beam[3], 2 * place[: x.size], springs)
     load = np.zeros(2 * nodes.size)
     np.add.at(load, 2 * place[x.size :], 1.0)
-    return np.asarray(springs * linalg.solveh_banded(beam, load)[2 * place[: x.size]])
+    try:
+        moved = linalg.solveh_banded(beam, load)
+    except linalg.LinAlgError as error:
+        raise SolveError(
+            f"what lies below the wheels holds nothing: {springs.min():.3g} N/m at the least"
+        ) from error
+    return np.asarray(springs * moved[2 * place[: x.size]])
 
 
 def pressed(
