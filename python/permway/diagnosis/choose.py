@@ -84,21 +84,28 @@ def finalists_of(followed: Sequence[Quick], ring: Ring, threshold: float) -> lis
 
 def _ties(quick: Quick, best: Quick) -> bool:
     """Whether a hypothesis of the same form does as well at a place that the best cannot reach."""
-    reaches = set(PLACES) & {f.name for f in best.hypothesis.free}
-    return not reaches and quick.gain > TIED * best.gain
+    return not _reaches(best) and quick.gain > TIED * best.gain
 
 
 def elsewhere(fitted: Sequence[tuple[Quick, Fit]], followed: Sequence[Quick]) -> list[Quick]:
-    """The next best place of the leading effect, where that brings a parameter to where nobody would believe it.
+    """The next best place of the leading effect, where that is not one of its constants, or strains the base.
 
-    One of two bearings that is softer, and the other that is stiffer, both of them softer, differ in that alone.
+    One of two bearings that is softer, and the other that is stiffer, both of them softer, differ in what their
+    owner said of them alone.
     """
     if not fitted:
         return []
     leading, fit = fitted[0]
     known = fit.evidence.campaign.parameters.known
-    if all(abs(float(z)) <= BEYOND for f, z in zip(fit.free, fit.z, strict=True) if f.name in known):
-        return []
+    strained = any(abs(float(z)) > BEYOND for f, z in zip(fit.free, fit.z, strict=True) if f.name in known)
     place = leading.hypothesis.locate(leading.values)
+    if not strained and (place.x_m is None or _reaches(leading)):
+        return []
     alike = [q for q in followed if q.hypothesis.form == leading.hypothesis.form]
-    return [q for q in alike if q.hypothesis.locate(q.values) != place][:1]
+    taken = [q.hypothesis.locate(q.values) for q, _ in fitted if q.hypothesis.form == leading.hypothesis.form]
+    return [q for q in alike if q.hypothesis.locate(q.values) not in taken][:1]
+
+
+def _reaches(quick: Quick) -> bool:
+    """Whether the place is one of a hypothesis' constants."""
+    return bool(set(PLACES) & {f.name for f in quick.hypothesis.free})

@@ -45,6 +45,8 @@ class Classifier:
     screened : sequence of Quick
         Everything that was screened about the base, with what each does to the deviations.
     seed : int
+    threads : int, optional
+        Of the training; by default all processors.
 
     Raises
     ------
@@ -52,9 +54,12 @@ class Classifier:
         Without scikit-learn.
     """
 
-    def __init__(self, ring: Ring, screened: Sequence[Quick], *, seed: int = 0) -> None:
+    def __init__(
+        self, ring: Ring, screened: Sequence[Quick], *, seed: int = 0, threads: int | None = None
+    ) -> None:
         try:
             from sklearn.ensemble import HistGradientBoostingClassifier
+            from threadpoolctl import threadpool_limits
         except ImportError as error:
             raise InputError(
                 "is not installed", where="scikit-learn", remedy="pip install 'permway[challenge]'"
@@ -68,7 +73,9 @@ class Classifier:
         names = [NOTHING] * (NONE_MORE * PER_EFFECT) + [name for name in self.known for _ in range(PER_EFFECT)]
         features = [self._sums.of(self.simulate(name, random)) for name in names]
         self._trees = HistGradientBoostingClassifier(max_iter=TREES, max_leaf_nodes=LEAVES, random_state=seed)
-        self._trees.fit(np.array(features), np.array(names))
+        # Beside other work many threads wait for each other longer than they work.
+        with threadpool_limits(threads, "openmp"):
+            self._trees.fit(np.array(features), np.array(names))
 
     def simulate(self, name: str, random: np.random.Generator) -> Reals:
         """Deviations of a campaign with an effect, at some place and of some size, or with nothing missing."""

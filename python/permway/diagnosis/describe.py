@@ -7,10 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from permway.diagnosis import decide, grammar
+from permway.diagnosis import crossed, decide, grammar
 from permway.diagnosis.choose import lines, penalty
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.compete import Ring
+from permway.diagnosis.crossed import Loss
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Hypothesis, Situation, Where
 from permway.diagnosis.locate import scanned
@@ -36,6 +37,9 @@ ONE_FOR_TWO = 0.1
 OPEN = 0.05
 """Share of the gap to a free stiffness that a named effect that fits may leave before elements are tried."""
 
+WAVES = 1.05
+"""Mean square of the deviations from which joints that are named as lost may be such that waves have to cross."""
+
 TELLS = 45.0
 """Surplus of a free stiffness at one place from which elements of few constants are tried, which ask for less of
 BIC: with nothing missing the largest of all places was -3 to 17 (four campaigns)."""
@@ -56,6 +60,7 @@ class Description:
     def __init__(self, searched: Fit, base: Fit, found: tuple[Found, ...], clock: Clock) -> None:
         self.searched, self.base, self.found, self.clock = searched, base, found, clock
         self._plain: Round | None = None
+        self._rods: tuple[list[Loss], Round | None] = [], None
         self._left: dict[int, tuple[Fit, tuple[Found, ...]]] = {}
 
     def left(self, fit: Fit) -> tuple[Found, ...]:
@@ -86,6 +91,32 @@ class Description:
         return (named.fit.heat < UNFIT and strange) or (fits and self._closes(described, named.fit))
 
     def of(self, rounds: Sequence[Round], accepted: Sequence[Finalist]) -> Round | None:
+        """What small elements make of it, where they do better than names.
+
+        Parameters
+        ----------
+        rounds : sequence of Round
+        accepted : sequence of Finalist
+        """
+        return self._crossed(rounds, accepted) or self._elements(rounds, accepted)
+
+    def _crossed(self, rounds: Sequence[Round], accepted: Sequence[Finalist]) -> Round | None:
+        """Rods in place of joints that are named as lost, if waves across them explain what the name leaves."""
+        losses = [loss for loss in map(_loss, accepted) if loss is not None]
+        if not losses or accepted[-1].fit.heat < WAVES:
+            return None
+        if losses != self._rods[0]:
+            situation = Situation(self.searched, self.found)
+            offered = crossed.over_stretch(situation, losses)
+            self._rods = losses, self._held(self.searched, offered, rounds[0].threshold)
+        result, best = self._rods[1], accepted[-1].fit
+        if result is None or not result.finalists:
+            return None
+        one = result.finalists[0]
+        better = best.objective - one.fit.objective - penalty(one.quick, result.ring)
+        return result if better + _asked(accepted, result.ring) > rounds[0].threshold else None
+
+    def _elements(self, rounds: Sequence[Round], accepted: Sequence[Finalist]) -> Round | None:
         """Small elements, where no named effect explains what a free stiffness does, if they do it better.
 
         Or where one effect was found twice at one place: that is one thing that the catalogue has no name for. Or
@@ -222,6 +253,14 @@ def _twice(accepted: Sequence[Finalist]) -> Finalist | None:
                 if alike and {mass, *RESONANCE} <= other.values.keys() and _at_one_place(places[0], places[1]):
                     return max(other, one, key=lambda f: f.values[mass])
     return None
+
+
+def _loss(one: Finalist) -> Loss | None:
+    """The stretch of joints that a name says has lost stiffness; None if it says something else."""
+    values, where = one.values, one.hypothesis.locate(one.values)
+    if where.x_m is None or {"centre_m", "length_m", "factor"} != values.keys():
+        return None
+    return Loss(where.what, values["centre_m"], values["length_m"], values["factor"])
 
 
 def _at_one_place(first: Where, second: Where) -> bool:

@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from permway.arrays import Reals
+from permway.diagnosis import crossed
 from permway.diagnosis.catalogue._change import fresh, with_joints, with_law
 from permway.diagnosis.catalogue._interval import shares, spacing_of, span_of, stations_of
 from permway.diagnosis.catalogue._roles import fasteners
@@ -73,6 +74,8 @@ def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hyp
             yield _over_body(situation, element, body, like)
         for body in along:
             yield from _at_supports(situation, element, body, like)
+    if joint is not None and like is None:
+        yield from crossed.at_joint(situation, joint.spot.name, joint.spot.x_m[0])
 
 
 def _first(found: Iterable[Found]) -> list[Found]:

@@ -10,6 +10,7 @@ from permway.diagnosis.clock import Clock
 from permway.diagnosis.e_value import log_e_value
 from permway.diagnosis.fit import Fit, gained
 from permway.diagnosis.heldout import Rest, gains, parts
+from permway.diagnosis.hypothesis import Where
 from permway.diagnosis.idealised import idealised
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.recalibrate import recalibrate
@@ -62,11 +63,19 @@ def prove(
 
 
 def _placebo(found: Round, best: Finalist) -> Quick | None:
-    """As many parameters, nearly, of another family; of those the one of middling gain."""
-    count = len(best.hypothesis.free)
+    """As many parameters, nearly, of another family, at another place if any is; of those one of middling gain."""
+    count, there = len(best.hypothesis.free), best.hypothesis.locate(best.values)
     others = [q for q in found.screened if q.hypothesis.family != best.hypothesis.family]
+    others = [q for q in others if not _meet(there, q.hypothesis.locate(q.values))] or others
     if not others:
         return None
     near = min(abs(len(q.hypothesis.free) - count) for q in others)
     alike = sorted((q for q in others if abs(len(q.hypothesis.free) - count) == near), key=lambda q: q.gain)
     return alike[len(alike) // 2]
+
+
+def _meet(one: Where, other: Where) -> bool:
+    """Whether two stretches have a place in common: what is done to a rail there does something to its pads."""
+    if one.x_m is None or other.x_m is None:
+        return False
+    return one.x_m[0] <= other.x_m[1] and other.x_m[0] <= one.x_m[1]

@@ -100,7 +100,7 @@ def rivals(
     random = np.random.default_rng(int.from_bytes(hashlib.sha256(text).digest()[:8], "big"))
     drawn = screened[int(random.integers(len(screened)))]
     quicks = (None, best, by_bic if missing else None, drawn if random.random() < CALLED else None)
-    learnt = Classifier(ring, screened, seed=seed).answer(fit.deviations)
+    learnt = Classifier(ring, screened, seed=seed, threads=threads).answer(fit.deviations)
     answers = [*(_answer(quick) for quick in quicks), _of_process(discrepancy(fit)), _answer(learnt)]
     return dict(zip(RIVALS, answers, strict=True))
 

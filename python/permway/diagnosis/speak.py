@@ -9,9 +9,8 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.diagnosis import decide
-from permway.diagnosis.bases import BENT
 from permway.diagnosis.catalogue import irregularity_level
-from permway.diagnosis.choose import BEYOND, lines
+from permway.diagnosis.choose import lines
 from permway.diagnosis.decide import Conditions
 from permway.diagnosis.detectable import detectable
 from permway.diagnosis.fit import WIDTH, Fit
@@ -203,15 +202,11 @@ def _status(effects: Sequence[Effect], proof: Proof, gap: float) -> Status:
 
 
 def _credit(amended: Fit) -> float:
-    """Share of what an amended model explains that its name may be credited with, 0 to 1.
+    """Share of what an amended model explains that its names may be credited with, 0 to 1.
 
-    One that does not fit, and only with parameters that nobody would believe, one of them or all together, has the
-    wrong name.
+    What does not fit lacks physics, and what it has may stand in for that.
     """
-    owner = amended.evidence.campaign.parameters.known
-    z = np.array([z for f, z in zip(amended.free, amended.z, strict=True) if f.name in owner])
-    far = z.size > 0 and (float(np.abs(z).max()) > BEYOND or float(np.mean(z**2)) > BENT)
-    return min(1.0, UNFIT / amended.heat) if far else 1.0
+    return min(1.0, LEFT / amended.heat)
 
 
 def _nothing(base: Fit, first: Round, found: Sequence[Found]) -> tuple[Status, tuple[Effect, ...]]:

@@ -10,7 +10,7 @@ from permway.arrays import Reals
 from permway.diagnosis import decide
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.plausible import beyond_belief
-from permway.diagnosis.search import Finalist, Round
+from permway.diagnosis.search import Finalist, Round, standing
 from permway.diagnosis.verdict import NOVEL
 from permway.diagnosis.verdict_parts import ClassMember, Effect, Estimate, Mechanics, Place
 
@@ -56,7 +56,7 @@ def effect_of(
         ends = sorted(f.value(float(np.clip(end, *f.limits))) for end in ends_z[name])
         estimates[f.name] = Estimate(value=values[f.name], unit=f.unit, low=ends[0], high=ends[1])
     where = hypothesis.locate(values)
-    within = None
+    words, within = hypothesis.law(values), None
     if where.x_m is not None:
         ends = list(where.x_m)
         for f, estimate in zip(hypothesis.free, estimates.values(), strict=True):
@@ -69,6 +69,10 @@ def effect_of(
                 other.hypothesis.form == hypothesis.form and one.quick.gain - other.gain < decide.CLASS_DEVIANCE
             )
             ends.extend((other.hypothesis.locate(other.values).x_m or ()) if alike else ())
+        for rival in _elsewhere(one, found):
+            there = rival.hypothesis.locate(rival.values)
+            ends.extend(there.x_m or ())
+            words += f"; or, as likely by these records, {there.label}: {rival.hypothesis.law(rival.values)}"
         within = (min(ends), max(ends))
     named = members[0].name != NOVEL and members[0].probability >= decide.NAMED
     base_square = base.clean**2
@@ -79,9 +83,21 @@ def effect_of(
         bands=bands_of(base.evidence.rows.frequency_Hz, base_square - amended_square),
         name=members[0].name if named else None,
         class_=tuple(members),
-        law=Mechanics(words=hypothesis.law(values)),
+        law=Mechanics(words=words),
         parameters=estimates,
     )
+
+
+def _elsewhere(one: Finalist, found: Round) -> list[Finalist]:
+    """The same form of an effect at other places, fitted in full, that the records hardly tell from this one."""
+    place = one.hypothesis.locate(one.values)
+    alike = [f for f in found.finalists if f.hypothesis.form == one.hypothesis.form]
+    return [
+        f
+        for f in alike
+        if f.hypothesis.locate(f.values) != place
+        and abs(standing(one, found.finalists) - standing(f, found.finalists)) < 0.5 * decide.CLASS_DEVIANCE
+    ]
 
 
 def bands_of(frequency_Hz: Reals, shown: Reals) -> tuple[tuple[float, float], ...]:

@@ -23,6 +23,7 @@ from permway.laws.prony import Prony
 from permway.laws.shift import WLF, AnyShift, Arrhenius, Free, Shift
 from permway.laws.tabulated import Tabulated
 from permway.laws.tfdv import TFDV
+from permway.laws.waves import Waves
 from permway.records import input_error
 
 AnyLaw = Annotated[
@@ -36,6 +37,7 @@ AnyLaw = Annotated[
     | HavriliakNegami
     | FVMP
     | Prony
+    | Waves
     | Tabulated
     | Measured
     | Given
@@ -76,6 +78,7 @@ __all__ = [
     "Springpot",
     "StorageLossPair",
     "Tabulated",
+    "Waves",
     "Zener",
     "law_from_dict",
     "law_to_dict",

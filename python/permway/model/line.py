@@ -18,6 +18,7 @@ from permway.model.faults import fault
 from permway.model.joint_table import JointTable as JointTable
 from permway.model.joint_table import joint_table
 from permway.model.joints import GROUND, Ends, Joints
+from permway.model.rods import check_rods, passes_through
 from permway.model.segments import Segment as Segment
 from permway.model.segments import check_ends, check_rows, find, segments_of
 from permway.records import FrozenModel
@@ -62,6 +63,7 @@ class Line(FrozenModel):
             if isinstance(layer.at, Ends):
                 check_ends(self.bodies, layer.at, "joints", index, "at")
         check_rows(self.bodies)
+        check_rods(self.joints, self.laws)
         return self
 
     def _repr_html_(self) -> str:
@@ -124,7 +126,7 @@ class Line(FrozenModel):
                 raise InputError(
                     error.what, where=f"laws.{name}: {error.where}", value=error.value, remedy=error.remedy
                 ) from error
-            _check_stiffness(name, values, frequency)
+            _check_stiffness(name, values, frequency, active=passes_through(law))
             columns.append(values)
         return np.stack(columns, axis=-1) if columns else np.zeros((frequency.size, 0), dtype=np.complex128)
 
@@ -147,7 +149,7 @@ class Line(FrozenModel):
         return np.array([body.mass_kg for body in bodies if isinstance(body, Mass)], dtype=np.float64)
 
 
-def _check_stiffness(name: str, values: Complexes, frequency: Reals) -> None:
+def _check_stiffness(name: str, values: Complexes, frequency: Reals, *, active: bool) -> None:
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
         raise InputError(
@@ -158,7 +160,7 @@ def _check_stiffness(name: str, values: Complexes, frequency: Reals) -> None:
         )
     # A law of no loss may come out a rounding error below.
     bad = np.flatnonzero(values.imag < -1e-9 * np.abs(values))
-    if bad.size:
+    if bad.size and not active:
         raise InputError(
             f"the law creates energy at {frequency[bad[0]]:g} Hz",
             where=f"laws.{name}",
