@@ -21,8 +21,8 @@ class Waves(Law):
 
     times the movements of the ends. That is a joint between the bodies of the `through` part, k (1 + i eta) b /
     sin b, and on each of them a joint to the ground of the `end` part, -k (1 + i eta) b tan(b / 2): the rod's
-    mass, k delay^2, half of it at either end as long as waves are long (Cremer, Heckl and Petersson, Structure-Borne
-    Sound, 3rd ed., 2005, section 3.1).
+    mass, k delay^2, half of it at either end as long as waves are long (Cremer, Heckl and Petersson,
+    Structure-Borne Sound, 3rd ed., 2005, section 3.1).
 
     Parameters
     ----------
