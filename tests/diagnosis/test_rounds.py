@@ -6,8 +6,10 @@ from collections.abc import Iterable
 from types import SimpleNamespace
 from typing import Any, cast
 
+import numpy as np
 import pytest
 from permway.diagnosis import rounds
+from permway.diagnosis.hypothesis import Where
 from permway.diagnosis.search import Round
 
 FITS = SimpleNamespace(heat=1.0, prior=0.0, free=())
@@ -93,3 +95,26 @@ def test_what_was_dropped_may_be_met_again(monkeypatch: pytest.MonkeyPatch) -> N
     names, offered, _ = run(monkeypatch, {ALL: [bent, large, other, right, fourth]}, needless=("bent", "other"))
     assert names == ["large", "other", "right"]
     assert offered == [3, 3, 3, 3]
+
+
+@pytest.mark.parametrize(
+    ("entry", "places", "mends"),
+    [
+        ("mortar_void", ("mortar", "rail"), True),
+        ("speed_error", ("speed", "rail"), False),
+        ("speed_error", ("speed", "speed"), True),
+    ],
+)
+def test_nothing_mends_what_is_a_number_of_the_recording(
+    monkeypatch: pytest.MonkeyPatch, entry: str, places: tuple[str, str], mends: bool
+) -> None:
+    """A small effect beside a large one, in the same records and octaves."""
+
+    def stand_in(entry: str, what: str) -> Any:
+        fit = SimpleNamespace(heat=1.0, prior=0.0, free=(), z=())
+        hypothesis = SimpleNamespace(entry=entry, locate=lambda _: Where(what))
+        return SimpleNamespace(hypothesis=hypothesis, fit=fit, values={})
+
+    monkeypatch.setattr(rounds, "gain_by_cell", lambda before, _: np.array([[1.0 if before is FITS else 0.001]]))
+    first, last = (stand_in(*pair) for pair in zip((entry, "pad_frequency"), places, strict=True))
+    assert rounds._mends(cast(Any, FITS), [first], last) is mends

@@ -24,7 +24,7 @@ from permway.diagnosis.quick import Quick, stacked
 from permway.diagnosis.recalibrate import UNFIT, recalibrate
 from permway.diagnosis.refit import settled, weighed_anew
 from permway.diagnosis.search import Finalist, Round, search
-from permway.diagnosis.slips import MOST, gain_by_cell, mended
+from permway.diagnosis.slips import EXACT, MOST, gain_by_cell, mended
 from permway.diagnosis.spot import Found
 from permway.errors import InputError, SolveError
 
@@ -105,6 +105,9 @@ def _mends(base: Fit, accepted: Sequence[Finalist], last: Finalist) -> bool:
     Beside a large first effect that leaves a misfit, one that explains most of that is no such thing; nor is one
     that brings a parameter back from where nobody would believe it.
     """
+    beside = _at_one_place(accepted[0], last)
+    if accepted[0].hypothesis.entry in EXACT and not beside:
+        return False
     before, after = accepted[-1].fit.heat - 1.0, last.fit.heat - 1.0
     if before > UNFIT - 1.0 and after < MOST_OF_IT * before:
         return False
@@ -114,7 +117,7 @@ def _mends(base: Fit, accepted: Sequence[Finalist], last: Finalist) -> bool:
         return False
     further = gain_by_cell(accepted[-1].fit, last.fit)
     first = gain_by_cell(base, accepted[0].fit)
-    return mended(first, further, one_place=_at_one_place(accepted[0], last)) > MOST
+    return mended(first, further, one_place=beside) > MOST
 
 
 def _at_one_place(first: Finalist, further: Finalist) -> bool:
@@ -174,7 +177,8 @@ def _without_needless(base: Fit, accepted: list[Finalist], least: float, clock: 
         asked = len(one.hypothesis.free) * float(np.log(lines(base)))
         small = without.objective - whole.objective < least + asked
         beside = _at_one_place(accepted[index], one)
-        if small or mended(largest, gain_by_cell(without, whole), one_place=beside) > MOST:
+        exact = accepted[index].hypothesis.entry in EXACT and not beside
+        if small or (not exact and mended(largest, gain_by_cell(without, whole), one_place=beside) > MOST):
             kept = [*rest[:-1], _with_fit(rest[-1], without)]
     return kept
 

@@ -14,6 +14,9 @@ SLIP = 0.03
 MOST = 0.8
 """Share of another's gain from which it is no more than that."""
 
+EXACT = frozenset({"sensor_delay", "sensor_gain", "sensor_polarity", "speed_error"})
+"""Effects that are numbers of the recording, of which nothing is idealised."""
+
 LOWEST_HZ = 0.5
 
 

@@ -72,7 +72,9 @@ def effect_of(
         for rival in _elsewhere(one, found):
             there = rival.hypothesis.locate(rival.values)
             ends.extend(there.x_m or ())
-            words += f"; or, hardly told apart by these records, {there.label}: {rival.hypothesis.law(rival.values)}"
+            words += (
+                f"; or, hardly told apart by these records, {there.label}: {rival.hypothesis.law(rival.values)}"
+            )
         within = (min(ends), max(ends))
     named = members[0].name != NOVEL and members[0].probability >= decide.NAMED
     base_square = base.clean**2
