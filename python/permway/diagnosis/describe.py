@@ -211,7 +211,8 @@ class Description:
         first = _simplest(result.finalists, result.ring)[0]
         ended = dict(zip((f.name for f in first.fit.free), first.fit.z.tolist(), strict=True))
         z = tuple(ended[name] for name in first.own)
-        near = tuple(grammar.alike(situation, like, first.hypothesis, z))
+        line = start.campaign.model.line
+        near = (*grammar.alike(situation, like, first.hypothesis, z), *grammar.further(line, first.hypothesis, z))
         others = self._held(start, near, least).finalists if near else ()
         return replace(result, finalists=_simplest([*result.finalists, *others], result.ring))
 

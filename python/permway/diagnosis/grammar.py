@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from permway.diagnosis.verdict import NOVEL
 from permway.laws import Parallel
 from permway.model.changes import Change
 from permway.model.joints import GROUND, Joints
+from permway.model.line import Line
 from permway.recordings.campaign import Campaign
 
 RESONANCES_HZ = np.geomspace(4.0, 150.0, 12)
@@ -45,6 +47,9 @@ STRETCHES = (3.0, 9.0)
 
 LONGEST, MOST = 24.0, 0.8
 """Of a stretch, in spacings, if its body is shorter; and the share of it that a long one is looked for with."""
+
+FURTHER = 4
+"""Stations by which either end of a stretch is moved."""
 
 Values = Mapping[str, float]
 
@@ -119,6 +124,33 @@ def alike(
         apart = other.family != one.family and other.family.partition(" ")[2] == place
         if apart and [f.name for f in other.free] == names:
             yield replace(other, starts=(z,))
+
+
+def further(line: Line, one: Hypothesis, z: tuple[float, ...]) -> Iterator[Hypothesis]:
+    """The same over other stretches, its constants as they ended: each end some stations further out, or in.
+
+    From a stretch to one that has a joint more there is no way that is better all along.
+
+    Parameters
+    ----------
+    line : Line
+    one : Hypothesis
+        Nothing comes of one that is not over a stretch.
+    z : tuple of float
+        Coordinates of its constants where it ended.
+    """
+    names = [f.name for f in one.free]
+    if names[-2:] != ["centre_m", "length_m"]:
+        return
+    what = one.locate({f.name: f.value(v) for f, v in zip(one.free, z, strict=True)}).what
+    step = spacing_of(line, what) if what in line.laws else SPACING_M
+    # A station of place or length, in coordinates.
+    along, longer = (step / (f.value(1.0) - f.value(0.0)) for f in one.free[-2:])
+    starts = [
+        (*z[:-2], z[-2] + 0.5 * (left + right) * along, z[-1] + (right - left) * longer)
+        for left, right in product(range(-FURTHER, FURTHER + 1), repeat=2)
+    ]
+    yield replace(one, starts=tuple(start for start in starts if one.free[-1].value(start[-1]) >= 0.0))
 
 
 def _typical(found: Found) -> tuple[float, float]:
