@@ -119,7 +119,7 @@ class Layout:
         """Wheelsets 1 to 4, the leading one first."""
         bogie, wheel = 0.5 * vehicle["lc"], 0.5 * vehicle["lt"]
         away = np.array([bogie + wheel, bogie - wheel, wheel - bogie, -bogie - wheel])
-        places = GRID_M * np.round((0.5 * self.length_m + away) / GRID_M)
+        places = GRID_M * np.round(((0.5 * self.length_m + away) / GRID_M).round(9))
         return [round(float(x), 6) for x in places]
 
 

@@ -98,7 +98,9 @@ def wheels_m(sheet: Sheet) -> list[float]:
     away = (
         np.array([1.0, 1.0, -1.0, -1.0]) * 0.5 * vehicle.lc + np.array([1.0, -1.0, 1.0, -1.0]) * 0.5 * vehicle.lt
     )
-    return [round(float(x), 6) for x in WHEEL_GRID_M * np.round((centre + away) / WHEEL_GRID_M)]
+    # Three spans of 31.4 m are 94.2 m but for a last digit, which must not tell what is halfway.
+    multiples = np.round(((centre + away) / WHEEL_GRID_M).round(9))
+    return [round(float(x), 6) for x in WHEEL_GRID_M * multiples]
 
 
 def _vehicle(sheet: Sheet) -> dict[str, Any]:
