@@ -240,7 +240,7 @@ def suspects(situation: Situation, names: Iterable[str], most: int) -> list[str]
     return [name for name in ranked if square[name] >= 0.0][:most]
 
 
-def likely(situation: Situation, most: int = 4) -> list[str]:
+def likely(situation: Situation, most: int = 12) -> list[str]:
     """Sensors that may be at fault: the worst on the line, and the worst on the vehicle."""
     sensors = situation.campaign.said.sensors
     line = suspects(situation, [s.name for s in sensors if s.body is not None], most)
