@@ -17,6 +17,7 @@ from permway.arrays import Reals
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
+from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.whitener import Whitener
@@ -96,6 +97,19 @@ def at_fault(evidence: Evidence, channels: Sequence[str]) -> Iterator[Part]:
         yield Part("band", f"upper half of {names}", mine & (rows.frequency_Hz > middle))
     if noise.any():
         yield Part("channel", f"noise of {names}", noise)
+
+
+def between_lines(evidence: Evidence) -> Iterator[Part]:
+    """Of runs: every second sixth of an octave.
+
+    A series of lines is foretold there by its other lines; a chain's smooth error as well with it as without.
+    """
+    rows = evidence.rows
+    runs = [i for i, block in enumerate(evidence.blocks) if isinstance(block, SpectraBlock)]
+    sixth = np.floor(6.0 * np.log2(rows.frequency_Hz)).astype(np.int64)
+    mine = np.isin(evidence.block_of, runs) & (sixth % 2 == 1)
+    if mine.any():
+        yield Part("band", "every second sixth of an octave of the runs", mine)
 
 
 def _usual(evidence: Evidence) -> Iterator[Part]:

@@ -9,7 +9,7 @@ from permway.diagnosis.choose import lines
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.e_value import log_e_value
 from permway.diagnosis.fit import Fit, gained
-from permway.diagnosis.heldout import Rest, gains, parts
+from permway.diagnosis.heldout import Rest, between_lines, gains, parts
 from permway.diagnosis.hypothesis import Where
 from permway.diagnosis.idealised import idealised
 from permway.diagnosis.quick import Quick
@@ -25,7 +25,8 @@ def prove(
 ) -> Proof:
     """Records left out, e-value, and a placebo of what was screened in another round, or in the same."""
     faults = [part for one in accepted for part in one.faults]
-    chosen = [*parts(base.evidence), *faults]
+    profile = between_lines(base.evidence) if accepted[0].hypothesis.domain == "irregularity" else ()
+    chosen = [*parts(base.evidence), *faults, *profile]
     before, after = Rest(base), Rest(amended)
     held_out = gains(before, after, chosen)
     tried = [len(found.screened) for found in rounds[: len(accepted)]]
