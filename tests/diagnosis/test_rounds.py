@@ -112,9 +112,9 @@ def test_nothing_mends_what_is_a_number_of_the_recording(
 
     def stand_in(entry: str, what: str) -> Any:
         fit = SimpleNamespace(heat=1.0, prior=0.0, free=(), z=())
-        hypothesis = SimpleNamespace(entry=entry, locate=lambda _: Where(what))
+        hypothesis = SimpleNamespace(entry=entry, domain="path", locate=lambda _: Where(what))
         return SimpleNamespace(hypothesis=hypothesis, fit=fit, values={})
 
-    monkeypatch.setattr(rounds, "gain_by_cell", lambda before, _: np.array([[1.0 if before is FITS else 0.001]]))
+    monkeypatch.setattr(rounds, "gain_by_cell", lambda before, *_: np.array([[1.0 if before is FITS else 0.001]]))
     first, last = (stand_in(*pair) for pair in zip((entry, "pad_frequency"), places, strict=True))
     assert rounds._mends(cast(Any, FITS), [first], last) is mends

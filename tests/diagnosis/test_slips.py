@@ -48,3 +48,8 @@ def test_what_records_gain_adds_up_to_what_the_quadratic_form_gains(tmp_path: Pa
     assert found.shape[1] > 4
     assert found.sum() == pytest.approx(off.chi2 - fit.chi2, rel=1e-6)
     assert found.sum() > 0.0
+    # What one sensor tells, and what the others do.
+    names = sorted(set(fit.evidence.rows.sensor.tolist()))
+    parts = [gain_by_cell(off, fit, [name]) for name in names]
+    assert len(parts) > 1
+    np.testing.assert_allclose(sum(parts), found, rtol=1e-9, atol=1e-9 * np.abs(found).max())

@@ -31,6 +31,9 @@ ONE_PLACE_M = 0.5
 FOLLOWED = 16
 """Elements that are followed after screening: one step tells little of a law's frequency."""
 
+PASSES = 3
+"""Times that a stretch is moved at its ends."""
+
 ONE_FOR_TWO = 0.1
 """Share of the gain of one effect found twice that one thing in their place may lack: two of a kind are rare."""
 
@@ -209,12 +212,19 @@ class Description:
         if not result.finalists:
             return result
         first = _simplest(result.finalists, result.ring)[0]
-        ended = dict(zip((f.name for f in first.fit.free), first.fit.z.tolist(), strict=True))
-        z = tuple(ended[name] for name in first.own)
-        line = start.campaign.model.line
-        near = (*grammar.alike(situation, like, first.hypothesis, z), *grammar.further(line, first.hypothesis, z))
-        others = self._held(start, near, least).finalists if near else ()
-        return replace(result, finalists=_simplest([*result.finalists, *others], result.ring))
+        near = grammar.alike(situation, like, first.hypothesis, _ended(first))
+        fitted = [*result.finalists, *self._finalists(start, near, least)]
+        for _ in range(PASSES):
+            first = _simplest(fitted, result.ring)[0]
+            reached = grammar.further(start.campaign.model.line, first.hypothesis, _ended(first))
+            fitted += self._finalists(start, reached, least)
+            if _simplest(fitted, result.ring)[0] is first:
+                break
+        return replace(result, finalists=_simplest(fitted, result.ring))
+
+    def _finalists(self, start: Fit, hypotheses: Iterable[Hypothesis], least: float) -> tuple[Finalist, ...]:
+        offered = tuple(hypotheses)
+        return self._held(start, offered, least).finalists if offered else ()
 
     def _held(self, start: Fit, hypotheses: Iterable[Hypothesis], least: float) -> Round:
         """Held against the records, beside nothing else."""
@@ -227,6 +237,12 @@ class Description:
             most=FOLLOWED,
             progress=self.clock,
         )
+
+
+def _ended(one: Finalist) -> tuple[float, ...]:
+    """Coordinates of an effect's own parameters where its fit ended."""
+    ended = dict(zip((f.name for f in one.fit.free), one.fit.z.tolist(), strict=True))
+    return tuple(ended[name] for name in one.own)
 
 
 def _simplest(rivals: Sequence[Finalist], ring: Ring) -> tuple[Finalist, ...]:

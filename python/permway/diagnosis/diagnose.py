@@ -20,7 +20,7 @@ from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.labels import mislabelled
 from permway.diagnosis.locate import scanned
-from permway.diagnosis.prove import prove
+from permway.diagnosis.prove import proven
 from permway.diagnosis.recovered import law_stiffness, same_place
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.rounds import effects
@@ -89,17 +89,17 @@ def diagnose(
     catalogued = rounds
     if described is not None:
         rounds, accepted = [described], [described.finalists[0]]
-    left = description.left(accepted[-1].fit) if accepted else ()
-    amended = accepted[-1].fit if accepted else None
+    amended: Fit | None = None
     proof: Proof | None = None
     advice: tuple[NextMeasurement, ...] = ()
-    if amended is not None:
+    if accepted:
         clock("hold out")
-        proof = prove(base, amended, rounds, accepted, clock, others=catalogued[0])
+        accepted, proof = proven(base, rounds, accepted, clock, others=catalogued[0])
         if draws:
             proof = replace(proof, spans=_spans(proof.weighed, accepted, draws, seed, clock))
         amended = proof.weighed
         advice = _advice(rounds, clock)
+    left = description.left(accepted[-1].fit) if accepted else ()
     clock("compare")
     law, remaining = _law(base, accepted, found, left)
     inconstant = tuple(constancy(Ring(base))[:SHOWN_INCONSTANT])

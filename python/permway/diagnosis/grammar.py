@@ -48,6 +48,9 @@ STRETCHES = (3.0, 9.0)
 LONGEST, MOST = 24.0, 0.8
 """Of a stretch, in spacings, if its body is shorter; and the share of it that a long one is looked for with."""
 
+WEAKER = (-0.5, -1.5, -2.5)
+"""Sizes, in coordinates, that what is beside every joint of a layer is looked for with, too."""
+
 FURTHER = 4
 """Stations by which either end of a stretch is moved."""
 
@@ -201,15 +204,18 @@ def _at_joint(situation: Situation, element: Element, found: Found) -> Hypothesi
 
 
 def _in_layer(element: Element, found: Found) -> Hypothesis:
+    """Beside every joint of a layer; a free stiffness at one of them says little of what is so at all."""
     name = found.spot.name
 
     def amend(campaign: Campaign, values: Values) -> Campaign:
         law = campaign.model.line.laws[name]
         return with_law(campaign, name, Parallel(first=law, second=element.law(values)))
 
-    return _made(
+    made = _made(
         element, "beside every joint of the layer", element.free(*_typical(found)), Where(found.spot.name), amend
     )
+    rest = (0.0,) * (len(made.free) - 1)
+    return replace(made, starts=(*made.starts, *((size, *rest) for size in WEAKER)))
 
 
 def _near(like: Values) -> tuple[Free, ...]:

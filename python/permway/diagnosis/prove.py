@@ -63,6 +63,33 @@ def prove(
     )
 
 
+def proven(
+    base: Fit, rounds: list[Round], accepted: list[Finalist], clock: Clock, *, others: Round
+) -> tuple[list[Finalist], Proof]:
+    """The effects with their proof; without the last ones, where all together fail and those before pass.
+
+    A further effect that stands for nothing may spoil what a right one foretells.
+    """
+    whole = prove(base, accepted[-1].fit, rounds, accepted, clock, others=others)
+    if whole.conditions.hold:
+        return accepted, whole
+    for count in range(len(accepted) - 1, 0, -1):
+        fewer = accepted[:count]
+        if not _alone(fewer):
+            continue
+        proof = prove(base, fewer[-1].fit, rounds, fewer, clock, others=others)
+        if proof.conditions.hold:
+            return fewer, proof
+    return accepted, whole
+
+
+def _alone(accepted: list[Finalist]) -> bool:
+    """Whether the last of these was fitted with no other effect than these."""
+    last, known = accepted[-1].fit, accepted[-1].fit.evidence.campaign.parameters.known
+    own = {name for one in accepted for name in one.own}
+    return all(f.name in own or f.name in known or not f.name[0].isdigit() for f in last.free)
+
+
 def _placebo(found: Round, best: Finalist) -> Quick | None:
     """As many parameters, nearly, of another family, at another place if any is; of those one of middling gain."""
     count, there = len(best.hypothesis.free), best.hypothesis.locate(best.values)

@@ -115,8 +115,10 @@ def _mends(base: Fit, accepted: Sequence[Finalist], last: Finalist) -> bool:
     own = zip(accepted[-1].fit.free, accepted[-1].fit.z, strict=True)
     if any(abs(z) > BEYOND and known[f.name] < BELIEVED for f, z in own if f.name in known):
         return False
-    further = gain_by_cell(accepted[-1].fit, last.fit)
-    first = gain_by_cell(base, accepted[0].fit)
+    # What a sensor's fault does is in its own rows, and a slip of the first in the rows of all.
+    channels = last.hypothesis.locate(last.values).channels if last.hypothesis.domain == "measurement" else ()
+    further = gain_by_cell(accepted[-1].fit, last.fit, channels)
+    first = gain_by_cell(base, accepted[0].fit, channels)
     return mended(first, further, one_place=beside) > MOST
 
 

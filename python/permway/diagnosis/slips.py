@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from permway.arrays import Reals
@@ -20,20 +22,26 @@ EXACT = frozenset({"sensor_delay", "sensor_gain", "sensor_polarity", "speed_erro
 LOWEST_HZ = 0.5
 
 
-def gain_by_cell(before: Fit, after: Fit) -> Reals:
+def gain_by_cell(before: Fit, after: Fit, channels: Collection[str] = ()) -> Reals:
     """By how much the quadratic form is lower after, by record and octave, both with the sizes of errors of after.
 
     Parameters
     ----------
     before, after : Fit
         Of the same records.
+    channels : collection of str
+        Only what these read; by default all.
 
     Returns
     -------
     ndarray, shape (blocks, octaves)
     """
     evidence = after.evidence
-    return _by_cell(evidence, _deviations(evidence, before)) - _by_cell(evidence, _deviations(evidence, after))
+    kept = np.ones(evidence.block_of.size)
+    if channels:
+        kept[~np.isin(evidence.rows.sensor, list(channels))] = 0.0
+    less, more = (_by_cell(evidence, _deviations(evidence, fit), kept) for fit in (after, before))
+    return more - less
 
 
 def mended(first: Reals, further: Reals, *, one_place: bool = False) -> float:
@@ -62,12 +70,12 @@ def _deviations(evidence: Evidence, fit: Fit) -> Reals:
     return evidence.deviations(evidence.predicted(fit.campaign).datasets)
 
 
-def _by_cell(evidence: Evidence, deviations: Reals) -> Reals:
+def _by_cell(evidence: Evidence, deviations: Reals, kept: Reals) -> Reals:
     """The quadratic form's parts: deviations times what smooth errors leave of them."""
     whitener = evidence.whitener
     left = deviations - whitener.smooth(whitener.explained(deviations), deviations.size)
     octave = np.round(np.log2(np.maximum(evidence.rows.frequency_Hz, LOWEST_HZ) / LOWEST_HZ)).astype(int)
     octaves = int(octave.max(initial=0)) + 1
     cells = evidence.block_of * octaves + octave
-    found = np.bincount(cells, weights=deviations * left, minlength=len(evidence.blocks) * octaves)
+    found = np.bincount(cells, weights=kept * deviations * left, minlength=len(evidence.blocks) * octaves)
     return np.asarray(found, dtype=np.float64).reshape(-1, octaves)

@@ -19,7 +19,7 @@ from permway.diagnosis.idealised import idealised
 from permway.diagnosis.labels import Mislabelled
 from permway.diagnosis.level import beyond
 from permway.diagnosis.recalibrate import UNFIT
-from permway.diagnosis.search import Finalist, Round
+from permway.diagnosis.search import FITS, Finalist, Round
 from permway.diagnosis.speak_effect import bands_of, effect_of, of_another_form
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL, Status, Verdict
@@ -206,7 +206,7 @@ def _credit(amended: Fit) -> float:
 
     What does not fit lacks physics, and what it has may stand in for that.
     """
-    return min(1.0, LEFT / amended.heat)
+    return min(1.0, FITS / amended.heat)
 
 
 def _nothing(base: Fit, first: Round, found: Sequence[Found]) -> tuple[Status, tuple[Effect, ...]]:
