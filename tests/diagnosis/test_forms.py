@@ -50,21 +50,27 @@ def test_three_effects_at_most_and_none_far_behind_or_below_the_threshold() -> N
     assert said(quick("a", 15.0, "size")) == []
 
 
-def test_another_place_is_fitted_where_the_first_asks_for_what_nobody_would_believe() -> None:
+def fitted(z: float, name: str = "bearing.k") -> Any:
+    parameters = SimpleNamespace(known={"bearing.k": None})
+    evidence = SimpleNamespace(campaign=SimpleNamespace(parameters=parameters))
+    return SimpleNamespace(free=(SimpleNamespace(name=name),), z=np.array([z]), evidence=evidence)
+
+
+def test_another_place_is_fitted_where_the_place_is_no_constant() -> None:
     first, other = quick("bearing", 900.0, "factor"), quick("bearing", 700.0, "factor", at_m=32.0)
     third = quick("bearing", 600.0, "factor", at_m=64.0)
     followed = [first, quick("bearing", 880.0, "factor"), quick("crack", 800.0, "factor", at_m=9.0), other, third]
-
-    def fit(z: float, name: str = "bearing.k") -> Any:
-        parameters = SimpleNamespace(known={"bearing.k": None})
-        evidence = SimpleNamespace(campaign=SimpleNamespace(parameters=parameters))
-        return SimpleNamespace(free=(SimpleNamespace(name=name),), z=np.array([z]), evidence=evidence)
-
-    assert elsewhere([(first, fit(-BEYOND - 1.0))], followed) == [other]
-    assert elsewhere([(first, fit(BEYOND - 1.0))], followed) == []
-    # The effect's own size may be what it likes.
-    assert elsewhere([(first, fit(9.0, "1.factor"))], followed) == []
+    assert elsewhere([(first, fitted(0.0))], followed) == [other]
+    assert elsewhere([(first, fitted(0.0)), (other, fitted(0.0))], followed) == [third]
     assert elsewhere([], followed) == []
+
+
+def test_where_it_is_one_another_is_fitted_if_the_first_asks_for_what_nobody_would_believe() -> None:
+    first, other = quick("hung", 900.0, "x_m"), quick("hung", 700.0, "x_m", at_m=32.0)
+    assert elsewhere([(first, fitted(-BEYOND - 1.0))], [first, other]) == [other]
+    assert elsewhere([(first, fitted(BEYOND - 1.0))], [first, other]) == []
+    # The effect's own size may be what it likes.
+    assert elsewhere([(first, fitted(9.0, "1.mass_kg"))], [first, other]) == []
 
 
 def test_another_place_that_does_as_well_is_fitted_too() -> None:
@@ -77,3 +83,9 @@ def test_another_place_that_does_as_well_is_fitted_too() -> None:
     # Where the place is free the best one reaches the other.
     hung = quick("hung", 900.0, "mass_kg", "x_m"), quick("hung", 899.0, "mass_kg", "x_m", at_m=2.0)
     assert said(*hung) == [("hung", 900.0)]
+
+
+def test_elements_are_rivals_of_each_other_however_far_behind_after_a_quick_look() -> None:
+    """A relaxation that the quick look put at 742, beside a resonator's 1251, explained everything in full."""
+    resonator, maxwell = quick("novel", 1251.0, "mass_kg", "frequency_Hz"), quick("novel", 742.0, "stiffness")
+    assert said(resonator, maxwell, quick("novel", 300.0, "order")) == [("novel", 1251.0), ("novel", 742.0)]

@@ -9,6 +9,7 @@ import numpy as np
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.quick import Quick
+from permway.diagnosis.verdict import NOVEL
 
 FOLLOWED, PER_FORM = 10, 2
 """Hypotheses that are followed after screening, in all and of one form of an effect."""
@@ -73,7 +74,8 @@ def finalists_of(followed: Sequence[Quick], ring: Ring, threshold: float) -> lis
         form, entry = quick.hypothesis.form, quick.hypothesis.entry
         best = max(leading.values(), default=quick.gain)
         passes = quick.gain - penalty(quick, ring) > threshold and quick.gain > RIVAL * best
-        nearly = entry in leading and quick.gain > CLOSE * leading[entry]
+        # Elements are of no one effect: each is a rival of the others.
+        nearly = entry in leading and (quick.gain > CLOSE * leading[entry] or entry == NOVEL)
         if passes and form not in found and (nearly or (entry not in leading and len(leading) < FINALISTS)):
             found[form] = quick
             leading.setdefault(entry, quick.gain)
