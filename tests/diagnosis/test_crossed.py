@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
+from permway.diagnosis import describe
 from permway.diagnosis.catalogue._interval import stations_of, weakened
+from permway.diagnosis.clock import Clock
 from permway.diagnosis.crossed import with_rods
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.gather import gather
+from permway.diagnosis.hypothesis import Where
 from permway.recordings.campaign import Campaign
 from simulated import simulate
 
@@ -68,3 +73,24 @@ def lost(campaign: Campaign) -> Campaign:
 def test_a_loss_of_support_keeps_its_name(tmp_path: Path) -> None:
     verdict = diagnose(simulate(tmp_path / "c", 8, amend=lost).campaign, threads=1).verdict
     assert (verdict.status, [e.name for e in verdict.effects]) == ("named", ["fastener_loss"])
+
+
+@pytest.mark.parametrize(("what", "tried"), [("pad", True), ("deck", False)])
+def test_rods_take_the_place_of_joints_and_of_nothing_else(
+    monkeypatch: pytest.MonkeyPatch, what: str, tried: bool
+) -> None:
+    """A cracked girder has lost stiffness over a stretch, too."""
+    line = SimpleNamespace(laws={"pad": None})
+    base = SimpleNamespace(campaign=SimpleNamespace(model=SimpleNamespace(line=line)))
+    offered: list[Any] = []
+    monkeypatch.setattr(describe.crossed, "over_stretch", lambda _, losses: offered.extend(losses))
+    monkeypatch.setattr(describe.Description, "_held", lambda *_: None)
+    description = describe.Description(cast(Any, base), cast(Any, base), (), Clock(None))
+    one = SimpleNamespace(
+        values={"centre_m": 5.0, "length_m": 1.0, "factor": 0.1},
+        hypothesis=SimpleNamespace(locate=lambda _: Where(what, (4.5, 5.5))),
+        fit=SimpleNamespace(heat=2.0),
+    )
+    rounds = [SimpleNamespace(threshold=10.0)]
+    assert description._crossed(cast(Any, rounds), cast(Any, [one])) is None
+    assert [loss.law for loss in offered] == (["pad"] if tried else [])

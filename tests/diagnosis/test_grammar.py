@@ -167,11 +167,14 @@ def test_a_fault_of_the_measurement_that_leaves_a_misfit_may_have_been_something
     """Resonators of a name that was ruled out were taken for a sensor's delay, at a misfit of 511."""
 
     def fit(heat: float, objective: float) -> Any:
-        return SimpleNamespace(heat=heat, objective=objective)
+        campaign = SimpleNamespace(model=SimpleNamespace(line=SimpleNamespace(laws={})))
+        return SimpleNamespace(heat=heat, objective=objective, campaign=campaign)
 
     base, told = fit(600.0, 9e4), SimpleNamespace(surplus=8e3, gain=8e3, degrees=24)
     delay = SimpleNamespace(
-        fit=fit(misfit, 8e4), hypothesis=SimpleNamespace(domain="measurement", entry="sensor_delay", free=())
+        fit=fit(misfit, 8e4),
+        hypothesis=SimpleNamespace(domain="measurement", entry="sensor_delay", free=()),
+        values={"delay_s": 1e-3},
     )
     resonators = SimpleNamespace(
         fit=fit(1.0, 1e3), quick=SimpleNamespace(hypothesis=SimpleNamespace(free=()), gain=1.0)

@@ -105,7 +105,9 @@ class Description:
 
     def _crossed(self, rounds: Sequence[Round], accepted: Sequence[Finalist]) -> Round | None:
         """Rods in place of joints that are named as lost, if waves across them explain what the name leaves."""
-        losses = [loss for loss in map(_loss, accepted) if loss is not None]
+        laws = self.base.campaign.model.line.laws if accepted else ()
+        # A cracked girder has lost stiffness over a stretch, too, and no joints.
+        losses = [loss for loss in map(_loss, accepted) if loss is not None and loss.law in laws]
         if not losses or accepted[-1].fit.heat < WAVES:
             return None
         if losses != self._rods[0]:
@@ -274,9 +276,10 @@ def _twice(accepted: Sequence[Finalist]) -> Finalist | None:
 
 def _loss(one: Finalist) -> Loss | None:
     """The stretch of joints that a name says has lost stiffness; None if it says something else."""
-    values, where = one.values, one.hypothesis.locate(one.values)
-    if where.x_m is None or {"centre_m", "length_m", "factor"} != values.keys():
+    values = one.values
+    if {"centre_m", "length_m", "factor"} != values.keys():
         return None
+    where = one.hypothesis.locate(values)
     return Loss(where.what, values["centre_m"], values["length_m"], values["factor"])
 
 
