@@ -9,12 +9,14 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from permway.diagnosis import describe
+from permway.diagnosis.catalogue._change import with_law
 from permway.diagnosis.catalogue._interval import stations_of, weakened
 from permway.diagnosis.clock import Clock
-from permway.diagnosis.crossed import with_rods
+from permway.diagnosis.crossed import Loss, with_rods
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Where
+from permway.laws import Tabulated
 from permway.recordings.campaign import Campaign
 from simulated import simulate
 
@@ -94,3 +96,14 @@ def test_rods_take_the_place_of_joints_and_of_nothing_else(
     rounds = [SimpleNamespace(threshold=10.0)]
     assert description._crossed(cast(Any, rounds), cast(Any, [one])) is None
     assert [loss.law for loss in offered] == (["pad"] if tried else [])
+
+
+def test_a_law_that_is_no_stiffness_at_low_frequency_is_left_alone(tmp_path: Path) -> None:
+    """A table may begin at 5 Hz."""
+    campaign = simulate(tmp_path / "c", 8).campaign
+    known = cast(Any, SimpleNamespace(campaign=campaign))
+    assert len(list(describe.crossed.at_joint(known, "pad", 7.0))) == 2
+    table = Tabulated(frequency_Hz=(5.0, 300.0), storage=(3e7, 3e7), loss_factor=(0.1, 0.1))
+    later = cast(Any, SimpleNamespace(campaign=with_law(campaign, "pad", table)))
+    assert list(describe.crossed.at_joint(later, "pad", 7.0)) == []
+    assert list(describe.crossed.over_stretch(later, [Loss("pad", 7.0, 1.0, 0.1)])) == []

@@ -19,6 +19,7 @@ from permway.diagnosis.catalogue._roles import LOW_HZ, ROOM_C
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Hypothesis, Situation, Where, linear_free, log_free
 from permway.diagnosis.verdict import NOVEL
+from permway.errors import InputError
 from permway.laws import Waves
 from permway.model.changes import Change
 from permway.model.joints import GROUND, Joints
@@ -66,7 +67,7 @@ def over_stretch(situation: Situation, losses: Sequence[Loss]) -> Iterator[Hypot
     situation : Situation
     losses : sequence of Loss
     """
-    for loss in losses:
+    for loss in (one for one in losses if _known(situation.campaign, one.law)):
         step = spacing_of(situation.campaign.model.line, loss.law)
         lefts = (max(loss.left, 1e-4), 3.0 * max(loss.left, 1e-4))
         yield _stretch(situation.campaign, loss.law, loss.centre_m, lefts, (loss.length_m / step,))
@@ -79,10 +80,12 @@ def at_joint(situation: Situation, law: str, x_m: float) -> Iterator[Hypothesis]
     ----------
     situation : Situation
     law : str
+        Nothing comes of one whose stiffness at low frequency is not known, as of a table.
     x_m : float
     """
-    yield _stretch(situation.campaign, law, x_m, LEFT, BAYS)
-    yield _layer(situation.campaign, law)
+    if _known(situation.campaign, law):
+        yield _stretch(situation.campaign, law, x_m, LEFT, BAYS)
+        yield _layer(situation.campaign, law)
 
 
 def with_rods(
@@ -142,6 +145,14 @@ def _stiffness(campaign: Campaign, law: str) -> float:
     table = line.joint_table()
     scale = float(np.median(table.scale[table.law == list(line.laws).index(law)]))
     return scale * float(abs(line.laws[law].complex(LOW_HZ, ROOM_C)))
+
+
+def _known(campaign: Campaign, law: str) -> bool:
+    """Whether it has a stiffness at low frequency: a table may begin higher up."""
+    try:
+        return _stiffness(campaign, law) > 0.0
+    except InputError:
+        return False
 
 
 def _own(stiffness: float) -> tuple[Free, ...]:
