@@ -23,21 +23,25 @@ def challenge_make(
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder for campaigns and truths.")],
     seed: Annotated[int, typer.Option(min=0, help="Of the first campaign.")] = 1,
     cases: Annotated[int, typer.Option(min=1, help="How many campaigns.")] = 10,
-    tier: Annotated[str, typer.Option(help="null, single, twin, multiple, outside or nonlinear.")] = "single",
+    tier: Annotated[
+        str, typer.Option(help="null, single, twin, multiple, outside, nonlinear, graded.")
+    ] = "single",
     as_json: Json = False,
 ) -> None:
     """Campaigns with something concealed in each.
 
-    Made by finite elements that share no code with the solver. The truths lie in a folder of their own.
+    Made by finite elements that share no code with the solver. The truths lie in a folder of their own. Graded
+    effects are faded until the records hardly tell of them, which takes a minute each.
     """
     from permway.challenge.case import TIERS
     from permway.challenge.make import make
+    from permway.diagnosis.deviance import against_folder
 
     if tier not in TIERS:
         raise InputError("is no tier", where="--tier", value=tier, remedy=f"use one of {list(TIERS)}")
     with progress_bar("making", as_json) as progress:
         for index in range(cases):
-            make(seed + index, 1, tier, output)
+            make(seed + index, 1, tier, output, against=against_folder)
             progress(index + 1, cases)
     say({"folder": str(output), "campaigns": cases}, as_json)
 
@@ -89,10 +93,10 @@ def challenge_weigh(
     do not tell.
     """
     from permway.challenge.weigh import weigh
-    from permway.diagnosis.deviance import of_folders
+    from permway.diagnosis.deviance import against_folder
 
     with progress_bar("weighing", as_json) as progress:
-        found = weigh(folder, of_folders, workers=workers, progress=progress)
+        found = weigh(folder, against_folder, workers=workers, progress=progress)
     say({"deviance": found} if as_json else {k: round(v, 1) for k, v in found.items()}, as_json)
 
 
@@ -117,7 +121,7 @@ def challenge_suite(
 ) -> None:
     """All tiers made, diagnosed, weighed and scored.
 
-    175 campaigns, some minutes each. Stopped and called again, it goes on where it was; called with more cases, it
+    205 campaigns, some minutes each. Stopped and called again, it goes on where it was; called with more cases, it
     adds them. Writes score.json, from which docs/make_challenge.py makes the page of results.
     """
     import json
@@ -125,14 +129,14 @@ def challenge_suite(
     from permway import __version__
     from permway.challenge.suite import run_suite
     from permway.challenge.weigh import whole
-    from permway.diagnosis.deviance import of_folders
+    from permway.diagnosis.deviance import against_folder
     from permway.diagnosis.rivals import of_file
 
     with progress_bar("suite", as_json) as progress:
         result = run_suite(
             output,
             seed,
-            of_folders,
+            against_folder,
             cases=cases,
             ask=of_file if rivals else None,
             workers=workers,

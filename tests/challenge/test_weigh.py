@@ -12,7 +12,7 @@ from permway.challenge import write
 from permway.challenge.effects.fasteners import FastenersLost
 from permway.challenge.score import Scored
 from permway.challenge.weigh import twin_of, weigh, weights
-from permway.diagnosis.deviance import of_folders
+from permway.diagnosis.deviance import against_folder
 from permway.errors import InputError
 from short_deck import small_case, small_site
 
@@ -26,7 +26,7 @@ def test_nothing_weighs_nothing_and_a_lost_fastener_much(
     case = replace(twin, effects=(effect,)) if lost else twin
     write(case, tmp_path / "case")
     write(twin_of(case), tmp_path / "twin")
-    assert least <= of_folders(tmp_path / "case", tmp_path / "twin") <= most
+    assert least <= against_folder(tmp_path / "twin")(tmp_path / "case") <= most
 
 
 def test_what_is_weighed_is_kept_and_nulls_are_not(tmp_path: Path) -> None:
@@ -35,9 +35,9 @@ def test_what_is_weighed_is_kept_and_nulls_are_not(tmp_path: Path) -> None:
         (tmp_path / "truth" / f"{name}.json").write_text(json.dumps({"seed": 2, "tier": "x", "effects": effects}))
     (tmp_path / "weights").mkdir()
     (tmp_path / "weights" / "single-2.json").write_text('{"deviance": 73.5}')
-    assert weigh(tmp_path, of_folders) == weights(tmp_path) == {"single-2": 73.5}
+    assert weigh(tmp_path, against_folder) == weights(tmp_path) == {"single-2": 73.5}
     with pytest.raises(InputError, match="holds no truth"):
-        weigh(tmp_path / "weights", of_folders)
+        weigh(tmp_path / "weights", against_folder)
 
 
 @pytest.mark.parametrize(

@@ -4,13 +4,23 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, Literal, Self, get_args
 
 import numpy as np
 
-from permway.challenge.effects import CATALOGUE, NONLINEAR, OUTSIDE, STRENGTHS, TWINS, Effect, Site, Strength
+from permway.challenge.effects import (
+    CATALOGUE,
+    FADING,
+    NONLINEAR,
+    OUTSIDE,
+    STRENGTHS,
+    TWINS,
+    Effect,
+    Site,
+    Strength,
+)
 from permway.challenge.effects.taken_out import TAKEN_OUT, TakenOut
 from permway.challenge.files import write_csv, write_mat, write_npz, write_uff
 from permway.challenge.layout import (
@@ -28,7 +38,7 @@ from permway.challenge.plan import Chain, Plan, plan_of
 from permway.challenge.sheet import sheet
 from permway.errors import InputError
 
-Tier = Literal["null", "single", "twin", "multiple", "outside", "nonlinear"]
+Tier = Literal["null", "single", "twin", "multiple", "outside", "nonlinear", "graded"]
 TIERS: tuple[Tier, ...] = get_args(Tier)
 
 COLD_TOO = 0.15
@@ -65,6 +75,8 @@ class Case:
         UFF and CSV; MAT and NPZ otherwise.
     taken_out : TakenOut or None
         What the catalogue has to do without, and the words for it.
+    share : float
+        How far the effects were faded: 1 as drawn, towards 0 as if they were not.
     """
 
     seed: int
@@ -78,6 +90,11 @@ class Case:
     effects: tuple[Effect, ...]
     text: bool
     taken_out: TakenOut | None = None
+    share: float = 1.0
+
+    def faded(self, share: float) -> Self:
+        """The same with weaker effects, see :meth:`Effect.faded`."""
+        return replace(self, effects=tuple(effect.faded(share) for effect in self.effects), share=share)
 
     def plan(self) -> Plan:
         """Track, vehicle, profile and chain with the effects in them."""
@@ -105,6 +122,7 @@ class Case:
             "seed": self.seed,
             "tier": self.tier,
             "strength": self.strength,
+            "share": self.share,
             "parameters": {g: {n: self.true[g][n] for n in table} for g, table in TOLERANCE.items()},
             "chain": asdict(self.chain),
             "fx": [_short(part) for part in parts if part["domain"] != "vehicle"],
@@ -126,7 +144,7 @@ def draw(seed: int, tier: Tier) -> Case:
     tier : Tier
         "null": nothing concealed; "single": one effect of the catalogue; "twin": one that has a near twin;
         "multiple": two or three; "outside": one of no catalogue, or one whose family is taken out of it;
-        "nonlinear": one that depends on amplitude.
+        "nonlinear": one that depends on amplitude; "graded": one of the catalogue that is there to be faded.
 
     Raises
     ------
@@ -171,8 +189,14 @@ def _kinds(random: np.random.Generator, tier: Tier) -> list[type[Effect]]:
     match tier:
         case "null":
             return []
-        case "single" | "twin" | "outside" | "nonlinear":
-            pool = {"single": CATALOGUE, "twin": TWINS, "outside": OUTSIDE, "nonlinear": NONLINEAR}[tier]
+        case "single" | "twin" | "outside" | "nonlinear" | "graded":
+            pool = {
+                "single": CATALOGUE,
+                "twin": TWINS,
+                "outside": OUTSIDE,
+                "nonlinear": NONLINEAR,
+                "graded": FADING,
+            }[tier]
             return [pool[int(random.integers(len(pool)))]]
         case "multiple":
             order = random.permutation(len(CATALOGUE))

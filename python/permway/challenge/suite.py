@@ -12,7 +12,7 @@ from permway.challenge.make import make
 from permway.challenge.pool import processes
 from permway.challenge.rivals import Ask, answer
 from permway.challenge.run import FAILED, VERDICT, diagnosed, ruled_out, threads_of
-from permway.challenge.weigh import Deviance, weigh_one, whole
+from permway.challenge.weigh import Against, weigh_one, whole
 from permway.errors import InputError, SolveError
 
 CASES: dict[Tier, int] = {
@@ -22,6 +22,7 @@ CASES: dict[Tier, int] = {
     "multiple": 20,
     "outside": 20,
     "nonlinear": 15,
+    "graded": 30,
 }
 """Campaigns of the whole suite, by tier."""
 
@@ -63,7 +64,7 @@ def suite_of(seed: int) -> list[Numbered]:
 def run_suite(
     folder: Path,
     seed: int,
-    deviance: Deviance,
+    against: Against,
     *,
     cases: int | None = None,
     ask: Ask | None = None,
@@ -77,7 +78,7 @@ def run_suite(
     folder : Path
         Gets campaigns, truths, verdicts, weights and answers.
     seed : int
-    deviance : callable
+    against : callable
         See :func:`permway.challenge.weigh.weigh`.
     cases : int, optional
         How many of them; by default all.
@@ -107,7 +108,7 @@ def run_suite(
     chosen = suite_of(seed)[:cases]
     fine = 0
     with processes(workers) as pool:
-        jobs = [pool.submit(_one, Path(folder), one, threads_of(workers), deviance, ask) for one in chosen]
+        jobs = [pool.submit(_one, Path(folder), one, threads_of(workers), against, ask) for one in chosen]
         for done, job in enumerate(as_completed(jobs), start=1):
             fine += job.result()
             if progress is not None:
@@ -115,17 +116,17 @@ def run_suite(
     return {"verdicts": fine, "failed": len(chosen) - fine}
 
 
-def _one(folder: Path, one: Numbered, threads: int, deviance: Deviance, ask: Ask | None) -> bool:
+def _one(folder: Path, one: Numbered, threads: int, against: Against, ask: Ask | None) -> bool:
     """Make, diagnose, weigh and let rivals answer."""
     if not (folder / "truth" / f"{one.name}.json").is_file():
-        make(one.seed, 1, one.tier, folder)
+        make(one.seed, 1, one.tier, folder, against=against)
     verdict = folder / "verdicts" / one.name / VERDICT
     if not verdict.is_file():
         without = ruled_out(folder, one.name)
         if not diagnosed(folder / one.name, verdict.parent, threads, without=without):
             return False
     try:
-        weigh_one(folder, one.name, deviance)
+        weigh_one(folder, one.name, against)
         if ask is not None:
             answer(folder, one.name, ask)
     except (InputError, SolveError) as error:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, as_completed
 from dataclasses import replace
 from pathlib import Path
@@ -14,8 +14,8 @@ from permway.challenge.pool import processes
 from permway.errors import InputError
 
 Progress = Callable[[int, int], object]
-Deviance = Callable[[Path, Path], float]
-"""From the folders of a campaign and of its twin, both as `write` writes them."""
+Against = Callable[[Path], Callable[[Path], float]]
+"""From the folder of a twin, as `write` writes it, to the deviance of folders of campaigns with effects."""
 
 WEIGHTS = "weights"
 
@@ -26,7 +26,7 @@ def twin_of(case: Case) -> Case:
 
 
 def weigh(
-    folder: Path, deviance: Deviance, *, workers: int = 1, progress: Progress | None = None
+    folder: Path, against: Against, *, workers: int = 1, progress: Progress | None = None
 ) -> dict[str, float]:
     """Weigh every campaign with a concealed effect that has not been weighed yet.
 
@@ -34,8 +34,8 @@ def weigh(
     ----------
     folder : Path
         As :func:`permway.challenge.make.make` made it; gets `weights/<case>.json`.
-    deviance : callable
-        What the effect does to the records and no recalibration takes away.
+    against : callable
+        What an effect does to the records and no recalibration takes away, against a twin without it.
     workers : int
         Processes.
     progress : callable, optional
@@ -58,7 +58,7 @@ def weigh(
     known = weights(folder)
     todo = [path.stem for path in truths if path.stem not in known and json.loads(path.read_text())["effects"]]
     with processes(workers) as pool:
-        jobs: list[Future[float | None]] = [pool.submit(weigh_one, folder, name, deviance) for name in todo]
+        jobs: list[Future[float | None]] = [pool.submit(weigh_one, folder, name, against) for name in todo]
         for done, job in enumerate(as_completed(jobs), start=1):
             job.result()
             if progress is not None:
@@ -66,7 +66,7 @@ def weigh(
     return weights(folder)
 
 
-def weigh_one(folder: Path, name: str, deviance: Deviance) -> float | None:
+def weigh_one(folder: Path, name: str, against: Against) -> float | None:
     """Weigh one campaign, if it conceals anything and has not been weighed: its deviance."""
     kept = folder / WEIGHTS / f"{name}.json"
     if kept.is_file():
@@ -74,10 +74,16 @@ def weigh_one(folder: Path, name: str, deviance: Deviance) -> float | None:
     truth = json.loads((folder / "truth" / f"{name}.json").read_text())
     if not truth["effects"]:
         return None
-    found, *each = _weighed(folder / name, truth["seed"], truth["tier"], deviance)
-    kept.parent.mkdir(exist_ok=True)
-    whole(kept, json.dumps({"deviance": found, "each": each}) + "\n")
+    found, *each = _weighed(folder / name, truth["seed"], truth["tier"], against)
+    keep(folder, name, found, each)
     return found
+
+
+def keep(folder: Path, name: str, deviance: float, each: Sequence[float] = ()) -> None:
+    """Write what a campaign weighs, and what each of several effects does alone."""
+    kept = folder / WEIGHTS / f"{name}.json"
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    whole(kept, json.dumps({"deviance": deviance, "each": list(each)}) + "\n")
 
 
 def whole(path: Path, text: str) -> None:
@@ -101,15 +107,16 @@ def weights_of_each(folder: Path) -> dict[str, list[float]]:
     return {name: kept["each"] for name, kept in found.items() if kept.get("each")}
 
 
-def _weighed(folder: Path, seed: int, tier: str, deviance: Deviance) -> list[float]:
+def _weighed(folder: Path, seed: int, tier: str, against: Against) -> list[float]:
     """All effects together, and each alone where there are several."""
     case = draw(seed, tier)  # type: ignore[arg-type]  # draw refuses what is no tier
     with TemporaryDirectory() as place:
         twin = Path(place) / "twin"
         write(twin_of(case), twin)
-        found = [deviance(folder, twin)]
+        deviance = against(twin)
+        found = [deviance(folder)]
         for index, effect in enumerate(case.effects if len(case.effects) > 1 else ()):
             alone = Path(place) / f"alone-{index}"
             write(replace(case, effects=(effect,)), alone)
-            found.append(deviance(alone, twin))
+            found.append(deviance(alone))
         return found

@@ -18,18 +18,17 @@ from permway.recordings.importers.sheet import import_sheet
 Progress = Callable[[str], object]
 
 
-def deviance(
-    campaign: Campaign, twin: Campaign, *, threads: int | None = None, progress: Progress | None = None
-) -> float:
-    """Deviance between a campaign with an effect and its best recalibrated base, beyond that of its twin.
+def against(
+    twin: Campaign, *, threads: int | None = None, progress: Progress | None = None
+) -> Callable[[Campaign], float]:
+    """Deviance between campaigns with an effect and their best recalibrated base, beyond that of their twin.
 
     The twin has the same parameters, noise and errors of chains, and nothing concealed: what its base leaves is no
     effect. The errors' sizes are learnt from it, where there is nothing else to take for an error.
 
     Parameters
     ----------
-    campaign, twin : Campaign
-        Of the same layout, conditions and lines.
+    twin : Campaign
     threads : int, optional
         Of the solver.
     progress : callable, optional
@@ -37,13 +36,14 @@ def deviance(
 
     Returns
     -------
-    float
-        Of quadratic forms and priors; about 0 without an effect, and it may come out below.
+    callable
+        From a campaign of the same layout, conditions and lines to its deviance, of quadratic forms and priors;
+        about 0 without an effect, and it may come out below. InputError for other records than the twin's.
 
     Raises
     ------
     InputError
-        If no record can be predicted, or the two do not have the same records.
+        If no record can be predicted.
     """
 
     def told(stage: str, _done: int, _total: int) -> None:
@@ -51,34 +51,47 @@ def deviance(
             progress(stage)
 
     plain, _ = bases(gather(twin, predictable(twin, screened=False).kept, threads=threads), Clock(told))
-    datasets = predictable(campaign, screened=False).kept
-    there = plain.evidence.selected(plain.evidence.records).datasets
-    mine, others = ([d.record.name for d in sets] for sets in (datasets, there))
-    if mine != others:
-        raise InputError("does not have the records of its twin", where="records", value=mine, remedy=str(others))
-    evidence = plain.evidence.of(campaign, datasets)
-    fits = [
-        recalibrate(evidence, start=start, learn=False, reweigh=False, progress=progress)
-        for start in (plain.z, None)
-    ]
-    return min(_misfit(fit) for fit in fits) - _misfit(plain)
+    there = [d.record.name for d in plain.evidence.selected(plain.evidence.records).datasets]
+
+    def deviance(campaign: Campaign) -> float:
+        datasets = predictable(campaign, screened=False).kept
+        mine = [d.record.name for d in datasets]
+        if mine != there:
+            raise InputError(
+                "does not have the records of its twin", where="records", value=mine, remedy=str(there)
+            )
+        evidence = plain.evidence.of(campaign, datasets)
+        fits = [
+            recalibrate(evidence, start=start, learn=False, reweigh=False, progress=progress)
+            for start in (plain.z, None)
+        ]
+        return min(_misfit(fit) for fit in fits) - _misfit(plain)
+
+    return deviance
 
 
 def _misfit(fit: Fit) -> float:
     return fit.chi2 - fit.evidence.log_determinant + fit.prior
 
 
-def of_folders(campaign: Path, twin: Path) -> float:
-    """The same of two measuring teams' folders, imported for the time it takes.
+def against_folder(twin: Path) -> Callable[[Path], float]:
+    """The same of measuring teams' folders, each imported for the time it takes.
 
     Raises
     ------
     InputError
-        As :func:`deviance`, and from importing.
+        As :func:`against`, and from importing.
     """
+
+    def deviance(folder: Path) -> float:
+        with TemporaryDirectory() as place:
+            return plain(_imported(folder, Path(place)))
+
     with TemporaryDirectory() as place:
-        read = []
-        for folder, name in ((campaign, "campaign"), (twin, "twin")):
-            import_sheet(folder, Path(place) / name)
-            read.append(read_campaign(Path(place) / name / "campaign.toml"))
-        return deviance(*read, threads=1)
+        plain = against(_imported(twin, Path(place)), threads=1)
+    return deviance
+
+
+def _imported(folder: Path, place: Path) -> Campaign:
+    import_sheet(folder, place / "campaign")
+    return read_campaign(place / "campaign" / "campaign.toml")

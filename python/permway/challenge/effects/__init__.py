@@ -20,7 +20,18 @@ from permway.challenge.effects import (
 )
 from permway.challenge.effects.base import STRENGTHS, Domain, Effect, Site, Strength
 
-__all__ = ["CATALOGUE", "NONLINEAR", "OUTSIDE", "STRENGTHS", "TWINS", "Domain", "Effect", "Site", "Strength"]
+__all__ = [
+    "CATALOGUE",
+    "FADING",
+    "NONLINEAR",
+    "OUTSIDE",
+    "STRENGTHS",
+    "TWINS",
+    "Domain",
+    "Effect",
+    "Site",
+    "Strength",
+]
 
 CATALOGUE: tuple[type[Effect], ...] = (
     fasteners.PadSpringpot,
@@ -66,6 +77,9 @@ CATALOGUE: tuple[type[Effect], ...] = (
 
 TWINS = tuple(effect for effect in CATALOGUE if effect.TWINS)
 """Effects that have a near twin."""
+
+FADING = tuple(effect for effect in CATALOGUE if effect.FADES)
+"""Effects that can be as weak as one likes."""
 
 OUTSIDE: tuple[type[Effect], ...] = (
     outside.Inerter,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -29,6 +30,7 @@ class AirSpring(Effect):
     ID = "air_spring"
     FAMILY = "suspension"
     DOMAIN = "vehicle"
+    FADES = (("rise", 0.0),)
 
     rise: float
     settles_Hz: float
@@ -69,6 +71,7 @@ class BogieBending(Effect):
     ID = "bogie_modes"
     FAMILY = "vehicle bending"
     DOMAIN = "vehicle"
+    FADES = (("frequency_Hz", math.inf),)
 
     frequency_Hz: float
     loss: float
@@ -113,6 +116,7 @@ class SecondSource(Effect):
     ID = "second_source"
     FAMILY = "noise"
     DOMAIN = "vehicle"
+    FADES = (("rms_N", 0.0),)
 
     channel: str
     rms_N: float

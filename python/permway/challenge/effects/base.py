@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
@@ -41,6 +41,9 @@ class Effect(ABC):
         Hammer tests at different temperatures that it needs.
     WORDS : tuple of str
         Of an effect of no catalogue, words of which a right description of its mechanics uses one.
+    FADES : tuple of (parameter, float)
+        Parameters that make it strong or weak, and their value where there is nothing: 0, 1 or infinity. Empty
+        where it is there or not.
     """
 
     KIND: ClassVar[str]
@@ -50,6 +53,7 @@ class Effect(ABC):
     TWINS: ClassVar[tuple[str, ...]] = ()
     TEMPERATURES: ClassVar[int] = 1
     WORDS: ClassVar[tuple[str, ...]] = ()
+    FADES: ClassVar[tuple[tuple[str, float], ...]] = ()
 
     @classmethod
     @abstractmethod
@@ -70,6 +74,16 @@ class Effect(ABC):
         """Where it is: body or joint, x from and to (m), channels."""
         return {}
 
+    def faded(self, share: float) -> Self:
+        """The same effect, weaker: with a share of 1 as it is, towards 0 as if it were not.
+
+        Parameters
+        ----------
+        share : float
+            Above 0, at most 1.
+        """
+        return replace(self, **{name: _faded(getattr(self, name), none, share) for name, none in self.FADES})
+
     def truth(self) -> dict[str, Any]:
         """Its entry in a truth file."""
         return {
@@ -83,6 +97,13 @@ class Effect(ABC):
             "twins": list(self.TWINS),
             "words": list(self.WORDS),
         }
+
+
+def _faded(value: float, none: float, share: float) -> float:
+    """A value moved towards what it is where there is nothing: a factor by its logarithm."""
+    if none == 1.0:
+        return float(value**share)
+    return value * share if none == 0.0 else value / share
 
 
 def size(random: np.random.Generator, strength: Strength, weak: float, medium: float, strong: float) -> float:

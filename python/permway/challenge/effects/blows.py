@@ -47,6 +47,7 @@ class WheelFlat(Effect):
     FAMILY = "lines over wavelength"
     DOMAIN = "irregularity"
     TWINS = ("wheel_flat", "wheel_polygon")
+    FADES = (("depth_m", 0.0),)
 
     wheelset: int
     depth_m: float
@@ -94,6 +95,7 @@ class RailJoints(Effect):
     ID = "rail_joint"
     FAMILY = "tied to speed over length"
     DOMAIN = "irregularity"
+    FADES = (("depth_m", 0.0),)
 
     every_m: float
     depth_m: float

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
@@ -21,6 +22,7 @@ class DeckAttachment(Effect):
     KIND = "attached_resonator"
     ID = "deck_attachment"
     FAMILY = "resonator"
+    FADES = (("mass_kg", 0.0),)
 
     x_m: float
     mass_kg: float
@@ -62,6 +64,7 @@ class GirderCrack(Effect):
     KIND = "girder_crack"
     ID = "girder_crack"
     FAMILY = "girder"
+    FADES = (("factor", 1.0),)
 
     stretch_m: tuple[float, float]
     factor: float
@@ -96,6 +99,7 @@ class BearingStiffness(Effect):
     ID = "bearing_stiffness"
     FAMILY = "bearing"
     TWINS = ("bearing_stiffness", "pier_soil")
+    FADES = (("factor", 1.0),)
 
     bearing: int
     x_m: float
@@ -133,6 +137,7 @@ class PierSoil(Effect):
     ID = "pier_soil"
     FAMILY = "bearing"
     TWINS = ("bearing_stiffness", "pier_soil")
+    FADES = (("soil_N_per_m", math.inf), ("soil_Ns_per_m", math.inf))
 
     pier_kg: float
     soil_N_per_m: float
@@ -176,6 +181,7 @@ class SecondTrack(Effect):
     KIND = "second_track"
     ID = "second_track"
     FAMILY = "girder"
+    FADES = (("mass_kg_per_m", 0.0),)
 
     mass_kg_per_m: float
     sprung: float

@@ -23,6 +23,7 @@ class PadSpringpot(Effect):
     ID = "pad_frequency"
     FAMILY = "pad law"
     TWINS = ("pad_frequency", "layer_damping")
+    FADES = (("order", 0.0),)
 
     order: float
     share: float
@@ -64,6 +65,7 @@ class PadZener(Effect):
     ID = "pad_frequency"
     FAMILY = "pad law"
     TWINS = ("pad_frequency", "layer_damping")
+    FADES = (("rise", 0.0),)
 
     rise: float
     relaxation_Hz: float
@@ -102,6 +104,7 @@ class PadTemperature(Effect):
     ID = "pad_temperature"
     FAMILY = "pad temperature"
     TEMPERATURES = 2
+    FADES = (("stiffer_per_30K", 1.0), ("lossier_per_30K", 1.0))
 
     stiffer_per_30K: float
     lossier_per_30K: float
@@ -146,6 +149,7 @@ class FastenersLost(Effect):
     ID = "fastener_loss"
     FAMILY = "local loss of support"
     TWINS = ("fastener_loss", "mortar_void")
+    FADES = (("factor", 1.0),)
 
     stretch_m: tuple[float, float]
     factor: float
@@ -178,6 +182,7 @@ class RailAbsorbers(Effect):
     KIND = "rail_absorber"
     ID = "rail_absorber"
     FAMILY = "resonator"
+    FADES = (("mass_kg", 0.0),)
 
     mass_kg: float
     tuned_Hz: float
@@ -226,6 +231,7 @@ class BaseplateMass(Effect):
     KIND = "baseplate_mass"
     ID = "baseplate_mass"
     FAMILY = "pad law"
+    FADES = (("mass_kg", 0.0),)
 
     mass_kg: float
     lower_over_upper: float
@@ -269,6 +275,7 @@ class SupportGradient(Effect):
     KIND = "support_gradient"
     ID = "support_gradient"
     FAMILY = "support along x"
+    FADES = (("slope", 0.0),)
 
     slope: float
 

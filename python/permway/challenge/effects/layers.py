@@ -20,6 +20,7 @@ class MortarVoid(Effect):
     ID = "mortar_void"
     FAMILY = "local loss of support"
     TWINS = ("fastener_loss", "mortar_void")
+    FADES = (("factor", 1.0),)
 
     stretch_m: tuple[float, float]
     factor: float

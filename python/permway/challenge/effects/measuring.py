@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -59,6 +60,7 @@ class SensorGain(SensorFault):
     ID = "sensor_gain"
     FAMILY = "sensor level"
     TWINS = ("sensor_gain", "irregularity_level")
+    FADES = (("gain", 1.0),)
 
     gain: float
 
@@ -85,6 +87,7 @@ class SensorDelay(SensorFault):
     KIND = "sensor_delay"
     ID = "sensor_delay"
     FAMILY = "sensor phase"
+    FADES = (("delay_s", 0.0),)
 
     delay_s: float
 
@@ -133,6 +136,7 @@ class SensorMounting(SensorFault):
     KIND = "sensor_mounting"
     ID = "sensor_mounting"
     FAMILY = "sensor level"
+    FADES = (("resonance_Hz", math.inf),)
 
     resonance_Hz: float
     quality: float
@@ -164,6 +168,7 @@ class NoiseFloor(SensorFault):
     KIND = "noise_floor"
     ID = "noise_floor"
     FAMILY = "noise"
+    FADES = (("factor", 1.0),)
 
     factor: float
 
@@ -193,6 +198,7 @@ class MainsLines(Effect):
     ID = "mains_lines"
     FAMILY = "noise"
     DOMAIN = "measurement"
+    FADES = (("amplitude", 0.0),)
 
     amplitude: float
     hertz: float
@@ -233,6 +239,7 @@ class SpeedError(Effect):
     ID = "speed_error"
     FAMILY = "speed"
     DOMAIN = "measurement"
+    FADES = (("factor", 1.0),)
 
     factor: float
 

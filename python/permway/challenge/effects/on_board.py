@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -31,6 +32,7 @@ class DamperSeries(Effect):
     ID = "damper_series_stiffness"
     FAMILY = "suspension"
     DOMAIN = "vehicle"
+    FADES = (("corner_Hz", math.inf),)
 
     corner_Hz: float
 
@@ -67,6 +69,7 @@ class AxleboxAbsorber(Effect):
     ID = "axlebox_absorber"
     FAMILY = "resonator"
     DOMAIN = "vehicle"
+    FADES = (("mass_kg", 0.0),)
 
     wheelsets: tuple[int, ...]
     mass_kg: float
@@ -109,6 +112,7 @@ class BodyBending(Effect):
     ID = "body_bending"
     FAMILY = "vehicle bending"
     DOMAIN = "vehicle"
+    FADES = (("frequency_Hz", math.inf),)
 
     frequency_Hz: float
     loss: float
@@ -157,6 +161,7 @@ class WheelsetBending(Effect):
     ID = "wheelset_bending"
     FAMILY = "vehicle bending"
     DOMAIN = "vehicle"
+    FADES = (("frequency_Hz", math.inf),)
 
     frequency_Hz: float
     share: float

@@ -25,6 +25,7 @@ class WheelPolygon(Effect):
     FAMILY = "lines over wavelength"
     DOMAIN = "irregularity"
     TWINS = ("wheel_polygon", "rail_corrugation")
+    FADES = (("amplitude_m", 0.0),)
 
     wheelset: int
     order: int
@@ -69,6 +70,7 @@ class RailCorrugation(Effect):
     FAMILY = "lines over wavelength"
     DOMAIN = "irregularity"
     TWINS = ("rail_corrugation", "wheel_polygon")
+    FADES = (("gain_dB", 0.0),)
 
     wavelength_m: float
     width: float
@@ -107,6 +109,7 @@ class ContactFilter(Effect):
     ID = "contact_filter"
     FAMILY = "spectrum's slope"
     DOMAIN = "irregularity"
+    FADES = (("half_length_m", 0.0),)
 
     half_length_m: float
 
@@ -144,6 +147,7 @@ class IrregularityLevel(Effect):
     FAMILY = "spectrum's level"
     DOMAIN = "irregularity"
     TWINS = ("irregularity_level", "sensor_gain")
+    FADES = (("gain_dB", 0.0),)
 
     gain_dB: float
 

@@ -33,6 +33,7 @@ class PadPreload(Effect):
     ID = "pad_preload"
     FAMILY = "load-dependent pad"
     TWINS = ("pad_preload", "pad_amplitude")
+    FADES = (("exponent", 0.0),)
 
     exponent: float
 

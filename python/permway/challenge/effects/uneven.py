@@ -20,6 +20,7 @@ class SupportScatter(Effect):
     ID = "support_scatter"
     FAMILY = "support along x"
     TWINS = ("support_scatter", "support_gradient")
+    FADES = (("sigma", 0.0),)
 
     sigma: float
     length_m: float
@@ -59,6 +60,7 @@ class SlabWarping(Effect):
     KIND = "slab_warping"
     ID = "slab_warping"
     FAMILY = "slab joints"
+    FADES = (("factor", 1.0),)
 
     length_m: float
     factor: float
