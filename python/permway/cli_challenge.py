@@ -190,15 +190,21 @@ def _scores(folder: Path) -> dict[str, object]:
 
 
 def _rivals(folder: Path) -> list[dict[str, object]]:
-    """Scores of the rivals, by tier."""
+    """Scores by tier of the rivals, and of the diagnosis on the campaigns that they answered on."""
+    from dataclasses import replace
+
+    from permway.challenge.rivals import ANSWERS
     from permway.challenge.score import score
     from permway.challenge.summary import summary
     from permway.diagnosis.catalogue import entries
     from permway.diagnosis.rivals import RIVALS
 
     families = {name: entry.FAMILY for name, entry in entries().items()}
+    theirs = {name: score(folder, families, folder / ANSWERS / name) for name in RIVALS}
+    asked = {one.name for scored in theirs.values() for one in scored}
+    own = [one for one in score(folder, families) if one.name in asked]
     return [
         {"rival": name, **row}
-        for name in RIVALS
-        for row in summary(score(folder, families, folder / "rivals" / name))
+        for name, scored in {"permway": own, **theirs}.items()
+        for row in summary(replace(one, deviance=None) for one in scored)
     ]

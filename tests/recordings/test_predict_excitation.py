@@ -10,8 +10,9 @@ import pytest
 from campaigns import tables, write
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign, read_campaign
+from permway.recordings.campaign_excitation import Push
 from permway.recordings.estimates.welch import cross_spectra
-from permway.recordings.predict.excitation import deposit
+from permway.recordings.predict.excitation import deposit, push
 from permway.recordings.predict.grid import grid_of
 from permway.recordings.predict.run import expected_csd, influence, solved_lines, wheels_of
 from permway.response.receptance import Place, receptance
@@ -141,8 +142,8 @@ def test_a_broad_line_keeps_its_power() -> None:
 
 def test_a_force_shakes_the_vehicle_on_its_track(tmp_path: Path, per_profile: np.ndarray) -> None:
     """The wheels' own impedance and the track's take part: against all of it solved at once."""
-    push = {"pushes": [{"degree": "car1.bogie1.bounce", "density_N2_per_Hz": 100.0}]}
-    campaign = campaign_with(tmp_path, push)
+    pushes = {"pushes": [{"degree": "car1.bogie1.bounce", "density_N2_per_Hz": 100.0}]}
+    campaign = campaign_with(tmp_path, pushes)
     found = expected(campaign, per_profile) - expected(campaign_with(tmp_path, {}), per_profile)
     model = campaign.model
     assert model.train is not None
@@ -162,6 +163,16 @@ def test_a_force_shakes_the_vehicle_on_its_track(tmp_path: Path, per_profile: np
     at = np.searchsorted(LINES_HZ, ESTIMATE_HZ)
     # The window smears a smooth spectrum little.
     assert found[20:, 2, 2].real == pytest.approx(power[at][20:], rel=0.02)
+
+
+def test_a_force_through_a_resonance_is_what_a_dashpot_on_a_sprung_mass_passes_on() -> None:
+    mass, centre, quality = 3.0, 40.0, 2.5
+    frequency = np.array([0.0, 1.0, 20.0, 39.0, 40.0, 45.0, 200.0])
+    omega, tuned = 2.0 * np.pi * frequency, 2.0 * np.pi * centre
+    dashpot = mass * tuned / quality
+    passed = 1j * omega * dashpot / (mass * (tuned**2 - omega**2) + 1j * omega * dashpot)
+    source = Push(degree="car1.bogie1.bounce", density_N2_per_Hz=7.0, centre_Hz=centre, quality=quality)
+    np.testing.assert_allclose(push(source, frequency), 7.0 * np.abs(passed) ** 2, rtol=1e-12)
 
 
 def test_bands_patch_and_levels_are_their_formulas(tmp_path: Path, per_profile: np.ndarray) -> None:
@@ -217,6 +228,10 @@ def test_a_slow_clock_takes_from_cross_spectra_what_it_takes_from_samples(
         ({"level_by_condition_dB": {"faster": 3.0}}, "irregularity.level_by_condition_dB.faster"),
         ({"wheels": [{"wheel": 5, "amplitude_m": 1e-5}]}, r"irregularity.wheels\[0\].wheel"),
         ({"pushes": [{"degree": "car1.motor", "density_N2_per_Hz": 1.0}]}, r"irregularity.pushes\[0\].degree"),
+        (
+            {"pushes": [{"degree": "car1.bogie1.bounce", "density_N2_per_Hz": 1.0, "quality": 3.0}]},
+            r"irregularity.pushes\[0\].quality",
+        ),
         ({"bands": [{"wavelength_m": 0.3, "gain_dB": -1.0}]}, r"irregularity.bands\[0\].gain_dB"),
         ({"series": [{"length_m": 0.0, "amplitude_m": 1e-5}]}, r"irregularity.series\[0\].length_m"),
     ],

@@ -137,12 +137,16 @@ class Push(FrozenModel):
         By default the density is the same at all frequencies.
     octaves : float
         One standard deviation of the bell about the centre.
+    quality : float, optional
+        Of a resonance about the centre through which the force comes, instead of a bell; its density falls off
+        with the square of frequency on either side.
     """
 
     degree: str
     density_N2_per_Hz: NonNegativeFloat
     centre_Hz: PositiveFloat | None = None
     octaves: float = Field(default=1.0, ge=0.01, le=10.0)
+    quality: float | None = Field(default=None, ge=0.1, le=1000.0)
 
 
 def check_excitation(known: IrregularityKnown, conditions: Iterable[Condition], model: Model) -> None:
@@ -165,6 +169,9 @@ def check_excitation(known: IrregularityKnown, conditions: Iterable[Condition], 
             raise InputError(what, where=f"irregularity.wheels[{index}].wheel", value=lines.wheel)
     degrees = [] if model.train is None else model.train.vehicle.degrees
     for index, push in enumerate(known.pushes):
+        if push.quality is not None and push.centre_Hz is None:
+            where = f"irregularity.pushes[{index}].quality"
+            raise InputError("is of a resonance without a frequency", where=where, remedy="give centre_Hz, too")
         if push.degree not in degrees:
             where = f"irregularity.pushes[{index}].degree"
             remedy = f"use one of {degrees[:10]}" if degrees else "give the model file a [train]"

@@ -221,6 +221,13 @@ CASES = (
         {"density_N2_per_Hz": 3e3, "centre_Hz": 30.0, "octaves": 0.5},
         {"density_N2_per_Hz": 0.4, "centre_Hz": 0.2, "octaves": 0.4},
     ),
+    Case(
+        "second_source",
+        "car1.bogie1.bounce",
+        lambda c, v: with_irregularity(c, pushes=(Push(degree="car1.bogie1.bounce", **v),)),
+        {"density_N2_per_Hz": 3e3, "centre_Hz": 45.0, "quality": 4.0},
+        {"density_N2_per_Hz": 0.4, "centre_Hz": 0.05, "quality": 0.4},
+    ),
     Case("sensor_gain", "axle2", chain("axle2", dict), {"gain": 1.25}, {"gain": 0.05}, none=1.0),
 )
 
@@ -261,7 +268,7 @@ def best_of(ring: Ring, some: Iterator[Hypothesis] | list[Hypothesis], most: int
 
 
 @pytest.mark.injection
-@pytest.mark.parametrize("case", CASES, ids=[case.entry for case in CASES])
+@pytest.mark.parametrize("case", CASES, ids=[f"{case.entry}-{[*case.values][-1]}" for case in CASES])
 def test_the_strongest_is_named_and_measured(owner: Campaign, case: Case) -> None:
     situation = injected(owner, case, 1.0)
     ring = Ring(situation.fit)
@@ -276,7 +283,7 @@ def test_the_strongest_is_named_and_measured(owner: Campaign, case: Case) -> Non
 
 
 @pytest.mark.injection
-@pytest.mark.parametrize("case", CASES, ids=[case.entry for case in CASES])
+@pytest.mark.parametrize("case", CASES, ids=[f"{case.entry}-{[*case.values][-1]}" for case in CASES])
 def test_more_effect_is_more_gain(owner: Campaign, case: Case) -> None:
     gains = []
     for strength in (0.25, 0.6):

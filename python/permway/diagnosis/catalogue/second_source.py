@@ -16,11 +16,15 @@ from permway.recordings.campaign_excitation import Push
 ID = "second_source"
 DOMAIN: Domain = "measurement"
 FAMILY = "noise"
-SUMMARY = "A random force on one degree of freedom of the vehicle, independent of the track, over a band."
+SUMMARY = (
+    "A random force on one degree of freedom of the vehicle, independent of the track, over a band: "
+    "a bell, or noise through a resonance."
+)
 PARAMETERS = {
     "density_N2_per_Hz": "N2/Hz: one-sided, at the centre",
     "centre_Hz": "Hz, 1 to 1000",
-    "octaves": "1, 0.05 to 10: one standard deviation of the band",
+    "octaves": "1, 0.05 to 10: one standard deviation of the bell",
+    "quality": "1, 0.5 to 76: of the resonance, instead",
 }
 SIGNATURE = "Power of channels near the force, incoherent with the track's part, the same at all speeds."
 CONFUSED_WITH = {
@@ -52,23 +56,27 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             added = Push(degree=degree, **values)
             return with_irregularity(campaign, pushes=(*campaign.said.irregularity.pushes, added))
 
-        yield Hypothesis(
-            entry=ID,
-            domain=DOMAIN,
-            family=FAMILY,
-            free=(
-                log_free("density_N2_per_Hz", "N2/Hz", centre, 10.0),
-                log_free("centre_Hz", "Hz", CENTRE_HZ, FACTOR),
-                log_free("octaves", "1", 0.7, 1.7, lowest=0.05),
-            ),
-            amend=amend,
-            locate=stays(degree, channels=(name,)),
-            starts=((0.0, z, 0.0), (0.0, 0.0, 1.0)),
-            law=lambda v: (
-                f"a force of {np.sqrt(v['density_N2_per_Hz']):.3g} N/sqrt(Hz) about {v['centre_Hz']:.3g} Hz"
-            ),
-            size="density_N2_per_Hz",
-        )
+        for width in (
+            log_free("octaves", "1", 0.7, 1.7, lowest=0.05),
+            log_free("quality", "1", 4.0, 1.8, lowest=0.5),
+        ):
+            yield Hypothesis(
+                entry=ID,
+                domain=DOMAIN,
+                family=FAMILY,
+                free=(
+                    log_free("density_N2_per_Hz", "N2/Hz", centre, 10.0),
+                    log_free("centre_Hz", "Hz", CENTRE_HZ, FACTOR),
+                    width,
+                ),
+                amend=amend,
+                locate=stays(degree, channels=(name,)),
+                starts=((0.0, z, 0.0), (0.0, 0.0, 1.0 if width.name == "octaves" else -1.5)),
+                law=lambda v: (
+                    f"a force of {np.sqrt(v['density_N2_per_Hz']):.3g} N/sqrt(Hz) about {v['centre_Hz']:.3g} Hz"
+                ),
+                size="density_N2_per_Hz",
+            )
 
 
 def _order(quantity: str) -> int:

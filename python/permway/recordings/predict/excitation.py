@@ -82,7 +82,11 @@ def wheels(
 def push(source: Push, frequency_Hz: Reals) -> Reals:
     """One-sided density of a force, N2/Hz, shape of the frequencies."""
     shape = np.ones_like(frequency_Hz)
-    if source.centre_Hz is not None:
+    if source.centre_Hz is not None and source.quality is not None:
+        # 1 at the centre; 0 Hz, where a division by the frequency would fail, is nothing.
+        ratio = frequency_Hz / source.centre_Hz
+        shape = ratio**2 / (ratio**2 + (source.quality * (1.0 - ratio**2)) ** 2)
+    elif source.centre_Hz is not None:
         shape = np.exp(-0.5 * (np.log2(frequency_Hz / source.centre_Hz) / source.octaves) ** 2)
     return source.density_N2_per_Hz * shape
 
