@@ -190,7 +190,7 @@ def _scores(folder: Path) -> dict[str, object]:
 
 
 def _rivals(folder: Path) -> list[dict[str, object]]:
-    """Scores by tier of the rivals, and of the diagnosis on the campaigns that they answered on."""
+    """Scores of the rivals, and of the diagnosis on the campaigns that they answered on: nulls and all others."""
     from dataclasses import replace
 
     from permway.challenge.rivals import ANSWERS
@@ -206,5 +206,8 @@ def _rivals(folder: Path) -> list[dict[str, object]]:
     return [
         {"rival": name, **row}
         for name, scored in {"permway": own, **theirs}.items()
-        for row in summary(replace(one, deviance=None) for one in scored)
+        for row in summary(
+            replace(one, tier="null" if one.found is None else "something concealed", deviance=None)
+            for one in scored
+        )
     ]

@@ -14,6 +14,7 @@ from permway.challenge.layout import draw_layout, draw_tests
 from permway.challenge.score import score
 from permway.challenge.summary import interval, summary
 from permway.cli import app
+from permway.diagnosis.rivals import RIVALS
 from permway.errors import InputError
 from typer.testing import CliRunner
 
@@ -160,7 +161,9 @@ def test_words_of_what_no_catalogue_holds(tmp_path: Path) -> None:
         f"outside-{i}": (truth(hidden), verdict("described", {**said, "law": {"words": words}}))
         for i, words in enumerate(("an inertance of 3 kg beside one joint", "a dashpot of 1 N s/m on the body"))
     }
-    assert [s.mechanics for s in score(folder(tmp_path, cases), FAMILIES)] == [True, False]
+    # Rivals say that something is there, and no words.
+    cases["outside-2"] = (truth(hidden), verdict("located", {k: v for k, v in said.items() if k != "law"}))
+    assert [s.mechanics for s in score(folder(tmp_path, cases), FAMILIES)] == [True, False, False]
 
 
 def test_intervals_of_shares() -> None:
@@ -184,6 +187,30 @@ def test_scores_of_verdicts_without_times_are_json(tmp_path: Path) -> None:
     assert ended.exit_code == 0
     (case,) = json.loads(ended.stdout)["cases"]
     assert (case["found"], case["seconds"]) == (True, None)
+
+
+def test_rivals_are_told_beside_the_diagnosis_on_the_campaigns_that_they_answered_on(tmp_path: Path) -> None:
+    lost = verdict("named", effect("fastener_loss", "fastener_loss"))
+    nothing = verdict("recalibrated")
+    place = folder(
+        tmp_path,
+        {"single-1": (truth(LOST), lost), "single-2": (truth(LOST), nothing), "null-1": (truth(), nothing)},
+    )
+    for name in ("single-1", "null-1"):
+        (place / "verdicts" / name / "campaign").mkdir()
+        (place / "verdicts" / name / "campaign" / "campaign.toml").write_text("")
+        for rival in RIVALS:
+            answer = place / "rivals" / rival / name / "verdict.json"
+            answer.parent.mkdir(parents=True)
+            answer.write_text(json.dumps(lost if rival == "classifier" else nothing))
+    ended = CliRunner().invoke(app, ["challenge", "rivals", str(place), "--json"])
+    assert ended.exit_code == 0, ended.output
+    rows = {(row["rival"], row["tier"]): row for row in json.loads(ended.stdout)["rivals"]}
+    assert {name for name, _ in rows} == {"permway", *RIVALS}
+    assert rows["permway", "something concealed"]["found"].startswith("1/1")
+    assert rows["permway", "null"]["called"].startswith("0/1")
+    assert rows["classifier", "null"]["called"].startswith("1/1")
+    assert rows["BIC, independent errors", "something concealed"]["found"].startswith("0/1")
 
 
 def test_names_are_claims_and_what_no_catalogue_has_is_novel(tmp_path: Path) -> None:

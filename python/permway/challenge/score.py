@@ -239,7 +239,9 @@ def _same(true: Mapping[str, Any], said: Mapping[str, Any], families: Mapping[st
 def _described(true: Mapping[str, Any], effects: Iterable[Mapping[str, Any]]) -> bool:
     """Whether what is said at the place of an effect without a name uses one of its words."""
     there = [e for e in effects if _there(true["place"], e["place"], true.get("domain"), e["domain"])]
-    return any(word in e["law"]["words"] for e in there if not e["name"] for word in true["words"])
+    # Rivals say no words.
+    said = [e["law"]["words"] for e in there if not e["name"] and "law" in e]
+    return any(word in words for words in said for word in true["words"])
 
 
 def _there(true: Mapping[str, Any], said: Mapping[str, Any], domain: str | None, said_domain: str) -> bool:
