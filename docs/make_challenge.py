@@ -22,6 +22,9 @@ BARS = {
     "multiple": {"in_class": "90 % (the strongest)", "all_found": "55 %"},
     "outside": {"placed": "80 %", "mechanics": "70 %", "false_name": "at most 10 %"},
     "nonlinear": {"called": "90 %"},
+    "graded, easy": {"found": "98 %", "placed": "95 %", "family": "90 %", "in_class": "95 %"},
+    "graded, medium": {"found": "90 %", "placed": "85 %", "family": "75 %", "in_class": "95 %"},
+    "graded, hard": {"found": "60 %", "placed": "60 %", "family": "45 %", "in_class": "95 %"},
 }
 """By tier, or tier and how hard it is, and figure."""
 
@@ -132,7 +135,7 @@ def _rivals(rows: list[dict[str, Any]]) -> list[str]:
     keys = [
         key for key in ("called", "found", "placed", "family", "false_name") if any(key in row for row in rows)
     ]
-    lines = ["", "Rivals on the same cases (`permway challenge rivals`):", ""]
+    lines = ["", "Rivals, and the diagnosis on the campaigns that they answered on (`permway challenge rivals`):", ""]
     lines += [f"| rival | cases | {' | '.join(FIGURES[key] for key in keys)} |", f"|---|---|{'---|' * len(keys)}"]
     for row in rows:
         cells = [str(row.get(key, "")) for key in keys]

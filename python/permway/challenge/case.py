@@ -122,7 +122,7 @@ class Case:
             "seed": self.seed,
             "tier": self.tier,
             "strength": self.strength,
-            "share": self.share,
+            **({} if self.share == 1.0 else {"share": self.share}),
             "parameters": {g: {n: self.true[g][n] for n in table} for g, table in TOLERANCE.items()},
             "chain": asdict(self.chain),
             "fx": [_short(part) for part in parts if part["domain"] != "vehicle"],
