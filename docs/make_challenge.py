@@ -135,7 +135,11 @@ def _rivals(rows: list[dict[str, Any]]) -> list[str]:
     keys = [
         key for key in ("called", "found", "placed", "family", "false_name") if any(key in row for row in rows)
     ]
-    lines = ["", "Rivals, and the diagnosis on the campaigns that they answered on (`permway challenge rivals`):", ""]
+    lines = [
+        "",
+        "Rivals, and the diagnosis on the campaigns that they answered on (`permway challenge rivals`):",
+        "",
+    ]
     lines += [f"| rival | cases | {' | '.join(FIGURES[key] for key in keys)} |", f"|---|---|{'---|' * len(keys)}"]
     for row in rows:
         cells = [str(row.get(key, "")) for key in keys]
