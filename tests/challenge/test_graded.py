@@ -111,6 +111,12 @@ def test_graded_campaigns_need_a_deviance(tmp_path: Path) -> None:
         make(5, 1, "graded", tmp_path)
 
 
+def test_all_of_them_are_noisy() -> None:
+    noise = [draw(seed, "graded").chain.noise for seed in range(40)]
+    assert min(noise) > 3.0 * 1.2e-6
+    assert max(noise) < 400.0 * 1.2e-6
+
+
 def test_a_share_of_one_is_the_campaign_as_drawn() -> None:
     case = draw(3, "graded")
     assert case.faded(1.0) == case

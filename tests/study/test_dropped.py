@@ -15,6 +15,8 @@ class Body:
     pass
 
 {how}
+# What started the tests may have had Ctrl-C ignored, as a shell does for jobs in the background.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 try:
     with interruptible():
         drop()

@@ -167,7 +167,7 @@ def draw(seed: int, tier: Tier) -> Case:
     nominal = draw_nominal(_random(seed, tier, 1, 1))
     tests = draw_tests(_random(seed, tier, 1, 2), layout, temperatures=temperatures)
     true = draw_true(_random(seed, tier, 2), nominal)
-    chain = _chain(_random(seed, tier, 3), _noisier(_random(seed, tier, 6)))
+    chain = _chain(_random(seed, tier, 3), _noisier(_random(seed, tier, 6), tier))
     site, drawing = Site(layout, tests), _random(seed, tier, 5)
     effects = tuple(kind.draw(drawing, strength or "medium", site) for kind in kinds)
     return Case(
@@ -209,8 +209,13 @@ def _kinds(random: np.random.Generator, tier: Tier) -> list[type[Effect]]:
             return apart[: int(random.integers(2, 4))]
 
 
-def _noisier(random: np.random.Generator) -> float:
-    """Times the noise of a clean hammer test: the noisier the test, the harder an effect is to find."""
+def _noisier(random: np.random.Generator, tier: Tier) -> float:
+    """Times the noise of a clean hammer test: the noisier the test, the harder an effect is to find.
+
+    In the cleanest tests a faded effect that weighs something is smaller than anybody would look for.
+    """
+    if tier == "graded":
+        return float(NOISIEST ** random.uniform(0.5, 1.0))
     return float(NOISIEST ** random.random()) if random.random() < NOISY else 1.0
 
 
