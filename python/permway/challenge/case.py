@@ -50,6 +50,9 @@ INVENTED = 0.5
 NOISY, NOISIEST = 0.5, 100.0
 """Share of campaigns whose hammer tests are noisier than the cleanest, and up to how many times, in amplitude."""
 
+DROWNED = 1000.0
+"""Times the noise of the cleanest hammer test at most where effects are graded, and at least a tenth of it."""
+
 SLOW_OR_FAST = 0.005
 """Largest relative error of a speed."""
 
@@ -212,10 +215,10 @@ def _kinds(random: np.random.Generator, tier: Tier) -> list[type[Effect]]:
 def _noisier(random: np.random.Generator, tier: Tier) -> float:
     """Times the noise of a clean hammer test: the noisier the test, the harder an effect is to find.
 
-    In the cleanest tests a faded effect that weighs something is smaller than anybody would look for.
+    In cleaner tests a faded effect that weighs something is smaller than anybody would look for.
     """
     if tier == "graded":
-        return float(NOISIEST ** random.uniform(0.5, 1.0))
+        return float(DROWNED * 10.0 ** random.uniform(-1.0, 0.0))
     return float(NOISIEST ** random.random()) if random.random() < NOISY else 1.0
 
 
