@@ -41,6 +41,11 @@ FIGURES = {
     "covered": "90 % intervals that hold the truth",
 }
 
+OF_RIVALS = {
+    "gain_dB": "median of what held-out records gain, dB",
+    "outdone": "the diagnosis foretells them better",
+}
+
 
 def page(suites: dict[str, dict[str, Any]]) -> str:
     """The page.
@@ -133,14 +138,17 @@ def _rivals(rows: list[dict[str, Any]]) -> list[str]:
     if not rows:
         return []
     keys = [
-        key for key in ("called", "found", "placed", "family", "false_name") if any(key in row for row in rows)
+        key
+        for key in ("called", "found", "placed", "family", "false_name", "gain_dB", "outdone")
+        if any(key in row for row in rows)
     ]
     lines = [
         "",
         "Rivals, and the diagnosis on the campaigns that they answered on (`permway challenge rivals`):",
         "",
     ]
-    lines += [f"| rival | cases | {' | '.join(FIGURES[key] for key in keys)} |", f"|---|---|{'---|' * len(keys)}"]
+    titles = {**FIGURES, **OF_RIVALS}
+    lines += [f"| rival | cases | {' | '.join(titles[key] for key in keys)} |", f"|---|---|{'---|' * len(keys)}"]
     for row in rows:
         cells = [str(row.get(key, "")) for key in keys]
         lines.append(f"| {row['rival']} | {row['group']}, {row['cases']} | {' | '.join(cells)} |")

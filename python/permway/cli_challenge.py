@@ -195,7 +195,7 @@ def _rivals(folder: Path) -> list[dict[str, object]]:
 
     from permway.challenge.rivals import ANSWERS
     from permway.challenge.score import score
-    from permway.challenge.summary import summary
+    from permway.challenge.summary import foretold_better, summary
     from permway.diagnosis.catalogue import entries
     from permway.diagnosis.rivals import RIVALS
 
@@ -203,11 +203,13 @@ def _rivals(folder: Path) -> list[dict[str, object]]:
     theirs = {name: score(folder, families, folder / ANSWERS / name) for name in RIVALS}
     asked = {one.name for scored in theirs.values() for one in scored}
     own = [one for one in score(folder, families) if one.name in asked]
-    return [
-        {"rival": name, **row}
-        for name, scored in {"permway": own, **theirs}.items()
+    rows: list[dict[str, object]] = []
+    for name, scored in {"permway": own, **theirs}.items():
         for row in summary(
             replace(one, tier="null" if one.found is None else "something concealed", deviance=None)
             for one in scored
-        )
-    ]
+        ):
+            alike = {one.name for one in scored if (one.found is None) == (row["tier"] == "null")}
+            better = foretold_better([one for one in own if one.name in alike], scored)
+            rows.append({"rival": name, **row, **({"outdone": better} if better and name != "permway" else {})})
+    return rows

@@ -17,7 +17,7 @@ from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.classifier import Classifier
 from permway.diagnosis.compete import Ring
-from permway.diagnosis.discrepancy import discrepancy
+from permway.diagnosis.discrepancy import beyond, discrepancy
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
@@ -38,6 +38,10 @@ def test_without_guards_smooth_errors_are_called_an_effect(tmp_path: Path) -> No
     said = rivals(campaign, threads=1)
     assert set(said) == set(RIVALS)
     assert said["recalibration only"]["effects"] == []
+    parts_of = said["recalibration only"]["held_out"]
+    assert len(parts_of) > 1
+    assert all(one["db_before"] == one["db_after"] and one["gain_nats"] == 0.0 for one in parts_of.values())
+    assert all(set(one["held_out"]) == set(parts_of) for one in said.values())
     # Nothing is missing: both take the smooth errors of chains for something.
     for name in ("smallest residual", "BIC, independent errors"):
         assert said[name]["effects"]
@@ -62,6 +66,38 @@ def test_a_gaussian_process_says_that_and_near_which_sensor_and_not_what(tmp_pat
     assert found.sensor.name == "rail@6"
     # It cannot tell a chain's smooth error from what a model lacks.
     assert discrepancy(independent_fit(simulate(tmp_path / "smooth", 3, smooth=0.08).campaign)).gain > 100.0
+
+
+def test_what_is_left_out_is_foretold_by_what_is_right(tmp_path: Path) -> None:
+    def lost(campaign: Campaign) -> Campaign:
+        return weakened(campaign, "pad", 6.0, 1.2, 0.05)
+
+    said = rivals(simulate(tmp_path / "c", 3, smooth=1e-3, amend=lost).campaign, threads=1)
+    best, process = (said[name]["held_out"] for name in ("smallest residual", "Gaussian process"))
+    for name, one in said["recalibration only"]["held_out"].items():
+        assert best[name]["db_after"] < 0.5 * one["db_after"]
+        assert best[name]["gain_nats"] > 10.0
+        assert one["db_before"] == process[name]["db_before"]
+    # What a discrepancy is in one pair of sensor and point says nothing of another.
+    band, place = (next(name for name in process if name.startswith(kind)) for kind in ("band", "place"))
+    assert process[band]["db_after"] < 0.9 * process[band]["db_before"]
+    assert process[place]["db_after"] > 2.0 * best[place]["db_after"]
+
+
+def test_a_discrepancy_is_expected_near_lines_that_are_known(tmp_path: Path) -> None:
+    fit = independent_fit(simulate(tmp_path / "c", 3, smooth=0.08).campaign)
+    evidence = discrepancy(fit).on(fit.evidence)
+    rows = evidence.rows
+    levels = evidence.levels_dB(evidence.predicted(fit.campaign).datasets)
+    pair = (rows.channel == rows.channel[0]) & np.isfinite(levels)
+    lines = np.flatnonzero(pair & (rows.scale_dB < 0.2))
+    known = np.ones(levels.size, dtype=bool)
+    known[lines[1::2]] = False
+    left = beyond(evidence, levels, known)
+    assert np.array_equal(left[known], levels[known], equal_nan=True)
+    assert np.std(left[lines[1::2]]) < 0.5 * np.std(levels[lines[1::2]])
+    # Of a pair of which nothing is known nothing is expected.
+    assert np.array_equal(beyond(evidence, levels, ~pair), levels, equal_nan=True)
 
 
 def independent_fit(campaign: Campaign) -> Fit:

@@ -191,18 +191,21 @@ def test_scores_of_verdicts_without_times_are_json(tmp_path: Path) -> None:
 
 def test_rivals_are_told_beside_the_diagnosis_on_the_campaigns_that_they_answered_on(tmp_path: Path) -> None:
     lost = verdict("named", effect("fastener_loss", "fastener_loss"))
+    lost["held_out"]["band"] = {"gain_nats": 9.0, "standard_error": 1.0}
     nothing = verdict("recalibrated")
     place = folder(
         tmp_path,
         {"single-1": (truth(LOST), lost), "single-2": (truth(LOST), nothing), "null-1": (truth(), nothing)},
     )
+    held = {rival: {"held_out": {"place": {"gain_nats": 4.0, "standard_error": 1.0}}} for rival in RIVALS}
+    held["classifier"] = {"held_out": {"place": {"gain_nats": 6.0, "standard_error": 1.0}}}
     for name in ("single-1", "null-1"):
         (place / "verdicts" / name / "campaign").mkdir()
         (place / "verdicts" / name / "campaign" / "campaign.toml").write_text("")
         for rival in RIVALS:
             answer = place / "rivals" / rival / name / "verdict.json"
             answer.parent.mkdir(parents=True)
-            answer.write_text(json.dumps(lost if rival == "classifier" else nothing))
+            answer.write_text(json.dumps({**(lost if rival == "classifier" else nothing), **held[rival]}))
     ended = CliRunner().invoke(app, ["challenge", "rivals", str(place), "--json"])
     assert ended.exit_code == 0, ended.output
     rows = {(row["rival"], row["tier"]): row for row in json.loads(ended.stdout)["rivals"]}
@@ -211,6 +214,11 @@ def test_rivals_are_told_beside_the_diagnosis_on_the_campaigns_that_they_answere
     assert rows["permway", "null"]["called"].startswith("0/1")
     assert rows["classifier", "null"]["called"].startswith("1/1")
     assert rows["BIC, independent errors", "something concealed"]["found"].startswith("0/1")
+    # The diagnosis gains 5 nats.
+    assert str(rows["BIC, independent errors", "something concealed"]["outdone"]).startswith("1/1")
+    assert str(rows["classifier", "something concealed"]["outdone"]).startswith("0/1")
+    # Where it says nothing, it foretells nothing that the base does not.
+    assert "outdone" not in rows["classifier", "null"]
 
 
 def test_names_are_claims_and_what_no_catalogue_has_is_novel(tmp_path: Path) -> None:

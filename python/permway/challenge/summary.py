@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -46,6 +46,20 @@ def summary(scored: Iterable[Scored]) -> list[dict[str, Any]]:
             row["seconds"] = round(float(np.median(took)), 1)
         rows.append(row)
     return rows
+
+
+def foretold_better(own: Sequence[Scored], other: Sequence[Scored]) -> str | None:
+    """Share of campaigns of which one method foretells what was left out better than another.
+
+    By the log predictive density of all parts that both foretell; None if there are none.
+    """
+    theirs = {one.name: one.foretold for one in other}
+    shares = []
+    for one in own:
+        parts = one.foretold.keys() & theirs.get(one.name, {}).keys()
+        if parts:
+            shares.append(sum(one.foretold[p] - theirs[one.name][p] for p in parts) > 0.0)
+    return _share(shares) if shares else None
 
 
 def _share(values: list[bool]) -> str:

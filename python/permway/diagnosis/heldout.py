@@ -239,13 +239,10 @@ class Rest:
         less, sigma = self._evidence(rest, deviations * ~part, z, ~part)
         square -= less
         volume = self._whole.log_determinant - rest.log_determinant + float(self._volume[part].sum())
-        level = levels[part][fit.evidence.rows.scale_dB[part] < SURE_DB]
-        level = level[np.isfinite(level)]
-        error = float(np.sqrt(np.mean(level**2))) if level.size else float("nan")
         # A model that does not fit knows so: its deviations are as much larger on what it has not seen.
         spread = float(np.log(fit.heat))
         log_density = -0.5 * (square + volume + spread * float(part.sum()))
-        return Scored(log_density, error, z, sigma)
+        return Scored(log_density, error_dB(fit.evidence, levels, part), z, sigma)
 
     def _evidence(
         self, whitener: Whitener, deviations: Reals, z: Reals, rows: np.ndarray | None = None
@@ -262,6 +259,13 @@ class Rest:
         inverse = linalg.solve_triangular(factor, np.eye(z.size), lower=True)
         volume = 2.0 * float(np.log(np.diag(factor)).sum())
         return square + volume, np.sqrt((inverse**2).sum(axis=0))
+
+
+def error_dB(evidence: Evidence, levels: Reals, part: np.ndarray) -> float:
+    """Root mean square of levels of a part, where the record knows them; NaN where it knows none."""
+    level = levels[part][evidence.rows.scale_dB[part] < SURE_DB]
+    level = level[np.isfinite(level)]
+    return float(np.sqrt(np.mean(level**2))) if level.size else float("nan")
 
 
 @dataclass(frozen=True)
@@ -290,10 +294,11 @@ class Gain:
 
 def gains(base: Rest, amended: Rest, chosen: Sequence[Part]) -> list[Gain]:
     """Of every part."""
-    found = []
-    for part in chosen:
-        before, after = base.scored(part.rows), amended.scored(part.rows)
-        nats = after.log_density - before.log_density
-        error = float(np.sqrt(2.0 * max(abs(nats), LEAST_NATS)))
-        found.append(Gain(part, nats, error, before.error_dB, after.error_dB, after.z, after.sigma))
-    return found
+    return [gain(part, base.scored(part.rows), amended.scored(part.rows)) for part in chosen]
+
+
+def gain(part: Part, before: Scored, after: Scored) -> Gain:
+    """Of one."""
+    nats = after.log_density - before.log_density
+    error = float(np.sqrt(2.0 * max(abs(nats), LEAST_NATS)))
+    return Gain(part, nats, error, before.error_dB, after.error_dB, after.z, after.sigma)

@@ -165,7 +165,7 @@ def search(
     journal = current()
     kept = None if journal is None else journal.recall("search", [_key(h) for h in offered], fit.z)
     if kept is None:
-        screened, followed = _looked(ring, offered, before, most, progress)
+        screened, followed = looked(ring, offered, before, most, progress)
         if journal is not None:
             journal.keep({**noted(screened, offered, "screened"), **noted(followed, offered, "followed")})
     else:
@@ -236,7 +236,7 @@ def _in_detail(
     return one, rough, amended
 
 
-def _looked(
+def looked(
     ring: Ring, offered: Sequence[Hypothesis], before: Sequence[Quick], most: int, progress: Progress
 ) -> tuple[list[Quick], list[Quick]]:
     """All that could be solved after a step, and the most promising as far as they go, the best first."""
