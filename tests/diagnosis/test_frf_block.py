@@ -7,7 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.gather import gather
+from permway.recordings.campaign import Campaign
+from permway.recordings.channel import Chain
 from simulated import simulate
 
 NOISE = 0.4
@@ -58,3 +61,45 @@ def test_noise_lifts_no_gain(lines: Lines) -> None:
     certain = np.sum(weight**2)
     gain = np.sum(weight**2 * off.real) / certain
     assert abs(gain) * np.sqrt(certain) < 3.0
+
+
+def test_a_large_error_of_a_chain_is_the_same_where_noise_hides_the_response(tmp_path: Path) -> None:
+    """A gain of 0.6: a logarithm of -0.51, and a difference of -0.4."""
+    gain, errors = 0.6, np.zeros((2, 3, 1), dtype=np.complex128)
+    errors[1] = np.log(gain)
+
+    def weak(campaign: Campaign) -> Campaign:
+        return with_chain(campaign, "deck@3", Chain(gain=gain))
+
+    pulls = []
+    for seed in range(40):
+        made = simulate(tmp_path / str(seed), seed, noise=3.0, smooth=0.0, amend=weak)
+        evidence = gather(made.campaign.with_values(made.truth), threads=1)
+        solved = evidence.predicted(evidence.campaign)
+        plain = evidence.blocks[0]
+        assert isinstance(plain, FrfBlock)
+        model = solved.datasets[0]["frf"].values[1]
+        hidden = plain.sigma[1] > 0.4 * np.abs(model)
+        for block in (plain, plain.with_reference(solved.datasets[0], errors)):
+            # The error by least squares over the lines that noise hides, over its standard error.
+            weight = block.weight[1][hidden]
+            there = model[hidden] * np.exp(errors[1, 0, 0] if block is not plain else 0.0)
+            certain = np.sum((weight * np.abs(there)) ** 2)
+            off = block.off(solved.datasets[0])[1][hidden]
+            found = np.sum(weight**2 * (off * there.conj()).real) / certain
+            pulls.append((found - np.log(gain)) * np.sqrt(certain))
+    by_difference, about = np.array(pulls).reshape(-1, 2).T
+    assert abs(np.mean(about)) * np.sqrt(about.size) < 3.0
+    assert np.mean(by_difference) * np.sqrt(about.size) > 6.0
+
+
+def test_errors_are_those_of_the_columns(tmp_path: Path) -> None:
+    evidence = gather(simulate(tmp_path, 5, noise=1e-4, smooth=0.0).campaign, threads=1)
+    block = evidence.blocks[0]
+    assert isinstance(block, FrfBlock)
+    block = block.with_pair(NO_ERROR)
+    coefficients = np.random.default_rng(6).standard_normal(block.smooth.columns.gram().shape[0])
+    moved = block.errors(coefficients) * block.measured * block.weight
+    assert moved.shape == block.measured.shape
+    pushed = block.smooth.columns.push(coefficients)
+    assert pushed == pytest.approx(np.concatenate([moved.real.reshape(-1), moved.imag.reshape(-1)]), rel=1e-6)

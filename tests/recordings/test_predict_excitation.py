@@ -10,7 +10,7 @@ import pytest
 from campaigns import tables, write
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_excitation import Push
+from permway.recordings.campaign_excitation import Push, TrackLines
 from permway.recordings.estimates.welch import cross_spectra
 from permway.recordings.predict.excitation import deposit, push
 from permway.recordings.predict.grid import grid_of
@@ -234,8 +234,25 @@ def test_a_slow_clock_takes_from_cross_spectra_what_it_takes_from_samples(
         ),
         ({"bands": [{"wavelength_m": 0.3, "gain_dB": -1.0}]}, r"irregularity.bands\[0\].gain_dB"),
         ({"series": [{"length_m": 0.0, "amplitude_m": 1e-5}]}, r"irregularity.series\[0\].length_m"),
+        (
+            {"series": [{"length_m": 12.0, "amplitude_m": 1e-5, "dip_m": 0.6, "decay": 2.0}]},
+            r"irregularity.series\[0\].*decay",
+        ),
     ],
 )
 def test_faults_are_said_with_their_place(tmp_path: Path, said: dict[str, Any], where: str) -> None:
     with pytest.raises(InputError, match=where):
         campaign_with(tmp_path, said)
+
+
+def test_lines_of_dips_are_those_of_their_shape() -> None:
+    length, dip, count = 12.0, 0.9, 1 << 16
+    x = (np.arange(count) / count - 0.5) * length
+    shape = np.where(np.abs(x) < 0.5 * dip, 1.0 - np.sin(np.pi * np.abs(x) / dip), 0.0)
+    by_fourier = 2.0 / count * np.abs(np.fft.rfft(shape))
+    number = np.arange(1.0, 61.0)
+    of_long_lines = 2.0 * shape.mean()
+    lines = TrackLines(length_m=length, amplitude_m=of_long_lines, dip_m=dip)
+    assert lines.amplitude(number) == pytest.approx(by_fourier[1:61], rel=1e-5, abs=1e-9)
+    # The kink: (n dip / length)^-2 at last; and no division by nothing where a quarter wave meets its own length.
+    assert np.isfinite(lines.amplitude(np.array([0.5 * length / dip, 1e5]))).all()

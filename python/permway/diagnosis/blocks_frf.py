@@ -10,6 +10,7 @@ import xarray as xr
 
 from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks import SURE, Basis, Rows
+from permway.diagnosis.line_noise import noise_variance, widened
 from permway.diagnosis.smooth import Origin, PairColumns, Smooth, as_complex, as_parts
 from permway.diagnosis.wander import Wander
 from permway.recordings.campaign_load import Dataset
@@ -31,7 +32,8 @@ class FrfBlock:
     """Frequency responses: complex deviations by the noise of each line, from coherence, and a floor.
 
     Errors of chains multiply: a deviation is the logarithm of measured over predicted, in units of the measured
-    response. Where noise is large the logarithm is biased, and the difference stands for it.
+    response. Where noise is large the logarithm is biased, and the difference stands for it, taken about the
+    errors that the other lines tell of: of exp(e) it is linear in e.
 
     Beside the noise, which is new on every line, each pair of sensor and point has a smooth error of its own: of
     the model's idealisation, of where exactly the hammer fell. It is integrated out pair by pair, once, with the
@@ -46,6 +48,8 @@ class FrfBlock:
         Size of a pair's smooth error, neper and rad.
     reference : Dataset of xarray
         A prediction, which stands for what is there where noise hides it.
+    errors : ndarray of complex128, shape (sensors, points, F), optional
+        Log gain and phase by which chains are expected to be off, that prediction being so; by default none.
     span : (float, float), optional
         Hz, over which chains' errors wander, where other records of the same chains reach further.
     """
@@ -59,15 +63,17 @@ class FrfBlock:
         floor: float | Reals = FLOOR,
         pair: float = FLOOR,
         reference: xr.Dataset,
+        errors: Complexes | None = None,
         span: tuple[float, float] | None = None,
     ) -> None:
         self.dataset, self.floor, self.pair, self._reference = dataset, floor, pair, reference
+        self._errors = errors
         data = dataset.data
         self.measured: Complexes = data["frf"].values
         self.frequency: Reals = data["frequency"].values
         size = np.abs(self.measured)
-        noise = _noise_variance(data["log_variance"].values * size**2, reach=REACH)
-        noise *= _widened(float(data.attrs.get("averages", np.inf)), lines=2 * REACH + 1)
+        noise = noise_variance(data["log_variance"].values * size**2, reach=REACH)
+        noise *= widened(float(data.attrs.get("averages", np.inf)), lines=2 * REACH + 1)
         self.sigma = np.sqrt(noise + (floor * size) ** 2)
         used = np.isfinite(self.measured) & np.isfinite(self.sigma) & (self.sigma > 0.0)
         # What is not used weighs nothing, and stays in its place.
@@ -76,7 +82,10 @@ class FrfBlock:
             decibels = np.where(used, 8.686 * self.sigma / size, np.inf)
         self._measured = np.where(used, self.measured, 0.0)
         own = np.nan_to_num(np.sqrt(data["log_variance"].values), nan=np.inf)
-        expected = np.where(used, reference["frf"].values, 0.0)
+        off = np.zeros(1, dtype=np.complex128) if errors is None else errors
+        expected = np.where(used, reference["frf"].values * np.exp(off), 0.0)
+        # exp(e) is, about errors E, exp(E) (1 - E) + exp(E) e.
+        self._gain: Complexes = np.exp(off) * (1.0 - off)
         # Noise alone looks large, and sure of itself, where it happens to be both.
         seen = np.minimum(size, np.abs(expected))
         self._logarithmic = used & (np.maximum(own * size, np.sqrt(noise)) < SURE * seen)
@@ -92,8 +101,8 @@ class FrfBlock:
         with np.errstate(divide="ignore", invalid="ignore"):
             self._phase: Complexes = np.where(there > 0.0, self._there / there, 1.0)
         self._relative: Reals = there * self.weight
-        errors = self._relative[..., None] * fine.values(self.frequency)
-        self._directions, singular, _ = np.linalg.svd(errors, full_matrices=False)
+        own_errors = self._relative[..., None] * fine.values(self.frequency)
+        self._directions, singular, _ = np.linalg.svd(own_errors, full_matrices=False)
         self._singular = singular
         self._last: tuple[xr.Dataset, Reals] | None = None
         self._shrink = 1.0 - 1.0 / np.sqrt(1.0 + (pair * singular) ** 2)
@@ -121,22 +130,44 @@ class FrfBlock:
         total = squares.sum(axis=-1, keepdims=True)
         return np.asarray(np.sqrt(total / np.maximum(self._logarithmic.sum(axis=-1, keepdims=True), 1)))
 
-    def with_reference(self, reference: xr.Dataset) -> FrfBlock:
-        """The same with another prediction where noise hides what is there."""
-        return self._other(reference=reference)
+    def with_reference(self, reference: xr.Dataset, errors: Complexes) -> FrfBlock:
+        """The same with another prediction, and errors of chains, where noise hides what is there."""
+        return self._other(reference=reference, errors=errors)
+
+    def errors(self, coefficients: Reals) -> Complexes:
+        """Log gain and phase by coefficients of the smooth errors, shape (sensors, points, F)."""
+        wander = Wander(*self._span)
+        gain, phase = (
+            np.moveaxis(coefficients.reshape(-1, 2, wander.count), 1, 0) @ wander.values(self.frequency).T
+        )
+        each, sensors = gain + 1j * phase, self.measured.shape[0]
+        return np.asarray(each[:sensors, None] + each[sensors:])
 
     def of(self, dataset: Dataset) -> FrfBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
-        return FrfBlock(dataset, floor=self.floor, pair=self.pair, reference=self._reference, span=self._span)
+        return FrfBlock(
+            dataset,
+            floor=self.floor,
+            pair=self.pair,
+            reference=self._reference,
+            errors=self._errors,
+            span=self._span,
+        )
 
     def _other(
-        self, *, floor: float | Reals | None = None, pair: float | None = None, reference: xr.Dataset | None = None
+        self,
+        *,
+        floor: float | Reals | None = None,
+        pair: float | None = None,
+        reference: xr.Dataset | None = None,
+        errors: Complexes | None = None,
     ) -> FrfBlock:
         return FrfBlock(
             self.dataset,
             floor=self.floor if floor is None else floor,
             pair=self.pair if pair is None else pair,
             reference=self._reference if reference is None else reference,
+            errors=self._errors if errors is None else errors,
             span=self._span,
         )
 
@@ -173,7 +204,7 @@ class FrfBlock:
     def off(self, predicted: xr.Dataset) -> Complexes:
         """Measured less predicted, in the response's unit, as errors that multiply have it."""
         model = predicted["frf"].values
-        found = self._measured - model
+        found = self._measured - model * self._gain
         found[self._logarithmic] = self._seen * (self._logarithms(model) - self._lifted)
         return np.asarray(found)
 
@@ -187,14 +218,13 @@ class FrfBlock:
 
     def along(self, predicted: xr.Dataset) -> Complexes:
         """Direction in which a gain moves a deviation; a phase moves it across."""
-        return np.asarray(
-            np.exp(1j * np.angle(np.where(self._logarithmic, self._measured, predicted["frf"].values)))
-        )
+        there = np.where(self._logarithmic, self._measured, predicted["frf"].values * self._gain)
+        return np.asarray(np.exp(1j * np.angle(there)))
 
     def slope(self, predicted: xr.Dataset) -> Complexes:
         """By what a change of the predicted response changes it, reversed: 1 where they agree."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray(np.where(self._logarithmic, self._measured / predicted["frf"].values, 1.0))
+            return np.asarray(np.where(self._logarithmic, self._measured / predicted["frf"].values, self._gain))
 
     def learnt_pair(self, clean: Reals, low: float, high: float) -> float:
         """The size of the pairs' errors, by MacKay's fixed point (1992): each counts by as much as is told of it.
@@ -239,37 +269,6 @@ class FrfBlock:
 
 def _square(values: Complexes) -> Reals:
     return np.asarray(values.real**2 + values.imag**2)
-
-
-def _widened(averages: float, lines: int) -> float:
-    """By what a variance of noise is too small that comes from the coherence of the same blows.
-
-    One blow of K goes into the response itself; and few blows scatter, of which `lines` are taken together.
-    """
-    if not np.isfinite(averages) or averages <= 1.0:
-        return 1.0
-    freedom = lines * (averages - 1.0)
-    return averages / (averages - 1.0) * (freedom / (freedom - 1.0) if freedom > 1.0 else 1.0)
-
-
-def _noise_variance(raw: Reals, reach: int) -> Reals:
-    """Smoothed over neighbouring lines, so that a line's weight does not follow its own error.
-
-    Parameters
-    ----------
-    raw : ndarray, shape (..., F)
-        Variance of real and of imaginary part, line by line; NaN where it is not known.
-    """
-    kernel = np.ones(2 * reach + 1)
-
-    def line(values: Reals) -> Reals:
-        there = np.isfinite(values)
-        total = np.convolve(np.where(there, values, 0.0), kernel, "same")
-        count = np.convolve(there.astype(float), kernel, "same")
-        with np.errstate(invalid="ignore"):
-            return np.asarray(np.where(there, total / count, np.nan))
-
-    return np.apply_along_axis(line, -1, raw)
 
 
 def thinned(dataset: Dataset) -> Dataset:

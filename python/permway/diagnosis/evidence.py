@@ -195,14 +195,15 @@ class Evidence:
     def reweighed(self, solved: Solved) -> Evidence:
         """The same with spectra weighed by what a fit predicts, and not by what the owner's values do.
 
-        And with what it predicts of frequency responses where noise hides them.
+        And with what it predicts of frequency responses where noise hides them, chains off as other lines say.
         """
+        explained = self.whitener.explained(self.deviations(solved.datasets))
         blocks: list[Block] = []
-        for block, prediction in zip(self.blocks, solved.datasets, strict=True):
+        for index, (block, prediction) in enumerate(zip(self.blocks, solved.datasets, strict=True)):
             if isinstance(block, SpectraBlock):
                 block = block.expecting(prediction, added_to(solved.campaign, block.dataset))
             elif isinstance(block, FrfBlock):
-                block = block.with_reference(prediction)
+                block = block.with_reference(prediction, block.errors(self.whitener.of_part(explained, index)))
             blocks.append(block)
         return replace(self, blocks=tuple(blocks))
 

@@ -177,11 +177,18 @@ class Whitener:
 
     def smooth(self, coefficients: Reals, size: int) -> Reals:
         """What coefficients do to so many deviations."""
+        return self.columns.push(self._moved(coefficients), size)
+
+    def of_part(self, coefficients: Reals, index: int) -> Reals:
+        """Coefficients of one block's columns, nepers and rad of them, in the order of its origins."""
+        return np.asarray(self._moved(coefficients)[self.columns.parts[index][1]])
+
+    def _moved(self, coefficients: Reals) -> Reals:
         moved, stop = np.empty_like(coefficients), 0
         for root in self.roots:
             start, stop = stop, stop + root.shape[0]
             moved[start:stop] = root @ coefficients[start:stop]
-        return self.columns.push(moved, size)
+        return moved
 
     def of_origin(self) -> np.ndarray:
         """Index of each coefficient's origin."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
-from pydantic import Field, NonNegativeFloat, PositiveFloat
+from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from permway.arrays import Reals
 from permway.errors import InputError
+from permway.model.faults import fault
 from permway.records import FrozenModel, Number
 
 if TYPE_CHECKING:
@@ -74,8 +75,6 @@ class _Lines(FrozenModel):
     harmonics : int, optional
         How many; by default as many as the record's band holds.
     decay : float
-    flat_to : float, optional
-        Order m up to which lines are nearly alike, as those of short dips are: a (1 + (n/m)^2)^(-decay/2).
     width : float
         Standard deviation of a line's frequency over the frequency, of a bell; 0 for a pure line.
     """
@@ -83,14 +82,11 @@ class _Lines(FrozenModel):
     amplitude_m: NonNegativeFloat
     harmonics: int | None = Field(default=None, ge=1, le=10_000, strict=True)
     decay: Number = Field(default=1.0, ge=0.0, le=10.0)
-    flat_to: float | None = Field(default=None, gt=0.0, le=1e5)
     width: float = Field(default=0.0, ge=0.0, le=0.3)
 
     def amplitude(self, number: Reals) -> Reals:
         """Of lines by their number, m."""
-        if self.flat_to is None:
-            return np.asarray(self.amplitude_m * number**-self.decay)
-        return np.asarray(self.amplitude_m * (1.0 + (number / self.flat_to) ** 2) ** (-0.5 * self.decay))
+        return np.asarray(self.amplitude_m * number**-self.decay)
 
 
 class TrackLines(_Lines):
@@ -100,11 +96,35 @@ class TrackLines(_Lines):
     ----------
     length_m : float
         Of rails between welds, of spans, of the distance between supports.
-    amplitude_m, harmonics, decay, flat_to, width
+    dip_m : float, optional
+        Lines are those of dips of this length l instead, d (1 - sin(pi |x| / l)), two quarter waves that meet in a
+        kink as at the ends of rails; `amplitude_m` is then that of lines far longer than a dip.
+    amplitude_m, harmonics, decay, width
         See :class:`_Lines`.
     """
 
     length_m: float = Field(ge=0.05, le=1000.0)
+    dip_m: float | None = Field(default=None, gt=0.0, le=100.0)
+
+    @model_validator(mode="after")
+    def _falls_once(self) -> Self:
+        if self.dip_m is not None and "decay" in self.model_fields_set:
+            raise fault("a dip says how its lines fall: leave out decay, or dip_m", "decay")
+        return self
+
+    def amplitude(self, number: Reals) -> Reals:
+        """Of lines by their number, m."""
+        if self.dip_m is None:
+            return super().amplitude(number)
+        return np.asarray(self.amplitude_m * np.abs(_quarter_waves(np.pi * number * self.dip_m / self.length_m)))
+
+
+def _quarter_waves(turns: Reals) -> Reals:
+    """Integral of (1 - sin(pi u / 2)) cos(k u) over u from 0 to 1, over that at k = 0."""
+    late, early = turns + 0.5 * np.pi, turns - 0.5 * np.pi
+    # (1 - cos v) / v, which divides by nothing at v = 0.
+    both = [np.sin(0.5 * v) * np.sinc(0.5 * v / np.pi) for v in (late, early)]
+    return np.asarray((np.sinc(turns / np.pi) - 0.5 * (both[0] - both[1])) / (1.0 - 2.0 / np.pi))
 
 
 class WheelLines(_Lines):
@@ -116,7 +136,7 @@ class WheelLines(_Lines):
         Of the first line, per turn: 18 for a polygon of 18 sides, 1 for a flat.
     wheel : int, optional
         1 is the leading wheelset; by default every wheelset, independent of each other.
-    amplitude_m, harmonics, decay, flat_to, width
+    amplitude_m, harmonics, decay, width
         See :class:`_Lines`.
     """
 

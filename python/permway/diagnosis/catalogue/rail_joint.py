@@ -19,12 +19,12 @@ ID = "rail_joint"
 DOMAIN: Domain = "irregularity"
 FAMILY = "tied to speed over length"
 SUMMARY = (
-    "Lines in the profile at all multiples n of V / L, L the length of a rail: a n^-p, or of dips of a length d "
-    "a / (1 + (n d / L)^2)."
+    "Lines in the profile at all multiples n of V / L, L the length of a rail: a n^-p, or those of dips of length "
+    "d, each two quarter waves that meet in a kink."
 )
 PARAMETERS = {
     "length_m": "m, 5 to 120, and no longer than a run resolves: L",
-    "amplitude_m": "m, 4.1e-8 to 2.4e-3: a, of the first line",
+    "amplitude_m": "m, 4.1e-8 to 2.4e-3: a, of the first line, or of all that are far longer than a dip",
     "decay": "1, 0 to 2: p; 0 for short dips, 2 for a kink",
     "dip_m": "m, 0.05 to 9: d",
 }
@@ -131,7 +131,6 @@ def _dips(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
     added = TrackLines(
         length_m=values["length_m"],
         amplitude_m=values["amplitude_m"],
-        decay=2.0,
-        flat_to=values["length_m"] / values["dip_m"],
+        dip_m=values["dip_m"],
     )
     return with_irregularity(campaign, series=(*campaign.said.irregularity.series, added))

@@ -1,0 +1,38 @@
+"""Noise of the lines of a frequency response, as its coherence tells."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from permway.arrays import Reals
+
+
+def widened(averages: float, lines: int) -> float:
+    """By what a variance of noise is too small that comes from the coherence of the same blows.
+
+    One blow of K goes into the response itself; and few blows scatter, of which `lines` are taken together.
+    """
+    if not np.isfinite(averages) or averages <= 1.0:
+        return 1.0
+    freedom = lines * (averages - 1.0)
+    return averages / (averages - 1.0) * (freedom / (freedom - 1.0) if freedom > 1.0 else 1.0)
+
+
+def noise_variance(raw: Reals, reach: int) -> Reals:
+    """Smoothed over neighbouring lines, so that a line's weight does not follow its own error.
+
+    Parameters
+    ----------
+    raw : ndarray, shape (..., F)
+        Variance of real and of imaginary part, line by line; NaN where it is not known.
+    """
+    kernel = np.ones(2 * reach + 1)
+
+    def line(values: Reals) -> Reals:
+        there = np.isfinite(values)
+        total = np.convolve(np.where(there, values, 0.0), kernel, "same")
+        count = np.convolve(there.astype(float), kernel, "same")
+        with np.errstate(invalid="ignore"):
+            return np.asarray(np.where(there, total / count, np.nan))
+
+    return np.apply_along_axis(line, -1, raw)
