@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from permway.diagnosis.blocks_spectra import LEVEL
 from permway.diagnosis.gather import gather
 from permway.diagnosis.learning import learnt
 from permway.diagnosis.smooth import Origin, PairColumns, PlainColumns, Smooth
 from permway.diagnosis.wander import LENGTHS, SHORTEST, Wander
 from permway.diagnosis.whitener import AllColumns, Whitener
+from permway.recordings.campaign_excitation import Dips
 from simulated import simulate
 
 Reals = np.ndarray
@@ -140,3 +142,20 @@ def test_size_and_length_of_smooth_errors_are_learnt(tmp_path: Path) -> None:
     assert np.sqrt(np.mean(np.square(sensors))) == pytest.approx(0.1, rel=0.4)
     assert max(forces) < 0.03
     assert found.length in (1.4, 2.0, 2.8)
+
+
+def test_a_level_takes_up_a_hump_of_what_its_owner_allows() -> None:
+    """Of 1.3 dB over two octaves, as dips of half a metre would make: no reason to name welds."""
+    cycles_per_m = np.geomspace(0.02, 10.0, 400)
+    power = Dips(depth_m=1.7e-4, length_m=0.47, every_m=20.0).density(2.0 * np.pi * cycles_per_m) * cycles_per_m**3
+    hump = 0.5 * np.log(1.0 + 0.36 * power / power.max())
+    size, known = 0.115, 0.005
+    columns = np.vstack([LEVEL.values(cycles_per_m) * size / known, np.eye(LEVEL.count)])
+    wanted = np.concatenate([hump / known, np.zeros(LEVEL.count)])
+    left = columns @ np.linalg.lstsq(columns, wanted)[0] - wanted
+    assert left @ left < 0.05 * (wanted @ wanted)
+    # Corrugation of 4 dB is narrower.
+    bump = 0.5 * np.exp(-0.5 * (np.log2(cycles_per_m) / 0.13) ** 2)
+    wanted = np.concatenate([bump / known, np.zeros(LEVEL.count)])
+    left = columns @ np.linalg.lstsq(columns, wanted)[0] - wanted
+    assert left @ left > 0.1 * (wanted @ wanted)

@@ -296,5 +296,5 @@ class SpectraBlock:
         return Smooth(tuple(origins), PlainColumns(whole))
 
 
-LEVEL = Wander(0.005, 20.0, shortest=1.4)
+LEVEL = Wander(0.005, 20.0, shortest=0.7)
 """Of the irregularity, over cycles per metre."""
