@@ -11,11 +11,12 @@ import pytest
 from permway.diagnosis import describe
 from permway.diagnosis.bases import bases
 from permway.diagnosis.catalogue._change import fixed_mass, hung_mass, with_joints
+from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.elements import ELEMENTS, Element
 from permway.diagnosis.gather import gather
-from permway.diagnosis.grammar import _bodies, alike, hypotheses
+from permway.diagnosis.grammar import _bodies, _joints, alike, hypotheses
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.search import Finalist, search
@@ -76,6 +77,27 @@ def test_inertances_beside_some_pads_are_described_as_such(tmp_path: Path) -> No
     start, stop = best.hypothesis.locate(best.values).x_m or (0.0, 0.0)
     assert start == pytest.approx(6.6, abs=0.4)
     assert stop == pytest.approx(8.4, abs=0.4)
+
+
+def test_pads_that_keep_a_part_lose_as_much_of_their_damping(tmp_path: Path) -> None:
+    """Where a spring that pushes away would leave all of it."""
+    case = simulate(tmp_path / "c", 8, amend=lambda campaign: weakened(campaign, "pad", 6.9, 0.6, 0.2))
+    best = described(case.campaign)
+    assert best.hypothesis.family == "part beside each joint of a stretch"
+    assert best.values["share"] == pytest.approx(-0.8, abs=0.05)
+    assert best.hypothesis.locate(best.values).x_m == pytest.approx((6.6, 7.2))
+    assert "a spring of -0.8" in best.hypothesis.law(best.values)
+
+
+def test_joints_of_another_layer_are_tried_where_they_tell_nearly_as_much() -> None:
+    def joint(name: str, x: float, gain: float) -> Found:
+        one = np.array([1.0])
+        return Found(Spot("joint", name, (x, x)), gain, 24, one, one + 0j, one, one, 1e3)
+
+    mortar = joint("mortar", 24.8, 124.0)
+    pad, far, weak = joint("pad", 24.2, 110.0), joint("pad", 16.1, 123.0), joint("sliding", 24.8, 60.0)
+    assert _joints([mortar, far, joint("mortar", 24.2, 120.0), pad, weak]) == [mortar, pad]
+    assert _joints([]) == []
 
 
 def on_the_rail_at_every_pad(campaign: Campaign) -> Campaign:

@@ -100,6 +100,14 @@ def _hung(k: float, f: float) -> tuple[Free, ...]:
     )
 
 
+PART = Element(
+    "part",
+    lambda *_: (linear_free("share", "1", 0.0, 0.5, -0.999, 4.0),),
+    lambda v: Hysteretic(stiffness=v["share"]),
+    lambda v: f"a spring of {v['share']:.3g} times the joint's own, as much of its loss with it",
+)
+"""More, or less, of what a joint has: its law is a factor of the joint's."""
+
 ELEMENTS = (
     Element(
         "spring",

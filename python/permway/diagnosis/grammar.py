@@ -17,9 +17,9 @@ import numpy as np
 from permway.arrays import Reals
 from permway.diagnosis import crossed
 from permway.diagnosis.catalogue._change import fresh, with_joints, with_law
-from permway.diagnosis.catalogue._interval import shares, spacing_of, span_of, stations_of
+from permway.diagnosis.catalogue._interval import shares, spacing_of, span_of, stations_of, weakened
 from permway.diagnosis.catalogue._roles import fasteners
-from permway.diagnosis.elements import ELEMENTS, Element
+from permway.diagnosis.elements import ELEMENTS, PART, Element
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation, Where, linear_free, log_free
 from permway.diagnosis.spot import Found
@@ -35,6 +35,10 @@ RESONANCES_HZ = np.geomspace(4.0, 150.0, 12)
 
 BESIDE_M = 2.0
 """How far from the most telling place of a scan something may stand."""
+
+NEARLY = 0.8
+"""Share of the surplus of the most telling joint from which joints of another layer there are tried, too: where
+much is missing the scan of a base that does not fit tells the place, and hardly the layer."""
 
 SPACING_M = 1.0
 """Between the points of a stretch of a body at which an element acts."""
@@ -68,21 +72,24 @@ def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hyp
     like : mapping of name to float, optional
         Of a mass on a spring that explained part: what hangs on a body is looked for from there.
     """
-    joint = next((f for f in situation.found if f.spot.kind == "joint"), None)
+    joints = _joints(situation.found)
     bodies = _bodies(situation.found)[: 1 if like is not None else None]
     layers = _first(f for f in situation.found if f.spot.kind == "joint")
     along = bodies if like is not None else _with_rail(situation, bodies)
     for element in ELEMENTS:
-        if not element.ground and joint is not None:
-            yield _at_joint(situation, element, joint)
-            yield _over_joints(situation, element, joint)
+        if not element.ground:
+            for joint in joints:
+                yield _at_joint(situation, element, joint)
+                yield _over_joints(situation, element, joint)
             yield from (_in_layer(element, layer) for layer in layers)
         for body in bodies:
             yield _on_body(element, body, like)
             yield _over_body(situation, element, body, like)
         for body in along:
             yield from _at_supports(situation, element, body, like)
-    if joint is not None and like is None:
+    for joint in joints:
+        yield _part(situation, joint)
+    for joint in joints[: 1 if like is None else 0]:
         yield from crossed.at_joint(situation, joint.spot.name, joint.spot.x_m[0])
 
 
@@ -92,6 +99,13 @@ def _first(found: Iterable[Found]) -> list[Found]:
     for one in found:
         best.setdefault(one.spot.name, one)
     return list(best.values())
+
+
+def _joints(found: Sequence[Found]) -> list[Found]:
+    """The most telling joint, and those of other layers there that tell nearly as much."""
+    of = [one for one in found if one.spot.kind == "joint"]
+    near = [one for one in of if abs(one.spot.x_m[0] - of[0].spot.x_m[0]) < BESIDE_M]
+    return [one for one in _first(near) if one is of[0] or one.surplus > NEARLY * of[0].surplus]
 
 
 def _with_rail(situation: Situation, bodies: Sequence[Found]) -> list[Found]:
@@ -248,6 +262,16 @@ def _over_joints(situation: Situation, element: Element, found: Found) -> Hypoth
     layer = line.joints[int(line.joint_table().layer[found.spot.joints[0]])]
     x, step = stations_of(line, found.spot.name), spacing_of(line, found.spot.name)
     return _stretch(element, found, layer.between, x, step, "beside each joint of a stretch")
+
+
+def _part(situation: Situation, found: Found) -> Hypothesis:
+    """More or less of what the joints of a stretch have; of one, if the stretch is short."""
+
+    def amend(campaign: Campaign, values: Values) -> Campaign:
+        law, factor = found.spot.name, 1.0 + values["share"]
+        return weakened(campaign, law, values["centre_m"], values["length_m"], factor)
+
+    return replace(_over_joints(situation, PART, found), amend=amend)
 
 
 def _over_body(situation: Situation, element: Element, found: Found, like: Values | None = None) -> Hypothesis:
