@@ -140,14 +140,15 @@ class Description:
             left = explained < 1.0 - OPEN or best.heat > UNFIT
             strange, blind = beyond_belief(accepted[0]), self._blind(best)
             if accepted[0].hypothesis.domain != "path":
-                # What is missing in the path may have been taken for a fault of the measurement.
-                if best.heat < UNFIT or not self._tells(least):
+                # What is missing in the path may have been taken for a fault of a sensor, or of the vehicle.
+                if best.heat < UNFIT:
                     return None
             elif not (left or strange or blind or twice is not None):
                 return None
         else:
             best = self.base
-            if not self._tells(least):
+            # Of a base that is missed by far the scan is of blunted records, and tells little.
+            if best.heat < UNFIT and not self._tells(least):
                 return None
         result = self._searched(least, twice)
         if not result.finalists:
