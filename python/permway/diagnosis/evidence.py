@@ -23,6 +23,9 @@ from permway.recordings.predict import Answer, Need, State, added_to, need_of, p
 SMALLEST_SMOOTH, LARGEST_SMOOTH = 0.001, 0.2
 """Between which the size of smooth errors is learnt, neper or rad: 0.009 and 1.7 dB."""
 
+FITS = 1.5
+"""Mean square of the deviations below which what smooth errors explain is taken for errors of chains."""
+
 LARGEST_PAIR = 0.03
 """Of the errors of a pair of sensor and point, 0.26 dB: what is larger is not of where a hammer fell."""
 
@@ -195,15 +198,21 @@ class Evidence:
     def reweighed(self, solved: Solved) -> Evidence:
         """The same with spectra weighed by what a fit predicts, and not by what the owner's values do.
 
-        And with what it predicts of frequency responses where noise hides them, chains off as other lines say.
+        And with what it predicts of frequency responses where noise hides them, chains off as other lines say, if
+        these fit: else it is not chains that are off.
         """
-        explained = self.whitener.explained(self.deviations(solved.datasets))
+        deviations = self.deviations(solved.datasets)
+        fits = self.whitener.square(deviations) < FITS * deviations.size
+        explained = self.whitener.explained(deviations)
         blocks: list[Block] = []
         for index, (block, prediction) in enumerate(zip(self.blocks, solved.datasets, strict=True)):
             if isinstance(block, SpectraBlock):
                 block = block.expecting(prediction, added_to(solved.campaign, block.dataset))
             elif isinstance(block, FrfBlock):
-                block = block.with_reference(prediction, block.errors(self.whitener.of_part(explained, index)))
+                coefficients = self.whitener.of_part(explained, index)
+                block = block.with_reference(
+                    prediction, block.errors(coefficients if fits else 0.0 * coefficients)
+                )
             blocks.append(block)
         return replace(self, blocks=tuple(blocks))
 
