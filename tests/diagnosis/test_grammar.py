@@ -16,7 +16,8 @@ from permway.diagnosis.clock import Clock
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.elements import ELEMENTS, Element
 from permway.diagnosis.gather import gather
-from permway.diagnosis.grammar import _bodies, _joints, alike, hypotheses
+from permway.diagnosis.grammar import alike, hypotheses
+from permway.diagnosis.grammar_places import bodies, joints
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.search import Finalist, search
@@ -96,8 +97,8 @@ def test_joints_of_another_layer_are_tried_where_they_tell_nearly_as_much() -> N
 
     mortar = joint("mortar", 24.8, 124.0)
     pad, far, weak = joint("pad", 24.2, 110.0), joint("pad", 16.1, 123.0), joint("sliding", 24.8, 60.0)
-    assert _joints([mortar, far, joint("mortar", 24.2, 120.0), pad, weak]) == [mortar, pad]
-    assert _joints([]) == []
+    assert joints([mortar, far, joint("mortar", 24.2, 120.0), pad, weak]) == [mortar, pad]
+    assert joints([]) == []
 
 
 def on_the_rail_at_every_pad(campaign: Campaign) -> Campaign:
@@ -179,7 +180,7 @@ def test_bodies_that_tell_as_much_are_all_looked_at() -> None:
 
     joint = cast(Found, SimpleNamespace(spot=Spot("joint", "pad", (6.0, 6.0)), surplus=85.0))
     found = [told("base", 80.0), joint, told("girder", 78.7), told("base", 78.0), told("rail", 40.0)]
-    assert [one.spot.name for one in _bodies(found)] == ["base", "girder"]
+    assert [one.spot.name for one in bodies(found)] == ["base", "girder"]
 
 
 @pytest.mark.parametrize(

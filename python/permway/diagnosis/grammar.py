@@ -8,7 +8,7 @@ description, not a name.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import product
 
@@ -16,9 +16,9 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.diagnosis import crossed
+from permway.diagnosis import grammar_places as places
 from permway.diagnosis.catalogue._change import fresh, with_joints, with_law
 from permway.diagnosis.catalogue._interval import shares, spacing_of, span_of, stations_of, weakened
-from permway.diagnosis.catalogue._roles import fasteners
 from permway.diagnosis.elements import ELEMENTS, PART, Element
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation, Where, linear_free, log_free
@@ -33,18 +33,8 @@ from permway.recordings.campaign import Campaign
 RESONANCES_HZ = np.geomspace(4.0, 150.0, 12)
 """Where resonances are looked for, beside where the free stiffness is best known."""
 
-BESIDE_M = 2.0
-"""How far from the most telling place of a scan something may stand."""
-
-NEARLY = 0.8
-"""Share of the surplus of the most telling joint from which joints of another layer there are tried, too: where
-much is missing the scan of a base that does not fit tells the place, and hardly the layer."""
-
 SPACING_M = 1.0
 """Between the points of a stretch of a body at which an element acts."""
-
-AS_MUCH = 2.0 * float(np.log(10.0))
-"""Between the surpluses of two bodies that the records do not tell apart (90 %)."""
 
 STRETCHES = (3.0, 9.0)
 """Usual lengths, in spacings, that a stretch is looked for with."""
@@ -72,10 +62,10 @@ def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hyp
     like : mapping of name to float, optional
         Of a mass on a spring that explained part: what hangs on a body is looked for from there.
     """
-    joints = _joints(situation.found)
-    bodies = _bodies(situation.found)[: 1 if like is not None else None]
-    layers = _first(f for f in situation.found if f.spot.kind == "joint")
-    along = bodies if like is not None else _with_rail(situation, bodies)
+    joints = places.joints(situation.found)
+    bodies = places.bodies(situation.found)[: 1 if like is not None else None]
+    layers = places.first_of(f for f in situation.found if f.spot.kind == "joint")
+    along = bodies if like is not None else places.with_rail(situation, bodies)
     for element in ELEMENTS:
         if not element.ground:
             for joint in joints:
@@ -91,34 +81,6 @@ def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hyp
         yield _part(situation, joint)
     for joint in joints[: 1 if like is None else 0]:
         yield from crossed.at_joint(situation, joint.spot.name, joint.spot.x_m[0])
-
-
-def _first(found: Iterable[Found]) -> list[Found]:
-    """The most telling place of each body or law."""
-    best: dict[str, Found] = {}
-    for one in found:
-        best.setdefault(one.spot.name, one)
-    return list(best.values())
-
-
-def _joints(found: Sequence[Found]) -> list[Found]:
-    """The most telling joint, and those of other layers there that tell nearly as much."""
-    of = [one for one in found if one.spot.kind == "joint"]
-    near = [one for one in of if abs(one.spot.x_m[0] - of[0].spot.x_m[0]) < BESIDE_M]
-    return [one for one in _first(near) if one is of[0] or one.surplus > NEARLY * of[0].surplus]
-
-
-def _with_rail(situation: Situation, bodies: Sequence[Found]) -> list[Found]:
-    """And of what pads hold, where it is none of them."""
-    carried = {layer.upper for layer in fasteners(situation.campaign.model.line)}
-    others = _first(f for f in situation.found if f.spot.kind == "body" and f.spot.name in carried)
-    return [*bodies, *(one for one in others if all(one is not body for body in bodies))]
-
-
-def _bodies(found: Sequence[Found]) -> list[Found]:
-    """The most telling place of a body, and of others that tell as much: layers of a track move together."""
-    kept = _first(one for one in found if one.spot.kind == "body")
-    return [one for one in kept if kept[0].surplus - one.surplus < AS_MUCH]
 
 
 def alike(
@@ -245,7 +207,7 @@ def _on_body(element: Element, found: Found, like: Values | None = None) -> Hypo
     x = found.spot.x_m[0]
     free = _near(like) if element.ground and like is not None else element.free(*_typical(found))
     # The scan looks at places a metre apart.
-    free = (*free, linear_free("x_m", "m", x, 0.5, x - BESIDE_M, x + BESIDE_M))
+    free = (*free, linear_free("x_m", "m", x, 0.5, x - places.BESIDE_M, x + places.BESIDE_M))
 
     def amend(campaign: Campaign, values: Values) -> Campaign:
         name = fresh(NOVEL, campaign.model.line.laws)
