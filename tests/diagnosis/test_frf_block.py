@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue._change import with_chain
+from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.gather import gather
 from permway.recordings.campaign import Campaign
 from permway.recordings.channel import Chain
@@ -103,3 +104,17 @@ def test_errors_are_those_of_the_columns(tmp_path: Path) -> None:
     assert moved.shape == block.measured.shape
     pushed = block.smooth.columns.push(coefficients)
     assert pushed == pytest.approx(np.concatenate([moved.real.reshape(-1), moved.imag.reshape(-1)]), rel=1e-6)
+
+
+def test_what_a_base_that_fits_nothing_leaves_is_no_error_of_chains(tmp_path: Path) -> None:
+    """Else what is missing would be where responses hide in noise, and nothing there would tell of it."""
+
+    def lost(campaign: Campaign) -> Campaign:
+        return weakened(campaign, "pad", 6.0, 1.2, 0.05)
+
+    for name, amend, taken in (("plain", lambda campaign: campaign, True), ("lost", lost, False)):
+        made = simulate(tmp_path / name, 3, noise=1.0, smooth=0.1, amend=amend)
+        evidence = gather(made.campaign.with_values(made.truth), threads=1)
+        block = evidence.reweighed(evidence.predicted(evidence.campaign)).blocks[0]
+        assert isinstance(block, FrfBlock)
+        assert bool(np.any(np.abs(block._gain - 1.0) > 1e-4)) is taken

@@ -202,17 +202,15 @@ class Evidence:
         these fit: else it is not chains that are off.
         """
         deviations = self.deviations(solved.datasets)
-        fits = self.whitener.square(deviations) < FITS * deviations.size
         explained = self.whitener.explained(deviations)
+        if self.whitener.square(deviations) > FITS * deviations.size:
+            explained = np.zeros_like(explained)
         blocks: list[Block] = []
         for index, (block, prediction) in enumerate(zip(self.blocks, solved.datasets, strict=True)):
             if isinstance(block, SpectraBlock):
                 block = block.expecting(prediction, added_to(solved.campaign, block.dataset))
             elif isinstance(block, FrfBlock):
-                coefficients = self.whitener.of_part(explained, index)
-                block = block.with_reference(
-                    prediction, block.errors(coefficients if fits else 0.0 * coefficients)
-                )
+                block = block.with_reference(prediction, block.errors(self.whitener.of_part(explained, index)))
             blocks.append(block)
         return replace(self, blocks=tuple(blocks))
 

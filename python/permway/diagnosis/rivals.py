@@ -31,7 +31,7 @@ from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.recalibrate import recalibrate
-from permway.diagnosis.rivals_held_out import LeftOut
+from permway.diagnosis.rivals_held_out import MOST_STEPS, LeftOut
 from permway.diagnosis.search import looked
 from permway.diagnosis.verdict import NOVEL
 from permway.errors import InputError, SolveError
@@ -40,8 +40,8 @@ from permway.recordings.campaign import Campaign, read_campaign
 NONE = 1e-6
 """Size of smooth errors of a method that knows of none, neper."""
 
-PREFIX, MOST_STEPS = "rival.", 8
-"""Of what is named, among the parameters of a fit in full, and steps of that fit."""
+PREFIX = "rival."
+"""Of what is named, among the parameters of a fit in full."""
 
 CALLED = 0.5
 """How often a random answer calls something missing."""

@@ -18,7 +18,7 @@ from permway.diagnosis.heldout import Part, Rest, Scored, error_dB, gain, parts
 from permway.diagnosis.recalibrate import recalibrate
 
 MOST_STEPS = 8
-"""Of a fit that begins near its end."""
+"""Of a rival's fit, which begins near its end."""
 
 HeldOut = dict[str, dict[str, float | None]]
 """By part, as a verdict has it."""
