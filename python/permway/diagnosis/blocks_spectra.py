@@ -142,6 +142,13 @@ class SpectraBlock:
             self._apart, more = apart(np.isfinite(rows), np.nan_to_num(rows).astype(int), shared)
             self.log_determinant += more
 
+    @property
+    def scatter(self) -> list[tuple[str, float]]:
+        """Of every part its channel, and by how much its lines scatter more than those of a steady record."""
+        names = self.dataset.data["channel"].values.astype(str)
+        learnt = self._scatter or [1.0] * len(self._parts)
+        return [(names[part[1]], float(size)) for part, size in zip(self._parts, learnt, strict=True)]
+
     def deviations(self, predicted: xr.Dataset) -> Reals:
         """Part by part, transfers as real then imaginary; each less what earlier ones at its line say of it."""
         found = self._deviations(predicted)

@@ -18,6 +18,7 @@ from permway.diagnosis.heldout import Gain
 from permway.diagnosis.idealised import idealised
 from permway.diagnosis.labels import Mislabelled
 from permway.diagnosis.level import beyond
+from permway.diagnosis.ragged import unexplained_lines, unsteady_misfit
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.search import FITS, Finalist, Round
 from permway.diagnosis.speak_effect import bands_of, effect_of, of_another_form
@@ -107,8 +108,13 @@ def verdict_of(
             status=status, effects=effects, evidence=weight, recalibrated=recalibrated, detectable=sizes
         )
     amended = accepted[-1].fit
-    if _explains_little(base, amended):
+    if _explains_little(base.heat, amended.heat):
         return Verdict(status="insufficient", evidence=weight, recalibrated=recalibrated, detectable=sizes)
+    if _explains_little(unsteady_misfit(base), unsteady_misfit(amended)):
+        status, effects = "located", (unexplained_lines(amended),)
+        return Verdict(
+            status=status, effects=effects, evidence=weight, recalibrated=recalibrated, detectable=sizes
+        )
     gap = decide.explained(base, amended, left)
     by_prefix = {r.finalists[0].prefix: r for r in rounds if r.finalists}
     ends = _ends(proof)
@@ -146,11 +152,11 @@ def verdict_of(
     )
 
 
-def _explains_little(base: Fit, amended: Fit) -> bool:
+def _explains_little(before: float, after: float) -> bool:
     """Whether so much of a misfit is left that what was found is no suspicion of anything."""
-    if amended.heat > max(UNFIT, decide.HALF * base.heat):
+    if after > max(UNFIT, decide.HALF * before):
         return True
-    return amended.heat > LEFT and base.heat - amended.heat < LITTLE * (base.heat - 1.0)
+    return after > LEFT and before - after < LITTLE * (before - 1.0)
 
 
 def mixed_up(base: Fit, mixed: Mislabelled) -> Verdict:

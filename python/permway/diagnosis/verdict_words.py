@@ -66,7 +66,9 @@ def sentence(verdict: Verdict) -> str:
             words = f"{_at(effect)} acts what the catalogue does not hold: {effect.law.words or 'novel physics'}"
             parts = [words, _more(verdict), _better(verdict), _open(verdict)]
         case "located":
-            words = f"{_at(verdict.effects[0])} physics is missing that these records cannot describe"
+            effect = verdict.effects[0]
+            words = f"{_at(effect)} physics is missing that these records cannot describe"
+            words += f" ({effect.law.words})" if effect.law.words else ""
             parts = [words, _more(verdict), _better(verdict), _advice(verdict)]
     parts.append(_beyond(verdict))
     if verdict.ruled_out:

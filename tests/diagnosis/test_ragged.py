@@ -1,0 +1,61 @@
+"""Runs whose lines scatter more than a steady process lets them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from permway.diagnosis.blocks_spectra import SpectraBlock
+from permway.diagnosis.fit import Fit
+from permway.diagnosis.gather import gather
+from permway.diagnosis.ragged import STEADY, raggedness, unexplained_lines, unsteady_misfit
+from permway.diagnosis.recalibrate import recalibrate
+from simulated_train import measured, tables, written
+
+
+def fitted(folder: Path, impacts: float) -> Fit:
+    """The base of records; each line of the runs is larger or smaller by so much, neper, as impacts make it."""
+    campaign = written(folder, *tables(cold=False))
+    datasets, random = measured(campaign, 3), np.random.default_rng(4)
+    for dataset in datasets:
+        if "csd" in dataset.data:
+            factor = np.exp(impacts * random.standard_normal(dataset.data["frequency"].size))
+            for name in ("csd", "psd"):
+                dataset.data[name] = dataset.data[name] * factor
+    return recalibrate(gather(campaign, datasets, threads=1))
+
+
+def runs(fit: Fit) -> list[SpectraBlock]:
+    return [block for block in fit.evidence.blocks if isinstance(block, SpectraBlock)]
+
+
+@pytest.fixture(scope="module")
+def steady(tmp_path_factory: pytest.TempPathFactory) -> Fit:
+    return fitted(tmp_path_factory.mktemp("steady"), 0.0)
+
+
+@pytest.fixture(scope="module")
+def struck(tmp_path_factory: pytest.TempPathFactory) -> Fit:
+    return fitted(tmp_path_factory.mktemp("struck"), 1.0)
+
+
+def test_steady_runs_are_not_ragged(steady: Fit) -> None:
+    assert max(map(raggedness, runs(steady))) < 0.6 * STEADY
+    assert unsteady_misfit(steady) == steady.heat
+
+
+def test_what_scatters_counts_as_misfit_though_it_was_learnt(struck: Fit) -> None:
+    assert max(map(raggedness, runs(struck))) > STEADY
+    assert unsteady_misfit(struck) > 1.2 * struck.heat
+    assert unsteady_misfit(replace(struck, heat=2.0)) == pytest.approx(2.0 / struck.heat * unsteady_misfit(struck))
+
+
+def test_the_run_and_its_channels_are_told(struck: Fit) -> None:
+    effect = unexplained_lines(struck)
+    worst = max(runs(struck), key=raggedness)
+    assert worst.dataset.record.name in (effect.law.words or "")
+    ragged = {channel for channel, size in worst.scatter if size**2 > STEADY}
+    assert set(effect.place.channels) == ragged != set()
+    assert effect.name is None
