@@ -35,11 +35,12 @@ SOURCE = "Campbell (1909), random pulses; Steenbergen and Esveld (2006), rail we
 EVERY_M = 20.0
 LENGTH_M, LENGTH_FACTOR = 0.5, 2.0
 DEPTH_M, DEPTH_FACTOR = 3e-4, 2.5
-BEGUN_M = (0.12, 0.25, 0.5, 1.0, 2.0, 4.0)
+BEGUN_M = ((0.12, 0.17, 0.25, 0.35), (0.5, 0.7, 1.0), (1.4, 2.0, 2.8, 4.0))
+"""Lengths to begin with, half an octave apart: what a wandering level takes up lies between one and the next."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
-    """One, where there are runs."""
+    """Dips short, middling and long, where there are runs."""
     if not excesses(situation):
         return
 
@@ -47,20 +48,21 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         added = Dips(depth_m=values["depth_m"], length_m=values["length_m"], every_m=EVERY_M)
         return with_irregularity(campaign, dips=(*campaign.said.irregularity.dips, added))
 
-    yield Hypothesis(
-        entry=ID,
-        domain=DOMAIN,
-        family=FAMILY,
-        free=(
-            log_free("depth_m", "m", DEPTH_M, DEPTH_FACTOR),
-            log_free("length_m", "m", LENGTH_M, LENGTH_FACTOR, lowest=0.02),
-        ),
-        amend=amend,
-        locate=stays("rail"),
-        starts=tuple((-1.0, coordinate(length, LENGTH_M, LENGTH_FACTOR)) for length in BEGUN_M),
-        law=lambda v: (
-            f"dips of {1e3 * v['depth_m']:.3g} mm over {v['length_m']:.3g} m, as if one in every {EVERY_M:g} m"
-        ),
-        size="depth_m",
-        none=0.0,
-    )
+    for begun in BEGUN_M:
+        yield Hypothesis(
+            entry=ID,
+            domain=DOMAIN,
+            family=FAMILY,
+            free=(
+                log_free("depth_m", "m", DEPTH_M, DEPTH_FACTOR),
+                log_free("length_m", "m", LENGTH_M, LENGTH_FACTOR, lowest=0.02),
+            ),
+            amend=amend,
+            locate=stays("rail"),
+            starts=tuple((-1.0, coordinate(length, LENGTH_M, LENGTH_FACTOR)) for length in begun),
+            law=lambda v: (
+                f"dips of {1e3 * v['depth_m']:.3g} mm over {v['length_m']:.3g} m, as if one in every {EVERY_M:g} m"
+            ),
+            size="depth_m",
+            none=0.0,
+        )
