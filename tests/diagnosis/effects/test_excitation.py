@@ -267,22 +267,23 @@ def best_of(ring: Ring, some: Iterator[Hypothesis] | list[Hypothesis], most: int
     return max((ring.quick(q.hypothesis, after=q) for q in screened[:most]), key=lambda quick: quick.gain)
 
 
-@pytest.mark.injection
-@pytest.mark.parametrize("length_m", [0.2, 0.42, 1.15, 2.4])
-def test_dips_of_any_length_are_reached_from_some_start(owner: Campaign, length_m: float) -> None:
-    """What the level takes up lies between one length and another: each needs a start of its own."""
-    case = Case(
+DIPS = [
+    Case(
         "dipped_welds",
         "rail",
         lambda c, v: with_irregularity(c, dips=(Dips(**v),)),
         {"depth_m": 1e-3, "length_m": length_m},
         {"depth_m": 0.15, "length_m": 0.1},
     )
-    test_the_strongest_is_named_and_measured(owner, case)
+    for length_m in (0.2, 0.42, 1.15, 2.4)
+]
+"""What the level takes up lies between one length of dips and another: each is begun with near itself."""
+
+MEASURED = [*CASES, *DIPS]
 
 
 @pytest.mark.injection
-@pytest.mark.parametrize("case", CASES, ids=[f"{case.entry}-{[*case.values][-1]}" for case in CASES])
+@pytest.mark.parametrize("case", MEASURED, ids=[f"{case.entry}-{[*case.values][-1]}" for case in MEASURED])
 def test_the_strongest_is_named_and_measured(owner: Campaign, case: Case) -> None:
     situation = injected(owner, case, 1.0)
     ring = Ring(situation.fit)
