@@ -10,7 +10,7 @@ import pytest
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
-from permway.diagnosis.ragged import STEADY, raggedness, unexplained_lines, unsteady_misfit
+from permway.diagnosis.ragged import STEADY, explains_elsewhere, raggedness, unexplained_lines, unsteady_misfit
 from permway.diagnosis.recalibrate import recalibrate
 from simulated_train import measured, tables, written
 
@@ -59,3 +59,17 @@ def test_the_run_and_its_channels_are_told(struck: Fit) -> None:
     ragged = {channel for channel, size in worst.scatter if size**2 > STEADY}
     assert set(effect.place.channels) == ragged != set()
     assert effect.name is None
+
+
+def test_what_hammer_tests_tell_is_told_whatever_runs_do(struck: Fit) -> None:
+    """A base that lacks something in responses alone, or in runs alone, and a model that lacks neither."""
+    of_run = np.array([isinstance(block, SpectraBlock) for block in struck.evidence.blocks])[
+        struck.evidence.block_of
+    ]
+    assert of_run.any()
+    assert not of_run.all()
+    for lacking, told in ((~of_run, True), (of_run, False)):
+        base = replace(struck, clean=np.where(lacking, 2.0, 0.8))
+        right, half = (replace(struck, clean=np.where(lacking, left, 0.8)) for left in (1.0, 1.8))
+        assert explains_elsewhere(base, right) is told
+        assert not explains_elsewhere(base, half)

@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from permway.diagnosis.blocks_spectra import SpectraBlock
+from permway.diagnosis.decide import HALF
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.verdict import NOVEL
 from permway.diagnosis.verdict_parts import ClassMember, Effect, Mechanics, Place
@@ -19,6 +20,10 @@ from permway.diagnosis.verdict_parts import ClassMember, Effect, Mechanics, Plac
 STEADY = 3.0
 """Variance of lines, in that of a steady record's, up to which a track of changing level explains it (1.6 to 2.3
 where amended models were right)."""
+
+
+SEEN = 1.1
+"""Mean square of the deviations of records that are no runs, from which they say that something is missing."""
 
 
 def raggedness(run: SpectraBlock) -> float:
@@ -29,6 +34,12 @@ def raggedness(run: SpectraBlock) -> float:
 def unsteady_misfit(fit: Fit) -> float:
     """Mean square of the deviations, were lines to scatter no more than a track of changing level lets them."""
     return fit.heat * max([1.0, *(raggedness(run) / STEADY for run in _runs(fit))])
+
+
+def explains_elsewhere(base: Fit, amended: Fit) -> bool:
+    """Whether most of what the base lacks in records that are no runs is explained: runs have no part in that."""
+    before, after = (_misfit_beside_runs(fit) for fit in (base, amended))
+    return before > SEEN and after - 1.0 < HALF * (before - 1.0)
 
 
 def unexplained_lines(fit: Fit) -> Effect:
@@ -45,6 +56,14 @@ def unexplained_lines(fit: Fit) -> Effect:
         class_=(ClassMember(name=NOVEL, probability=1.0),),
         law=Mechanics(words=words),
     )
+
+
+def _misfit_beside_runs(fit: Fit) -> float:
+    """Mean square of the deviations, without what smooth errors explain, of all records but runs; 1 of none."""
+    runs = {run.dataset.record.name for run in _runs(fit)}
+    beside = np.array([block.dataset.record.name not in runs for block in fit.evidence.blocks])
+    squares = fit.clean[beside[fit.evidence.block_of]] ** 2
+    return float(np.mean(squares)) if squares.size else 1.0
 
 
 def _runs(fit: Fit) -> list[SpectraBlock]:

@@ -18,7 +18,7 @@ from permway.diagnosis.heldout import Gain
 from permway.diagnosis.idealised import idealised
 from permway.diagnosis.labels import Mislabelled
 from permway.diagnosis.level import beyond
-from permway.diagnosis.ragged import unexplained_lines, unsteady_misfit
+from permway.diagnosis.ragged import explains_elsewhere, unexplained_lines, unsteady_misfit
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.search import FITS, Finalist, Round
 from permway.diagnosis.speak_effect import bands_of, effect_of, of_another_form
@@ -110,7 +110,8 @@ def verdict_of(
     amended = accepted[-1].fit
     if _explains_little(base.heat, amended.heat):
         return Verdict(status="insufficient", evidence=weight, recalibrated=recalibrated, detectable=sizes)
-    if _explains_little(unsteady_misfit(base), unsteady_misfit(amended)):
+    unsteady = _explains_little(unsteady_misfit(base), unsteady_misfit(amended))
+    if unsteady and not explains_elsewhere(base, amended):
         status, effects = "located", (unexplained_lines(amended),)
         return Verdict(
             status=status, effects=effects, evidence=weight, recalibrated=recalibrated, detectable=sizes
