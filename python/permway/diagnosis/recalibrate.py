@@ -28,6 +28,16 @@ UNFIT, COARSE = 1.5, 1e-3
 FORETOLD = 0.95
 """Ratio of a step's gain to what the slopes foretold, or the other way round, from which they serve once more."""
 
+CURVED = 0.5
+"""Ratio of a step's gain to what the slopes foretold below which the step is taken again with the curvature that it
+met: a second-order correction, as Fletcher's (1982) of constrained steps."""
+
+BENDS = 3
+"""Times that it is."""
+
+AT_REST = 0.1
+"""Share of the least gain of a step below which slopes that are exact foretell none worth taking."""
+
 MOST_LEARNT = 2
 """Times that the sizes of smooth errors are learnt on the way."""
 
@@ -148,23 +158,36 @@ def _descended(
     for step in range(most_steps):
         # Far from the records the priors lead: the deviations count as if each were no better than all are.
         heat = max(1.0, tangent.chi2(state) / max(1, state.deviations.size))
+        # A base that does not fit is no more than where a search begins.
+        enough = 0.5 if heat < UNFIT else COARSE * state.deviations.size / heat
         normal, slope = tangent.normal(heat), tangent.slope(state, heat)
         fresh = tangent.at is state and exact
         moved, gained, foretold = None, 0.0, 0.0
         for _ in range(8 if fresh else 2):
             shift = bounded_step(normal, slope, state.z, low, high, damping)
+            foretold = -float(2.0 * slope @ shift + shift @ normal @ shift)
+            if fresh and foretold < AT_REST * enough:
+                break
             tried = problem.at(np.clip(state.z + shift, low, high))
             gained = 0.0 if tried is None else tangent.heated(state, heat) - tangent.heated(tried, heat)
+            for _ in range(BENDS):
+                if tried is None or gained > CURVED * foretold:
+                    break
+                # Along a bent valley: as far, and back to its floor.
+                bent = tangent.slope(tangent.bent(state, tried), heat)
+                further = bounded_step(normal, bent, state.z, low, high, damping)
+                other = problem.at(np.clip(state.z + further, low, high))
+                more = 0.0 if other is None else tangent.heated(state, heat) - tangent.heated(other, heat)
+                if more <= gained:
+                    break
+                tried, gained = other, more
             if tried is not None and gained > 0.0:
-                foretold = -float(2.0 * slope @ shift + shift @ normal @ shift)
                 moved, damping = tried, max(damping / 10.0, 1e-9)
                 break
             damping = max(damping * 10.0, 1e-6)
         state = state if moved is None else moved
         if progress is not None:
             progress(f"step {step + 1}, {tangent.heated(state, 1.0):.1f}, heat {heat:.3g}")
-        # A base that does not fit is no more than where a search begins.
-        enough = 0.5 if heat < UNFIT else COARSE * state.deviations.size / heat
         if gained >= enough:
             # Where the step did what the slopes foretold, they do for the next.
             if not FORETOLD * foretold < gained < foretold / FORETOLD:
@@ -179,6 +202,8 @@ def _descended(
             state = problem.again(state)
             tangent, exact = problem.tangent(state), True
             damping = 1e-3
+        elif settle and not fresh:
+            tangent, exact = problem.tangent(state), True
         else:
             break
     if settle and (tangent.at is not state or not exact):

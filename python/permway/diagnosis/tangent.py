@@ -52,6 +52,11 @@ class Tangent:
         """Half the curvature of the heated objective, (p, p)."""
         return np.asarray(self.curvature / heat + np.eye(self.jacobian.shape[1]))
 
+    def bent(self, state: State, tried: State) -> State:
+        """A state with the part of its change on the way to another that slopes do not foretell."""
+        further = tried.deviations - self.jacobian @ (tried.z - state.z)
+        return State(state.z, state.solved, further)
+
     def slope(self, state: State, heat: float) -> Reals:
         """Half its gradient, (p,)."""
         reduced = self.whitener.reduce(state.deviations)
