@@ -1,4 +1,4 @@
-"""Two parameters that the records tell together alone: a fit comes to rest where priors want it, not on the way."""
+"""Parameters that the records tell together alone: a fit comes to rest where priors want it, not on the way."""
 
 from __future__ import annotations
 

@@ -28,12 +28,9 @@ UNFIT, COARSE = 1.5, 1e-3
 FORETOLD = 0.95
 """Ratio of a step's gain to what the slopes foretold, or the other way round, from which they serve once more."""
 
-CURVED = 0.5
-"""Ratio of a step's gain to what the slopes foretold below which the step is taken again with the curvature that it
-met: a second-order correction, as Fletcher's (1982) of constrained steps."""
-
-BENDS = 3
-"""Times that it is."""
+CURVED, BENDS = 0.5, 3
+"""Ratio of a step's gain to what the slopes foretold below which the step is taken again with the curvature
+that it met: a second-order correction, as Fletcher's (1982) of constrained steps; and how often."""
 
 AT_REST = 0.1
 """Share of the least gain of a step below which slopes that are exact foretell none worth taking."""
@@ -169,18 +166,8 @@ def _descended(
             if fresh and foretold < AT_REST * enough:
                 break
             tried = problem.at(np.clip(state.z + shift, low, high))
-            gained = 0.0 if tried is None else tangent.heated(state, heat) - tangent.heated(tried, heat)
-            for _ in range(BENDS):
-                if tried is None or gained > CURVED * foretold:
-                    break
-                # Along a bent valley: as far, and back to its floor.
-                bent = tangent.slope(tangent.bent(state, tried), heat)
-                further = bounded_step(normal, bent, state.z, low, high, damping)
-                other = problem.at(np.clip(state.z + further, low, high))
-                more = 0.0 if other is None else tangent.heated(state, heat) - tangent.heated(other, heat)
-                if more <= gained:
-                    break
-                tried, gained = other, more
+            if tried is not None:
+                tried, gained = _to_the_floor(problem, tangent, state, tried, heat, damping, foretold)
             if tried is not None and gained > 0.0:
                 moved, damping = tried, max(damping / 10.0, 1e-9)
                 break
@@ -209,6 +196,26 @@ def _descended(
     if settle and (tangent.at is not state or not exact):
         tangent = problem.tangent(state)
     return state, tangent, changes
+
+
+def _to_the_floor(
+    problem: Problem, tangent: Tangent, state: State, tried: State, heat: float, damping: float, foretold: float
+) -> tuple[State, float]:
+    """A step that gained less than foretold, taken as far along a bent valley, and back to its floor; its gain."""
+    low, high = _limits(problem.free)
+    before, normal = tangent.heated(state, heat), tangent.normal(heat)
+    gained = before - tangent.heated(tried, heat)
+    for _ in range(BENDS):
+        if gained > CURVED * foretold:
+            break
+        bent = tangent.slope(tangent.bent(state, tried), heat)
+        shift = bounded_step(normal, bent, state.z, low, high, damping)
+        other = problem.at(np.clip(state.z + shift, low, high))
+        more = -np.inf if other is None else before - tangent.heated(other, heat)
+        if other is None or more <= gained:
+            break
+        tried, gained = other, more
+    return tried, gained
 
 
 def _changed(problem: Problem, state: State, reweigh: bool, learn: bool) -> float:
