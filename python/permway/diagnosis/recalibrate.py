@@ -168,9 +168,9 @@ def _descended(
             tried = problem.at(np.clip(state.z + shift, low, high))
             if tried is not None:
                 tried, gained = _to_the_floor(problem, tangent, state, tried, heat, damping, foretold)
-            if tried is not None and gained > 0.0:
-                moved, damping = tried, max(damping / 10.0, 1e-9)
-                break
+                if gained > 0.0:
+                    moved, damping = tried, max(damping / 10.0, 1e-9)
+                    break
             damping = max(damping * 10.0, 1e-6)
         state = state if moved is None else moved
         if progress is not None:
@@ -211,8 +211,10 @@ def _to_the_floor(
         bent = tangent.slope(tangent.bent(state, tried), heat)
         shift = bounded_step(normal, bent, state.z, low, high, damping)
         other = problem.at(np.clip(state.z + shift, low, high))
-        more = -np.inf if other is None else before - tangent.heated(other, heat)
-        if other is None or more <= gained:
+        if other is None:
+            break
+        more = before - tangent.heated(other, heat)
+        if more <= gained:
             break
         tried, gained = other, more
     return tried, gained
