@@ -90,6 +90,15 @@ def test_pads_that_keep_a_part_lose_as_much_of_their_damping(tmp_path: Path) -> 
     assert "a spring of -0.8" in best.hypothesis.law(best.values)
 
 
+def test_a_bearing_that_keeps_a_part_is_told_by_that_alone(tmp_path: Path) -> None:
+    """Its only neighbour is a span away: a stretch about it would hold both."""
+    case = simulate(tmp_path / "c", 8, amend=lambda campaign: weakened(campaign, "bearing", 0.0, 0.0, 0.15))
+    best = described(case.campaign)
+    assert best.hypothesis.family == "part beside one joint"
+    assert best.values["share"] == pytest.approx(-0.85, abs=0.05)
+    assert best.hypothesis.locate(best.values).x_m == (0.0, 0.0)
+
+
 def test_joints_of_another_layer_are_tried_where_they_tell_nearly_as_much() -> None:
     def joint(name: str, x: float, gain: float) -> Found:
         one = np.array([1.0])

@@ -45,6 +45,9 @@ LONGEST, MOST = 24.0, 0.8
 WEAKER = (-0.5, -1.5, -2.5)
 """Sizes, in coordinates, that what is beside every joint of a layer is looked for with, too."""
 
+SHARES = (0.5, -0.5, -1.5)
+"""Coordinates that a part of one joint's law is looked for with: a quarter more, a quarter or three quarters less."""
+
 FURTHER = 4
 """Stations by which either end of a stretch is moved."""
 
@@ -78,6 +81,7 @@ def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hyp
         for body in along:
             yield from _at_supports(situation, element, body, like)
     for joint in joints:
+        yield _part_of_one(joint)
         yield _part(situation, joint)
     for joint in joints[: 1 if like is None else 0]:
         yield from crossed.at_joint(situation, joint.spot.name, joint.spot.x_m[0])
@@ -224,6 +228,17 @@ def _over_joints(situation: Situation, element: Element, found: Found) -> Hypoth
     layer = line.joints[int(line.joint_table().layer[found.spot.joints[0]])]
     x, step = stations_of(line, found.spot.name), spacing_of(line, found.spot.name)
     return _stretch(element, found, layer.between, x, step, "beside each joint of a stretch")
+
+
+def _part_of_one(found: Found) -> Hypothesis:
+    """More or less of what one joint has: of joints that are few, as bearings, a stretch has all."""
+    law, x = found.spot.name, found.spot.x_m[0]
+
+    def amend(campaign: Campaign, values: Values) -> Campaign:
+        return weakened(campaign, law, x, 0.0, 1.0 + values["share"])
+
+    made = _made(PART, "beside one joint", PART.free(1.0, 1.0), Where(law, (x, x)), amend)
+    return replace(made, starts=tuple((size,) for size in SHARES))
 
 
 def _part(situation: Situation, found: Found) -> Hypothesis:

@@ -28,6 +28,9 @@ FURTHER = (1, 2, 3)
 LEFT = (0.05, 0.001)
 """Of the stiffness, in the first look: a twentieth of a stiff bed still carries."""
 
+LADDER = (0.001, 0.01, 0.05, 0.15, 0.3, 0.5, 0.7, 0.85)
+"""Of the stiffness, that the best stretch is followed along: with another part left, other joints may explain more."""
+
 TELLING = 0.4
 """Share of the most telling spot's surplus that a joint of the law must have for a first look."""
 
@@ -115,8 +118,9 @@ def _looked(
 ) -> list[tuple[float, float, float]]:
     """First and last joint of the stretches whose loss explains most, and what is left; none if no loss explains.
 
-    All short stretches about each place, and from its best one on by a few joints more or less at an end. What a
-    few lost joints do shows beside them, too: the most telling place need not be among them.
+    All short stretches about each place, and from its best one on by a few joints more or less at an end, or by more
+    or less that is left. What a few lost joints do shows beside them, too: the most telling place need not be among
+    them.
     """
     campaign = situation.campaign
     x = stations_of(campaign.model.line, law)
@@ -146,6 +150,8 @@ def _looked(
             pair for k in (*FURTHER, *(-k for k in FURTHER)) for pair in ((first + k, last), (first, last + k))
         ]
         beside = [(start, stop, left) for start, stop in ends if 0 <= start <= stop < x.size]
+        rung = LADDER.index(left)
+        beside += [(first, last, other) for other in LADDER[max(0, rung - 1) : rung + 2] if other != left]
         better = min(beside, key=lambda key: objective(*key))
         return followed(better) if objective(*better) < objective(*best) else best
 
