@@ -80,6 +80,21 @@ def test_inertances_beside_some_pads_are_described_as_such(tmp_path: Path) -> No
     assert stop == pytest.approx(8.4, abs=0.4)
 
 
+def beside_the_last_pads(campaign: Campaign) -> Campaign:
+    x = tuple(np.round(np.arange(7.8, 12.1, 0.6), 9).tolist())
+    joints = Joints(between=("rail", "deck"), law="inertia", at=x)
+    return with_joints(campaign, joints, laws={"inertia": fixed_mass(20.0)})
+
+
+def test_a_stretch_is_found_from_an_end_of_it(tmp_path: Path) -> None:
+    """Much that is missing bends the base so far that the most telling place is beside the stretch."""
+    best = described(simulate(tmp_path / "c", 8, amend=beside_the_last_pads).campaign)
+    assert best.hypothesis.family == "inerter beside each joint of a stretch"
+    assert best.values["inertance_kg"] == pytest.approx(20.0, rel=0.05)
+    assert best.hypothesis.locate(best.values).x_m == pytest.approx((7.8, 12.0))
+    assert best.fit.heat < 1.2
+
+
 def test_pads_that_keep_a_part_lose_as_much_of_their_damping(tmp_path: Path) -> None:
     """Where a spring that pushes away would leave all of it."""
     case = simulate(tmp_path / "c", 8, amend=lambda campaign: weakened(campaign, "pad", 6.9, 0.6, 0.2))

@@ -39,6 +39,12 @@ SPACING_M = 1.0
 STRETCHES = (3.0, 9.0)
 """Usual lengths, in spacings, that a stretch is looked for with."""
 
+CENTRES = (0.0, -4.0, 4.0, -8.0, 8.0)
+"""Of those, in spacings from the most telling place: where much is missing that may be at an end of it."""
+
+REACH = 12.0
+"""How far from the most telling place a stretch's centre may lie, in spacings."""
+
 LONGEST, MOST = 24.0, 0.8
 """Of a stretch, in spacings, if its body is shorter; and the share of it that a long one is looked for with."""
 
@@ -46,7 +52,7 @@ WEAKER = (-0.5, -1.5, -2.5)
 """Sizes, in coordinates, that what is beside every joint of a layer is looked for with, too."""
 
 SHARES = (0.5, -0.5, -1.5)
-"""Coordinates that a part of one joint's law is looked for with: a quarter more, a quarter or three quarters less."""
+"""Coordinates that a part of one joint's law is looked for with: a quarter more, one or three quarters less."""
 
 FURTHER = 4
 """Stations by which either end of a stretch is moved."""
@@ -300,7 +306,7 @@ def _stretch(
     own = own or element.free(stiffness / STRETCHES[0], frequency)
     free = (
         *own,
-        linear_free("centre_m", "m", centre, 2.0 * step, centre - 6.0 * step, centre + 6.0 * step),
+        linear_free("centre_m", "m", centre, 4.0 * step, centre - REACH * step, centre + REACH * step),
         linear_free("length_m", "m", STRETCHES[0] * step, 3.0 * step, 0.0, longest),
     )
 
@@ -320,8 +326,10 @@ def _stretch(
         return Where(found.spot.name, span_of(x, values["centre_m"], values["length_m"], step))
 
     made = _made(element, place, free, locate({"centre_m": centre, "length_m": STRETCHES[0] * step}), amend)
-    lengths = [(length - STRETCHES[0]) / 3.0 for length in (*STRETCHES, MOST * longest / step)]
+    about = [*((at, length) for length in STRETCHES for at in CENTRES), (0.0, MOST * longest / step)]
     starts = [
-        (*start[: len(own)], 0.0, z) for start in made.starts[:: 3 if element.ground else 1] for z in lengths
+        (*start[: len(own)], at / 4.0, (length - STRETCHES[0]) / 3.0)
+        for start in made.starts[:: 3 if element.ground else 1]
+        for at, length in about
     ]
     return replace(made, locate=locate, starts=tuple(starts))

@@ -29,7 +29,7 @@ LEFT = (0.05, 0.001)
 """Of the stiffness, in the first look: a twentieth of a stiff bed still carries."""
 
 LADDER = (0.001, 0.01, 0.05, 0.15, 0.3, 0.5, 0.7, 0.85)
-"""Of the stiffness, that the best stretch is followed along: with another part left, other joints may explain more."""
+"""Of the stiffness, along which the best stretch is followed: with another part left others explain more."""
 
 TELLING = 0.4
 """Share of the most telling spot's surplus that a joint of the law must have for a first look."""
@@ -118,9 +118,9 @@ def _looked(
 ) -> list[tuple[float, float, float]]:
     """First and last joint of the stretches whose loss explains most, and what is left; none if no loss explains.
 
-    All short stretches about each place, and from its best one on by a few joints more or less at an end, or by more
-    or less that is left. What a few lost joints do shows beside them, too: the most telling place need not be among
-    them.
+    All short stretches about each place, and from its best one on by a few joints more or less at an end, or by
+    more or less that is left. What a few lost joints do shows beside them, too: the most telling place need not be
+    among them.
     """
     campaign = situation.campaign
     x = stations_of(campaign.model.line, law)
