@@ -10,7 +10,7 @@ import pytest
 from permway.diagnosis.catalogue import pad_frequency
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._relaxing import relaxing
-from permway.diagnosis.felt import FELT, moved
+from permway.diagnosis.felt import FELT, changed, moved
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
@@ -26,7 +26,7 @@ def base(tmp_path_factory: pytest.TempPathFactory) -> Fit:
 
 
 def test_the_sensor_that_changes_most_counts(base: Fit) -> None:
-    assert moved(base, base) == pytest.approx(0.0, abs=1e-12)
+    assert moved(base, base, "path") == pytest.approx(0.0, abs=1e-12)
 
     def louder(values: Mapping[str, float]) -> Campaign:
         campaign = base.build(values)
@@ -34,7 +34,17 @@ def test_the_sensor_that_changes_most_counts(base: Fit) -> None:
         return with_chain(campaign, "deck@3", chain.model_copy(update={"gain": 1.05}))
 
     amended = recalibrate(base.evidence, build=louder, free=base.free, start=base.z, learn=False, most_steps=0)
-    assert moved(base, amended) == pytest.approx(np.log(1.05), rel=1e-6)
+    assert moved(base, amended, "path") == pytest.approx(np.log(1.05), rel=1e-6)
+
+
+def test_of_what_excites_one_line_is_felt(base: Fit) -> None:
+    """A wheel out of round shows at a line of hundreds, and nothing of the structure looks so."""
+    before = base.evidence.predicted(base.campaign).datasets
+    after = [one.copy(deep=True) for one in before]
+    after[0]["frf"][0, 0, 7] *= 1.1
+    count = after[0]["frf"][0].size
+    for domain, expected in (("path", np.log(1.1) / np.sqrt(count)), ("irregularity", np.log(1.1))):
+        assert changed(base.evidence, before, after, domain) == pytest.approx(expected, rel=1e-6)
 
 
 def test_what_nobody_would_feel_is_no_finalist_however_sure(tmp_path: Path) -> None:
@@ -54,5 +64,5 @@ def test_what_nobody_would_feel_is_no_finalist_however_sure(tmp_path: Path) -> N
         progress=lambda *_: None,
     )
     assert found.followed
-    assert all(moved(fit, finalist.fit) > FELT for finalist in found.finalists)
+    assert all(moved(fit, finalist.fit, finalist.hypothesis.domain) > FELT for finalist in found.finalists)
     assert not found.finalists

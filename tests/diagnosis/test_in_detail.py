@@ -13,8 +13,9 @@ from permway.diagnosis.clock import Clock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.in_detail import NEARLY
 from permway.diagnosis.recalibrate import recalibrate
-from permway.diagnosis.search import NEARLY, Finalist, search
+from permway.diagnosis.search import Finalist, search
 from permway.recordings.campaign import Campaign
 from simulated import simulate
 

@@ -104,10 +104,10 @@ class Ring:
         return self._seen(deviations) if np.isfinite(deviations).all() else None
 
     def felt(self, hypothesis: Hypothesis, z: Reals) -> float:
-        """Largest change of what a sensor is predicted to read, neper, the base's parameters as they are."""
+        """As :func:`permway.diagnosis.felt.moved`, neper, the base's parameters as they are."""
         values = {f.name: f.value(float(v)) for f, v in zip(hypothesis.free, z, strict=True)}
         after = self.evidence.predicted(hypothesis.amend(self.fit.campaign, values), self._solved)
-        return changed(self.evidence, self._solved.datasets, after.datasets)
+        return changed(self.evidence, self._solved.datasets, after.datasets, hypothesis.domain)
 
     def screen(self, hypothesis: Hypothesis, *, least: float = 0.0) -> Quick:
         """One step from the most promising of the hypothesis' starts.

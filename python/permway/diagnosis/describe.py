@@ -12,6 +12,7 @@ from permway.diagnosis.choose import lines, penalty
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.crossed import Loss
+from permway.diagnosis.ends import SPACING_M
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Hypothesis, Situation, Where
 from permway.diagnosis.locate import scanned
@@ -30,9 +31,6 @@ ONE_PLACE_M = 0.5
 
 FOLLOWED = 16
 """Elements that are followed after screening: one step tells little of a law's frequency."""
-
-PASSES = 3
-"""Times that a stretch is moved at its ends."""
 
 ONE_FOR_TWO = 0.1
 """Share of the gain of one effect found twice that one thing in their place may lack: two of a kind are rare."""
@@ -205,7 +203,7 @@ class Description:
             if at.x_m is None:
                 body = self.base.campaign.model.line.bodies[at.what]
                 assert isinstance(body, Beam)
-                like = {**like, "mass_kg": like["mass_share"] * body.mass_kg_per_m * grammar.SPACING_M}
+                like = {**like, "mass_kg": like["mass_share"] * body.mass_kg_per_m * SPACING_M}
             else:
                 there = at.x_m[0]
                 found = tuple(sorted(found, key=lambda f: abs(f.spot.x_m[0] - there)))
@@ -217,12 +215,6 @@ class Description:
         first = _simplest(result.finalists, result.ring)[0]
         near = grammar.alike(situation, like, first.hypothesis, _ended(first))
         fitted = [*result.finalists, *self._finalists(start, near, least)]
-        for _ in range(PASSES):
-            first = _simplest(fitted, result.ring)[0]
-            reached = grammar.further(start.campaign.model.line, first.hypothesis, _ended(first))
-            fitted += self._finalists(start, reached, least)
-            if _simplest(fitted, result.ring)[0] is first:
-                break
         return replace(result, finalists=_simplest(fitted, result.ring))
 
     def _finalists(self, start: Fit, hypotheses: Iterable[Hypothesis], least: float) -> tuple[Finalist, ...]:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from permway.diagnosis import grammar_places as places
 from permway.diagnosis.catalogue._change import fresh, with_joints, with_law
 from permway.diagnosis.catalogue._interval import shares, spacing_of, span_of, stations_of, weakened
 from permway.diagnosis.elements import ELEMENTS, PART, Element
+from permway.diagnosis.ends import SPACING_M
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation, Where, linear_free, log_free
 from permway.diagnosis.spot import Found
@@ -27,14 +27,10 @@ from permway.diagnosis.verdict import NOVEL
 from permway.laws import Parallel
 from permway.model.changes import Change
 from permway.model.joints import GROUND, Joints
-from permway.model.line import Line
 from permway.recordings.campaign import Campaign
 
 RESONANCES_HZ = np.geomspace(4.0, 150.0, 12)
 """Where resonances are looked for, beside where the free stiffness is best known."""
-
-SPACING_M = 1.0
-"""Between the points of a stretch of a body at which an element acts."""
 
 STRETCHES = (3.0, 9.0)
 """Usual lengths, in spacings, that a stretch is looked for with."""
@@ -53,9 +49,6 @@ WEAKER = (-0.5, -1.5, -2.5)
 
 SHARES = (0.5, -0.5, -1.5)
 """Coordinates that a part of one joint's law is looked for with: a quarter more, one or three quarters less."""
-
-FURTHER = 4
-"""Stations by which either end of a stretch is moved."""
 
 Values = Mapping[str, float]
 
@@ -113,33 +106,6 @@ def alike(
         apart = other.family != one.family and other.family.partition(" ")[2] == place
         if apart and [f.name for f in other.free] == names:
             yield replace(other, starts=(z,))
-
-
-def further(line: Line, one: Hypothesis, z: tuple[float, ...]) -> Iterator[Hypothesis]:
-    """The same over other stretches, its constants as they ended: each end some stations further out, or in.
-
-    From a stretch to one that has a joint more there is no way that is better all along.
-
-    Parameters
-    ----------
-    line : Line
-    one : Hypothesis
-        Nothing comes of one that is not over a stretch.
-    z : tuple of float
-        Coordinates of its constants where it ended.
-    """
-    names = [f.name for f in one.free]
-    if names[-2:] != ["centre_m", "length_m"]:
-        return
-    what = one.locate({f.name: f.value(v) for f, v in zip(one.free, z, strict=True)}).what
-    step = spacing_of(line, what) if what in line.laws else SPACING_M
-    # A station of place or length, in coordinates.
-    along, longer = (step / (f.value(1.0) - f.value(0.0)) for f in one.free[-2:])
-    starts = [
-        (*z[:-2], z[-2] + 0.5 * (left + right) * along, z[-1] + (right - left) * longer)
-        for left, right in product(range(-FURTHER, FURTHER + 1), repeat=2)
-    ]
-    yield replace(one, starts=tuple(start for start in starts if one.free[-1].value(start[-1]) >= 0.0))
 
 
 def _typical(found: Found) -> tuple[float, float]:

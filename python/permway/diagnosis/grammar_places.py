@@ -13,6 +13,9 @@ from permway.diagnosis.spot import Found
 BESIDE_M = 2.0
 """How far from the most telling place of a scan something may stand."""
 
+AWAY_M = 5.0
+"""From the most telling joint, where another of its layer is one of another stretch."""
+
 AS_MUCH = 2.0 * float(np.log(10.0))
 """Between the surpluses of two bodies that the records do not tell apart (90 %)."""
 
@@ -30,10 +33,12 @@ def first_of(found: Iterable[Found]) -> list[Found]:
 
 
 def joints(found: Sequence[Found]) -> list[Found]:
-    """The most telling joint, and those of other layers there that tell nearly as much."""
+    """The most telling joint, and those that tell nearly as much: of other layers there, of its own far away."""
     of = [one for one in found if one.spot.kind == "joint"]
-    near = [one for one in of if abs(one.spot.x_m[0] - of[0].spot.x_m[0]) < BESIDE_M]
-    return [one for one in first_of(near) if one is of[0] or one.surplus > NEARLY * of[0].surplus]
+    away = [abs(one.spot.x_m[0] - of[0].spot.x_m[0]) for one in of]
+    near = first_of(one for one, m in zip(of, away, strict=True) if m < BESIDE_M)
+    far = [one for one, m in zip(of, away, strict=True) if m > AWAY_M and one.spot.name == of[0].spot.name]
+    return [one for one in (*near, *far[:1]) if one is of[0] or one.surplus > NEARLY * of[0].surplus]
 
 
 def with_rail(situation: Situation, bodies: Sequence[Found]) -> list[Found]:

@@ -14,6 +14,7 @@ from permway.diagnosis.felt import FELT, moved
 from permway.diagnosis.fit import Fit, gained
 from permway.diagnosis.heldout import Part, at_fault
 from permway.diagnosis.hypothesis import Hypothesis
+from permway.diagnosis.in_detail import in_detail
 from permway.diagnosis.journal import current
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.quick_files import noted, recalled
@@ -30,9 +31,6 @@ PROMISE = 3.0
 FITS, CLOSE_TO_FITTING = 1.2, 0.95
 """Mean square of the deviations below which a finalist explains all there is, and the share of its gain from which
 a rival may then be the better one."""
-
-NEARLY = 1.05
-"""Mean square of the deviations from which the leading hypothesis is told in more detail, if it can be."""
 
 Progress = Callable[[str, int, int], object]
 """Told a stage, how much of it is done, and of how much."""
@@ -201,39 +199,18 @@ def search(
             # It ends where the model ends: two changes of one place have met, say.
             continue
         if index == 0:
-            one, rough, amended = _in_detail(ring, one, rough, amended, learnt_base, prefix)
+            one, rough, amended = in_detail(ring, (one, rough, amended), learnt_base, prefix)
         best = min(best, amended.objective)
         gain = gained(learnt_base, amended)
         # A fault of a sensor may show in phases, or in noise, alone.
-        felt = one.hypothesis.domain == "measurement" or moved(learnt_base, amended) > FELT
+        domain = one.hypothesis.domain
+        felt = domain == "measurement" or moved(learnt_base, amended, domain) > FELT
         if gain - penalty(one, ring) > least and felt:
             more = amended.log_evidence - learnt_base.log_evidence
             more -= 0.5 * (learnt_base.objective - amended.objective - gain)
             finalists.append(Finalist(one, rough, amended, prefix, gain, more))
     finalists = sorted(finalists, key=lambda f: -standing(f, finalists))
     return Round(ring, tuple(screened), tuple(followed), tuple(finalists), least)
-
-
-def _in_detail(
-    ring: Ring, one: Quick, rough: Fit, amended: Fit, learnt_base: Fit, prefix: str
-) -> tuple[Quick, Fit, Fit]:
-    """The leading hypothesis told ever more finely, while what it leaves asks for it and it gains by it."""
-    own = len(ring.fit.free)
-    while amended.heat > NEARLY:
-        values = {f.name: f.value(float(z)) for f, z in zip(one.hypothesis.free, amended.z[own:], strict=True)}
-        finer = one.hypothesis.finer(values)
-        if finer is None:
-            break
-        begun = replace(one, hypothesis=finer, z=np.array(finer.starts[0]), base_z=amended.z[:own], columns=None)
-        try:
-            nearer = ring.full(begun, prefix=prefix, settle=False)
-            more = relearnt(nearer, learnt_base.evidence)
-        except (InputError, SolveError):
-            break
-        if more.objective + penalty(begun, ring) > amended.objective + penalty(one, ring):
-            break
-        one, rough, amended = replace(begun, gain=one.gain + amended.objective - more.objective), nearer, more
-    return one, rough, amended
 
 
 def looked(

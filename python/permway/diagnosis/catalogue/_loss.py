@@ -9,10 +9,10 @@ import numpy as np
 from scipy.special import ndtri
 
 from permway.arrays import Reals
-from permway.diagnosis.catalogue._glance import Glance
 from permway.diagnosis.catalogue._interval import span_of, stations_of, weakened
 from permway.diagnosis.catalogue._roles import spacing
 from permway.diagnosis.fit import Free
+from permway.diagnosis.glance import Glance
 from permway.diagnosis.hypothesis import Hypothesis, Situation, Where, between_free, linear_free
 from permway.recordings.campaign import Campaign
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy import linalg
 
@@ -16,16 +18,20 @@ class Glance:
     Parameters
     ----------
     fit : Fit
-        The recalibrated base.
+        The recalibrated base, with effects in it or not.
+    apart : sequence of str
+        Parameters that do not move.
     """
 
-    def __init__(self, fit: Fit) -> None:
+    def __init__(self, fit: Fit, apart: Sequence[str] = ()) -> None:
         self._fit = fit
         self._solved = fit.evidence.predicted(fit.campaign)
         self._whitener = fit.evidence.whitener
-        self._reduced = self._whitener.reduce(fit.jacobian)
-        normal = (fit.jacobian.T @ fit.jacobian - self._reduced.T @ self._reduced) / fit.heat
-        self._factor = linalg.cho_factor(normal + np.eye(fit.z.size))
+        moving = np.array([f.name not in apart for f in fit.free], dtype=bool)
+        self._z, self._jacobian = fit.z[moving], fit.jacobian[:, moving]
+        self._reduced = self._whitener.reduce(self._jacobian)
+        normal = (self._jacobian.T @ self._jacobian - self._reduced.T @ self._reduced) / fit.heat
+        self._factor = linalg.cho_factor(normal + np.eye(self._z.size))
 
     def objective(self, campaign: Campaign) -> float:
         """The least heated objective over linear moves of the base; infinite if the model cannot be solved."""
@@ -39,5 +45,5 @@ class Glance:
             return np.inf
         reduced = self._whitener.reduce(deviations)
         square = float(deviations @ deviations - reduced @ reduced) / fit.heat
-        slope = (fit.jacobian.T @ deviations - self._reduced.T @ reduced) / fit.heat + fit.z
+        slope = (self._jacobian.T @ deviations - self._reduced.T @ reduced) / fit.heat + self._z
         return square - float(slope @ linalg.cho_solve(self._factor, slope))
