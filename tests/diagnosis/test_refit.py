@@ -43,3 +43,13 @@ def test_what_is_moved_stays_there_and_its_slopes_are_of_there(fit: Fit) -> None
     nearby = moved(fit, {name: 2.5 + step})
     slope = (nearby.deviations - off.deviations) / step
     assert np.abs(off.jacobian[:, 0] - slope).max() < 1e-3 * np.abs(slope).max()
+
+
+def test_what_is_forgotten_is_made_again(fit: Fit) -> None:
+    """Rivals keep what they are told by, and none of what takes their smooth errors out."""
+    evidence = fit.evidence.with_sizes(fit.evidence.sizes)
+    before = evidence.whitener.square(fit.deviations)
+    evidence.forget()
+    assert "whitener" not in evidence.__dict__
+    assert "columns" not in evidence.__dict__
+    assert evidence.whitener.square(fit.deviations) == before

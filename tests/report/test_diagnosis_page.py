@@ -277,6 +277,21 @@ def test_rivals_without_a_name_are_said_to_be_one_class(diagnosis: Diagnosis) ->
     assert "These data cannot tell apart: fastener_loss (0.60), mortar_void (0.30)." in text
 
 
+def test_the_numbers_beside_the_status_say_what_they_are_of(diagnosis: Diagnosis) -> None:
+    def beside(**changes: object) -> dict[str, str]:
+        effect = diagnosis.verdict.effects[0].model_copy(update=changes)
+        weight = diagnosis.verdict.evidence.model_copy(update={"e_value": 1e300})
+        verdict = diagnosis.verdict.model_copy(update={"effects": (effect,), "evidence": weight})
+        return {words: value for value, words in headline(verdict)}
+
+    novel, void = ClassMember(name="novel", probability=0.6), ClassMember(name="mortar_void", probability=0.4)
+    assert beside()["probability of the name, among all that was tried"] == "0.97"
+    described = beside(name=None, class_=(novel, void))
+    assert described["probability of no name of the catalogue, among all that was tried"] == "0.60"
+    assert beside(name=None, class_=(void, novel))["probability of the likeliest name, among all that was tried"]
+    assert described["e-value on held-out records; the bar is 20"] == "above 1e300"
+
+
 def test_nothing_found_says_what_was_looked_for_and_what_would_have_been_seen(nothing: Diagnosis) -> None:
     drawn = dict.fromkeys((name for name, _ in pictures(nothing)), Drawn(b"", "[]"))
     reader = Reader(render(nothing, drawn))

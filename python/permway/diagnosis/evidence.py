@@ -155,6 +155,13 @@ class Evidence:
         """What takes out the smooth errors."""
         return Whitener.of(self.columns, self.sizes, self.length)
 
+    def forget(self) -> None:
+        """Let go of what takes much memory and is made again when it is asked for."""
+        for name in ("columns", "whitener"):
+            self.__dict__.pop(name, None)
+        for block in self.blocks:
+            block.__dict__.pop("smooth", None)
+
     @property
     def log_determinant(self) -> float:
         """Of the covariance by which the blocks' own smooth errors are taken out."""

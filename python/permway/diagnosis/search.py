@@ -210,6 +210,10 @@ def search(
             more -= 0.5 * (learnt_base.objective - amended.objective - gain)
             finalists.append(Finalist(one, rough, amended, prefix, gain, more))
     finalists = sorted(finalists, key=lambda f: -standing(f, finalists))
+    for other in finalists[1:]:
+        # Of rivals little more is asked than how well they do; a diagnosis has dozens of them.
+        if other.fit.evidence is not learnt_base.evidence:
+            other.fit.evidence.forget()
     return Round(ring, tuple(screened), tuple(followed), tuple(finalists), least)
 
 

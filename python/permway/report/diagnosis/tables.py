@@ -9,7 +9,8 @@ import numpy as np
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.compare_tables import LEFT
 from permway.diagnosis.result import Diagnosis
-from permway.diagnosis.verdict import Effect, HeldOutGain, Moved, Verdict
+from permway.diagnosis.speak import LARGEST_E
+from permway.diagnosis.verdict import NOVEL, Effect, HeldOutGain, Moved, Verdict
 from permway.diagnosis.verdict_words import DOMAIN, INCOMPLETE, STATUS, interval, probability, quantity, size, span
 from permway.report.compare.tables import NOTABLE_DB, BandTable, decibels, signed
 from permway.report.diagnosis.changes import Change
@@ -33,14 +34,14 @@ def headline(verdict: Verdict) -> list[tuple[str, str]]:
     found = [(STATUS[verdict.status].capitalize(), "status")]
     chance = probability(verdict.effects[0]) if verdict.effects else None
     if chance is not None:
-        found.append((f"{chance:.2f}", "probability of the name, among all that was tried"))
+        found.append((f"{chance:.2f}", f"probability of {_whose(verdict.effects[0])}, among all that was tried"))
     weight = verdict.evidence
     if weight.bic_gain is not None:
         bar = weight.false_alarm_threshold
         words = "gain of BIC" if bar is None else f"gain of BIC; chance reaches {quantity(bar)} in 5 of 100"
         found.append((quantity(weight.bic_gain), words))
     if weight.e_value is not None:
-        found.append((quantity(weight.e_value), f"e-value on held-out records; the bar is {BAR_E_VALUE:g}"))
+        found.append((_e_value(weight.e_value), f"e-value on held-out records; the bar is {BAR_E_VALUE:g}"))
     if verdict.explained_gap is not None:
         found.append((f"{100.0 * verdict.explained_gap:.0f} %", "of the gap to noise explained"))
     if weight.misfit_after is not None and weight.misfit_after >= INCOMPLETE:
@@ -48,6 +49,18 @@ def headline(verdict: Verdict) -> list[tuple[str, str]]:
             (quantity(weight.misfit_after), "times the mean square that errors explain is left: not all of it")
         )
     return found
+
+
+def _whose(effect: Effect) -> str:
+    """What the probability beside the status is of."""
+    if effect.name is not None:
+        return "the name"
+    return "no name of the catalogue" if effect.class_[0].name == NOVEL else "the likeliest name"
+
+
+def _e_value(value: float) -> str:
+    """As far as numbers go."""
+    return quantity(value) if value < 0.99 * LARGEST_E else f"above {LARGEST_E:.0e}".replace("e+", "e")
 
 
 def effect_blocks(verdict: Verdict) -> list[dict[str, Any]]:
@@ -136,7 +149,7 @@ def weight_rows(verdict: Verdict) -> list[tuple[str, str, str]]:
     if weight.log10_bayes_factor is not None:
         found.append(("Bayes factor, common logarithm", quantity(weight.log10_bayes_factor), ""))
     if weight.e_value is not None:
-        found.append(("e-value on held-out records", quantity(weight.e_value), f"above {BAR_E_VALUE:g}"))
+        found.append(("e-value on held-out records", _e_value(weight.e_value), f"above {BAR_E_VALUE:g}"))
     if weight.bic_gain is None and bar is not None:
         found.append(
             (
