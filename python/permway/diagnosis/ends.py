@@ -56,13 +56,11 @@ def further(fit: Fit, found: Quick, prefix: str) -> Quick | None:
     fit = settled(fit)
     glance = Glance(fit, apart=names)
     known = glance.objective(fit.campaign)
-    least, best = min(
-        ((_objective(glance, fit, z), index) for index, z in enumerate(_beside(fit, found, names))),
-        default=(np.inf, 0),
-    )
-    if not least < known - WORTH:
+    tried = _beside(fit, found, names)
+    objectives = [_objective(glance, fit, z) for z in tried]
+    if not tried or not min(objectives) < known - WORTH:
         return None
-    z = _beside(fit, found, names)[best]
+    z = tried[int(np.argmin(objectives))]
     return replace(found, z=z[own:], base_z=z[:own], columns=None)
 
 

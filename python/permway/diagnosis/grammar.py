@@ -38,8 +38,8 @@ STRETCHES = (3.0, 9.0)
 CENTRES = (0.0, -4.0, 4.0, -8.0, 8.0)
 """Of those, in spacings from the most telling place: where much is missing that may be at an end of it."""
 
-REACH = 12.0
-"""How far from the most telling place a stretch's centre may lie, in spacings."""
+SPREAD, REACH = 4.0, 12.0
+"""How well a stretch's centre is known beforehand, one standard deviation, and how far it may lie, in spacings."""
 
 LONGEST, MOST = 24.0, 0.8
 """Of a stretch, in spacings, if its body is shorter; and the share of it that a long one is looked for with."""
@@ -272,7 +272,7 @@ def _stretch(
     own = own or element.free(stiffness / STRETCHES[0], frequency)
     free = (
         *own,
-        linear_free("centre_m", "m", centre, 4.0 * step, centre - REACH * step, centre + REACH * step),
+        linear_free("centre_m", "m", centre, SPREAD * step, centre - REACH * step, centre + REACH * step),
         linear_free("length_m", "m", STRETCHES[0] * step, 3.0 * step, 0.0, longest),
     )
 
@@ -294,7 +294,7 @@ def _stretch(
     made = _made(element, place, free, locate({"centre_m": centre, "length_m": STRETCHES[0] * step}), amend)
     about = [*((at, length) for length in STRETCHES for at in CENTRES), (0.0, MOST * longest / step)]
     starts = [
-        (*start[: len(own)], at / 4.0, (length - STRETCHES[0]) / 3.0)
+        (*start[: len(own)], at / SPREAD, (length - STRETCHES[0]) / 3.0)
         for start in made.starts[:: 3 if element.ground else 1]
         for at, length in about
     ]
