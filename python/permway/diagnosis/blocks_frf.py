@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 from functools import cached_property
 
@@ -66,7 +67,7 @@ class FrfBlock:
         errors: Complexes | None = None,
         span: tuple[float, float] | None = None,
     ) -> None:
-        self.dataset, self.floor, self.pair, self._reference = dataset, floor, pair, reference
+        self.dataset, self.floor, self._reference = dataset, floor, reference
         self._errors = errors
         data = dataset.data
         self.measured: Complexes = data["frf"].values
@@ -102,10 +103,8 @@ class FrfBlock:
             self._phase: Complexes = np.where(there > 0.0, self._there / there, 1.0)
         self._relative: Reals = there * self.weight
         own_errors = self._relative[..., None] * fine.values(self.frequency)
-        self._directions, singular, _ = np.linalg.svd(own_errors, full_matrices=False)
-        self._singular = singular
-        self._last: tuple[xr.Dataset, Reals] | None = None
-        self._shrink = 1.0 - 1.0 / np.sqrt(1.0 + (pair * singular) ** 2)
+        self._directions, self._singular, _ = np.linalg.svd(own_errors, full_matrices=False)
+        self._sized(pair)
         names = [data["sensor"].values.astype(str), data["force"].values.astype(str)]
         sensor, force, frequency = (
             np.broadcast_to(v, self.measured.shape).reshape(-1)
@@ -115,9 +114,18 @@ class FrfBlock:
         columns = (label, sensor, force, frequency, decibels.reshape(-1))
         self.rows = Rows(*(np.tile(v, 2) for v in columns))
 
+    def _sized(self, pair: float) -> None:
+        """Take a size of the pairs' errors, and let go of what came of another."""
+        self.pair = pair
+        self._shrink = 1.0 - 1.0 / np.sqrt(1.0 + (pair * self._singular) ** 2)
+        self._last: tuple[xr.Dataset, Reals] | None = None
+        self.__dict__.pop("smooth", None)
+
     def with_pair(self, pair: float) -> FrfBlock:
         """The same with another size of the pairs' errors."""
-        return self._other(pair=pair)
+        other = copy(self)
+        other._sized(pair)
+        return other
 
     def with_floor(self, floor: float | Reals) -> FrfBlock:
         """The same with another relative error, of all lines or pair by pair."""
@@ -158,14 +166,13 @@ class FrfBlock:
         self,
         *,
         floor: float | Reals | None = None,
-        pair: float | None = None,
         reference: xr.Dataset | None = None,
         errors: Complexes | None = None,
     ) -> FrfBlock:
         return FrfBlock(
             self.dataset,
             floor=self.floor if floor is None else floor,
-            pair=self.pair if pair is None else pair,
+            pair=self.pair,
             reference=self._reference if reference is None else reference,
             errors=self._errors if errors is None else errors,
             span=self._span,

@@ -273,12 +273,13 @@ class SpectraBlock:
         speed = self.dataset.condition.speed_m_per_s
         model = self._expected["csd"].values[:, :, self._lines]
         wander = Wander(*self._span)
+        each = wander.values(self.frequency)
         origins, columns = [Origin(f"channel {name}", wander, 2) for name in names], []
         for channel in range(names.size):
             gains, phases = [], []
             answers = self._answers(np.eye(names.size)[channel])
             for (what, c, o, at, sigma), answer in zip(self._parts, answers, strict=True):
-                values = wander.values(self.frequency[at]) / sigma[:, None]
+                values = each[at] / sigma[:, None]
                 zero = np.zeros_like(values)
                 if what == "transfer":
                     gains.extend([answer[:, None] * values, zero])
@@ -290,10 +291,10 @@ class SpectraBlock:
             columns.append(np.hstack([np.vstack(gains), np.vstack(phases)]))
         if speed is not None:
             # The same track under every speed: of a power, as half as much in every channel.
-            level = []
+            level, each = [], LEVEL.values(self.frequency / speed)
             answers = self._answers(np.full(names.size, 0.5))
             for (what, _, _, at, sigma), answer in zip(self._parts, answers, strict=True):
-                values = answer[:, None] * LEVEL.values(self.frequency[at] / speed) / sigma[:, None]
+                values = answer[:, None] * each[at] / sigma[:, None]
                 level.extend([values, np.zeros_like(values)] if what == "transfer" else [values])
             origins.append(Origin("irregularity", LEVEL, 1, chain=False))
             columns.append(np.vstack(level))

@@ -66,6 +66,7 @@ class Ring:
         normal = (fit.jacobian.T @ fit.jacobian - self.reduced.T @ self.reduced) / fit.heat
         self.factor = linalg.cho_factor(normal + np.eye(fit.z.size))
         self._base = self._seen(fit.deviations)
+        self._as_predicted = self._seen(self.evidence.deviations(solved.datasets))
         self.start = self._objective(self._base)[0]
         self._others: dict[tuple[tuple[str, float], ...], Ring] = {}
 
@@ -98,10 +99,28 @@ class Ring:
         values = {f.name: f.value(float(v)) for f, v in zip(hypothesis.free, z, strict=True)}
         try:
             campaign = hypothesis.amend(self.fit.campaign, values)
-            deviations = self.evidence.deviations(self.evidence.predicted(campaign, self._solved).datasets)
+            return self._seen_of(self.evidence.predicted(campaign, self._solved))
         except (InputError, SolveError):
             return None
-        return self._seen(deviations) if np.isfinite(deviations).all() else None
+
+    def _seen_of(self, solved: Solved) -> _Seen | None:
+        """Of a prediction, what it has in common with the base's taken from there; None if not finite."""
+        pairs = zip(solved.datasets, self._solved.datasets, strict=True)
+        other = [index for index, (new, old) in enumerate(pairs) if new is not old]
+        if len(other) == len(self.evidence.blocks):
+            deviations = self.evidence.deviations(solved.datasets)
+            return self._seen(deviations) if np.isfinite(deviations).all() else None
+        before, fit = self._as_predicted, self.fit
+        off, slope = np.zeros_like(before.deviations), before.slope.copy()
+        for index in other:
+            rows = self.whitener.columns.parts[index][0]
+            off[rows] = self.evidence.blocks[index].deviations(solved.datasets[index]) - before.deviations[rows]
+            if not np.isfinite(off[rows]).all():
+                return None
+            slope += fit.jacobian[rows].T @ off[rows] / fit.heat
+        reduced = self.whitener.reduce(off, other)
+        slope -= self.reduced.T @ reduced / fit.heat
+        return _Seen(before.deviations + off, before.reduced + reduced, slope)
 
     def felt(self, hypothesis: Hypothesis, z: Reals) -> float:
         """As :func:`permway.diagnosis.felt.moved`, neper, the base's parameters as they are."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import xarray as xr
@@ -59,16 +59,40 @@ def _kept(
     campaign: Campaign,
     near: Solved,
 ) -> list[bool]:
-    """Which frequency responses are those of a campaign near by: of the same answer, read by the same chains."""
-    one, other = campaign.said, near.campaign.said
-    chains = one.sensors == other.sensors and one.forces == other.forces
+    """Which predictions are those of a campaign near by: of the same answer, shaken and read as there."""
+    same = partial(_read_alike, campaign, near.campaign)
+    alike = {"frf": True, "csd": _shaken_alike(campaign, near.campaign)}
     return [
-        chains
-        and dataset.record.statistic == "frf"
-        and need is not None
+        need is not None
         and answers[need.state] is near.answers.get(need.state)
+        and alike.get(dataset.record.statistic, False)
+        and same(dataset)
         for dataset, need in zip(datasets, needs, strict=True)
     ]
+
+
+def _shaken_alike(one: Campaign, other: Campaign) -> bool:
+    """Whether the same train meets the same profile."""
+    return (
+        one.model.train == other.model.train
+        and one.model.irregularity == other.model.irregularity
+        and one.model.conversion == other.model.conversion
+        and one.said.irregularity == other.said.irregularity
+    )
+
+
+def _read_alike(one: Campaign, other: Campaign, dataset: Dataset) -> bool:
+    """Whether a dataset's sensors and points are the same, and its condition is."""
+    if one.said is other.said:
+        return True
+    if one.condition(dataset.condition.name) != other.condition(dataset.condition.name):
+        return False
+    for dimension, known in (("sensor", Campaign.sensor), ("channel", Campaign.sensor), ("force", Campaign.point)):
+        if dimension in dataset.data.dims:
+            names = dataset.names(dimension)
+            if [known(one, name) for name in names] != [known(other, name) for name in names]:
+                return False
+    return True
 
 
 @dataclass(frozen=True)

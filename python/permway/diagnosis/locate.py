@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 from scipy import linalg
 
-from permway.arrays import Complexes, Reals
+from permway.arrays import Complexes
 from permway.diagnosis.blocks import Basis
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.fit import Fit
@@ -67,18 +67,15 @@ class Scan:
         if index is None:
             raise InputError("is no block of the fit", where="block")
         self.fit, self.block = fit, block
-        data = block.dataset.data
         condition = fit.campaign.condition(block.dataset.condition.name)
         self.campaign = campaign_under(fit.campaign, condition)
-        self.frequency: Reals = data["frequency"].values
-        sensors, points = ([str(v) for v in data[kind].values] for kind in ("sensor", "force"))
-        self.read = np.moveaxis(read(self.campaign, sensors, points, self.frequency), 0, -1)
+        self.frequency = block.dataset.frequency_Hz
+        sensors = [self.campaign.sensor(name) for name in block.dataset.names("sensor")]
+        points = [self.campaign.point(name) for name in block.dataset.names("force")]
+        self.read = np.moveaxis(read(sensors, points, self.frequency), 0, -1)
         self.temperature = temperature(self.campaign, condition)
-        self.sensors = [
-            Place(body=str(s.body), x_m=float(s.x_m or 0.0), name=s.name)
-            for s in map(self.campaign.sensor, sensors)
-        ]
-        self.points = [Place(body=p.body, x_m=p.x_m, name=p.name) for p in map(self.campaign.point, points)]
+        self.sensors = [Place(body=str(s.body), x_m=float(s.x_m or 0.0), name=s.name) for s in sensors]
+        self.points = [Place(body=p.body, x_m=p.x_m, name=p.name) for p in points]
         rows = fit.evidence.block_of == index
         half = int(rows.sum()) // 2
         # While no model fits, all records count as if they were no better than they fit.

@@ -33,9 +33,25 @@ MOST_BEAMS = 60
 
 
 @dataclass(frozen=True)
-class _Derivatives:
-    """Of one need's receptances, (frequency, law or beam or mass, row, column)."""
+class _Numbers:
+    """Of a line that derivatives are by: stiffness of laws (frequency, law), columns of beams, masses."""
 
+    stiffness: Complexes
+    beams: Mapping[str, np.ndarray]
+    masses_kg: Reals
+
+    @staticmethod
+    def of(line: Line, need: Need) -> _Numbers:
+        """At a need's frequencies and temperature."""
+        stiffness = line.stiffness(need.frequency_Hz, need.temperature_C)
+        return _Numbers(stiffness, line.beam_columns(), line.masses_kg())
+
+
+@dataclass(frozen=True)
+class _Derivatives:
+    """Of one need's receptances, (frequency, law or beam or mass, row, column), and the numbers they are at."""
+
+    at: _Numbers
     by_law: Complexes
     by_beam: Complexes
     by_mass: Complexes
@@ -90,9 +106,9 @@ class Nearby:
                 line = model_under(self.solved.campaign.model, need.factors).line
                 known = self._derivatives(need, line)
                 if part == "law":
-                    stiffness, slopes = line.stiffness(need.frequency_Hz, need.temperature_C), known.by_law
+                    stiffness, slopes = known.at.stiffness, known.by_law
                 else:
-                    stiffness, slopes = line.beam_columns()["bending"][None], known.by_beam[:, :, 0]
+                    stiffness, slopes = known.at.beams["bending"][None], known.by_beam[:, :, 0]
                 chosen = list(indices)
                 by_share = np.einsum("fi,firc->frc", stiffness[:, chosen], slopes[:, chosen])
                 answers[id(need)] = self._answer(need, share(need.frequency_Hz)[:, None, None] * by_share)
@@ -118,21 +134,17 @@ class Nearby:
         return Answer(sweep, self.solved.answers[need.state].of(need) + moved)
 
     def _moved(self, need: Need, campaign: Campaign) -> Answer:
-        before = model_under(self.solved.campaign.model, need.factors).line
-        after = model_under(campaign.model, need.factors).line
-        known = self._derivatives(need, before)
+        known = self._derivatives(need, model_under(self.solved.campaign.model, need.factors).line)
+        before, after = known.at, _Numbers.of(model_under(campaign.model, need.factors).line, need)
         values = np.zeros((need.frequency_Hz.size, len(need.rows), len(need.columns)), dtype=np.complex128)
-        law = after.stiffness(need.frequency_Hz, need.temperature_C) - before.stiffness(
-            need.frequency_Hz, need.temperature_C
-        )
+        law = after.stiffness - before.stiffness
         for index in np.flatnonzero((law != 0.0).any(axis=0)):
             values += law[:, index, None, None] * known.by_law[:, index]
-        old, new = before.beam_columns(), after.beam_columns()
         for place, name in enumerate(COLUMNS):
-            change = new[name] - old[name]
+            change = after.beams[name] - before.beams[name]
             for index in np.flatnonzero(change):
                 values += change[index] * known.by_beam[:, index, place]
-        mass = after.masses_kg() - before.masses_kg()
+        mass = after.masses_kg - before.masses_kg
         for index in np.flatnonzero(mass):
             values += mass[index] * known.by_mass[:, index]
         return self._answer(need, values)
@@ -150,9 +162,8 @@ class Nearby:
                     temperature_C=like.temperature_C,
                     threads=self.evidence.threads,
                 )
-                self._known[id(like)] = _Derivatives(
-                    data["by_law"].values, data["by_beam"].values, data["by_mass"].values
-                )
+                slopes = (data[name].values for name in ("by_law", "by_beam", "by_mass"))
+                self._known[id(like)] = _Derivatives(_Numbers.of(line, like), *slopes)
             self._known[id(need)] = self._known[id(like)]
         return self._known[id(need)]
 

@@ -21,7 +21,7 @@ from permway.model.stations import TOUCH_M, Along, Ends, groups
 class JointTable:
     """The joints of a line one by one, in the order of the model's layers, then along x.
 
-    Arrays of shape (J,): layer's index, x in m, upper and lower segment (-1 for the ground), law, scale.
+    Read-only arrays, shape (J,): layer's index, x in m, upper and lower segment (-1 for the ground), law, scale.
     """
 
     layer: Integers
@@ -71,6 +71,8 @@ def joint_table(
             remedy="name two bodies",
         )
     _check_held(segments, table)
+    for values in vars(table).values():
+        values.flags.writeable = False
     return table
 
 

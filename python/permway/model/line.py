@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import weakref
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,10 @@ from permway.model.segments import check_ends, check_rows, find, segments_of
 from permway.records import FrozenModel
 
 _NAME = re.compile(r"^[A-Za-z][A-Za-z0-9_-]*$")
+
+
+_LAST: dict[str, tuple[weakref.ref[Line], JointTable]] = {}
+"""The line whose joints were compiled last, and they."""
 
 
 class Line(FrozenModel):
@@ -94,7 +99,12 @@ class Line(FrozenModel):
         InputError
             If a joint lies off one of its bodies, or nothing holds a mass of a row.
         """
-        return joint_table(self.bodies, self.joints, list(self.laws), self.segments())
+        # A line is solved for several records one after the other.
+        known, table = _LAST.get("table", (None, None))
+        if table is None or known is None or known() is not self:
+            table = joint_table(self.bodies, self.joints, list(self.laws), self.segments())
+            _LAST["table"] = weakref.ref(self), table
+        return table
 
     def stiffness(self, frequency_Hz: ArrayLike, temperature_C: float | None = None) -> Complexes:
         """Complex stiffness of every law.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,6 +57,31 @@ class Dataset:
     record: Record
     condition: Condition
     data: xr.Dataset
+
+    @cached_property
+    def _names(self) -> dict[str, list[str]]:
+        return {}
+
+    def names(self, dimension: str) -> list[str]:
+        """Of its sensors, forces or channels, in their order."""
+        if dimension not in self._names:
+            self._names[dimension] = [str(name) for name in self.data.variables[dimension].values]
+        return self._names[dimension]
+
+    @cached_property
+    def predicted(self) -> xr.Dataset:
+        """What of it is predicted, to be filled: its variables of measured values, and noise by sensor."""
+        if self.record.statistic == "frf":
+            ones = np.ones(self.data.sizes["sensor"])
+            return self.data[["frf"]].assign(noise_factor=("sensor", ones))
+        return self.data[
+            {"csd": ["csd", "psd"], "psd": ["csd", "psd"]}.get(self.record.statistic, [self.record.statistic])
+        ]
+
+    @cached_property
+    def frequency_Hz(self) -> Reals:
+        """Its lines, shape (F,)."""
+        return np.asarray(self.data.variables["frequency"].values, dtype=np.float64)
 
 
 def load(campaign: Campaign) -> list[Dataset]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -12,6 +13,8 @@ from permway.model.faults import fault
 from permway.records import FrozenModel, Number
 
 Quantity = Literal["displacement", "velocity", "acceleration", "force"]
+
+Direction = Literal["down", "up", "lateral", "longitudinal"]
 
 DERIVATIVES: dict[str, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
 
@@ -134,7 +137,7 @@ class Sensor(FrozenModel):
     body: str | None = None
     x_m: Number | None = None
     degree: str | None = None
-    direction: Literal["down", "up", "lateral", "longitudinal"] = "down"
+    direction: Direction = "down"
     quantity: Quantity = "acceleration"
     unit: str
     chain: Chain = Chain()
@@ -174,14 +177,19 @@ class Sensor(FrozenModel):
 
     def there(self, frequency_Hz: Reals) -> Complexes:
         """What an ideal chain reads over the displacement down in m (over the force down in N), shape (F,)."""
-        sign = -1.0 if self.direction == "up" else 1.0
-        omega = 2.0 * np.pi * frequency_Hz
-        order = DERIVATIVES.get(self.quantity, 0)
-        return np.asarray(sign * 1j**order * omega**order, dtype=np.complex128)
+        return there(self.quantity, self.direction, frequency_Hz)
 
     def transfer(self, frequency_Hz: Reals) -> Complexes:
         """What is read, in SI, over the displacement down in m (over the force down in N), shape (F,)."""
         return np.asarray(self.there(frequency_Hz) * self.chain.transfer(frequency_Hz))
+
+
+def there(quantity: Quantity, direction: Direction, frequency_Hz: Reals) -> Complexes:
+    """What an ideal chain reads; see :meth:`Sensor.there`."""
+    sign = -1.0 if direction == "up" else 1.0
+    omega = 2.0 * np.pi * frequency_Hz
+    order = DERIVATIVES.get(quantity, 0)
+    return np.asarray(sign * 1j**order * omega**order, dtype=np.complex128)
 
 
 class Point(FrozenModel):
@@ -209,3 +217,21 @@ class Point(FrozenModel):
     def transfer(self, frequency_Hz: Reals) -> Complexes:
         """What is read over the force down, both in N, shape (F,)."""
         return (-1.0 if self.direction == "up" else 1.0) * self.chain.transfer(frequency_Hz)
+
+
+def transfers(channels: Sequence[Sensor] | Sequence[Point], frequency_Hz: Reals) -> Complexes:
+    """What sensors or force cells read, side by side; those that read alike are computed once.
+
+    Returns
+    -------
+    ndarray of complex128, shape (F, channels)
+        See :meth:`Sensor.transfer` and :meth:`Point.transfer`.
+    """
+    each: dict[tuple[object, ...], Complexes] = {}
+    columns = []
+    for channel in channels:
+        kind = getattr(channel, "quantity", None), channel.direction, channel.chain
+        if kind not in each:
+            each[kind] = channel.transfer(frequency_Hz)
+        columns.append(each[kind])
+    return np.stack(columns, axis=-1)

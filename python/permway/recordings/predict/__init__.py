@@ -113,18 +113,18 @@ def _need(campaign: Campaign, dataset: Dataset, condition: Condition) -> Need | 
     match record.statistic:
         case "frf":
             return hammer.need(
-                campaign, condition, _names(data, "sensor"), _names(data, "force"), _frequency(data)
+                campaign, condition, dataset.names("sensor"), dataset.names("force"), dataset.frequency_Hz
             )
         case "csd" | "psd":
-            _check_on_board(campaign, record.name, _names(data, "channel"))
-            lines = run.solved_lines(_frequency(data), record.segment_s, record.interpolated_Hz)
+            _check_on_board(campaign, record.name, dataset.names("channel"))
+            lines = run.solved_lines(dataset.frequency_Hz, record.segment_s, record.interpolated_Hz)
             assert campaign.model.train is not None
             spots = tuple((campaign.model.train.body, float(x)) for x in run.wheels_of(campaign.model, condition))
             return Need(temperature, lines, spots, spots)
         case "transmissibility":
-            sensors = [campaign.sensor(name) for name in _names(data, "channel")]
+            sensors = [campaign.sensor(name) for name in dataset.names("channel")]
             spots = tuple((str(sensor.body), float(sensor.x_m or 0.0)) for sensor in sensors)
-            return shaker.need(campaign.model, temperature, spots, _frequency(data))
+            return shaker.need(campaign.model, temperature, spots, dataset.frequency_Hz)
         case "decay":
             return decay.need(campaign, record, temperature, data)
         case "material":
@@ -144,17 +144,17 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
     values = answer.of(need)
     match record.statistic:
         case "frf":
-            frequency = _frequency(data)
-            read = hammer.read(campaign, _names(data, "sensor"), _names(data, "force"), frequency)
-            noise = [campaign.sensor(name).chain.noise_factor for name in _names(data, "sensor")]
-            found = _like(data, "frf", np.ascontiguousarray(np.moveaxis(values * read, 0, -1)))
-            return found.assign(noise_factor=("sensor", np.array(noise)))
+            sensors = [campaign.sensor(name) for name in dataset.names("sensor")]
+            read = hammer.read(sensors, [campaign.point(n) for n in dataset.names("force")], dataset.frequency_Hz)
+            frf = np.ascontiguousarray(np.moveaxis(values * read, 0, -1))
+            noise = np.array([sensor.chain.noise_factor for sensor in sensors])
+            return dataset.predicted.copy(data={"frf": frf, "noise_factor": noise})
         case "csd" | "psd":
-            sensors = [campaign.sensor(name) for name in _names(data, "channel")]
+            sensors = [campaign.sensor(name) for name in dataset.names("channel")]
             lines = need.frequency_Hz
             if record.interpolated_Hz is None:
                 lines, values = halved(lines, values, record.segment_s)
-            grid = grid_of(lines, _frequency(data), record.segment_s)
+            grid = grid_of(lines, dataset.frequency_Hz, record.segment_s)
             known = campaign.said.irregularity
             work = worked(campaign.model, known, condition, grid, lines, values)
             matrix = run.expected_csd(
@@ -164,40 +164,28 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
                 sensors,
                 lines,
                 run.influence(work.model, lines, values),
-                _frequency(data),
+                dataset.frequency_Hz,
                 segment_s=record.segment_s,
                 interpolated=record.interpolated_Hz is not None,
                 duration_s=data.attrs.get("duration_s"),
                 left=work.left,
             )
             power = np.einsum("fcc->cf", matrix).real
-            return data[["csd", "psd"]].copy(data={"csd": np.moveaxis(matrix, 0, -1), "psd": power})
+            return dataset.predicted.copy(data={"csd": np.moveaxis(matrix, 0, -1), "psd": power})
         case "transmissibility":
             moved = shaker.transmissibility(campaign.model, need.temperature_C, need.frequency_Hz, values)
-            chains = [campaign.sensor(name).chain.transfer(need.frequency_Hz) for name in _names(data, "channel")]
-            return _like(data, "transmissibility", moved.T * np.stack(chains))
+            chains = [campaign.sensor(name).chain.transfer(need.frequency_Hz) for name in dataset.names("channel")]
+            return dataset.predicted.copy(data={"transmissibility": moved.T * np.stack(chains)})
         case _:
             return decay.predicted(record, data, values)
 
 
 def added_to(campaign: Campaign, dataset: Dataset) -> Reals:
     """Expected cross spectra of the noise and hum of the channels of a run, (channels, channels, F)."""
-    frequency, record = _frequency(dataset.data), dataset.record
-    sensors = [campaign.sensor(name) for name in _names(dataset.data, "channel")]
+    frequency, record = dataset.frequency_Hz, dataset.record
+    sensors = [campaign.sensor(name) for name in dataset.names("channel")]
     lines = run.solved_lines(frequency, record.segment_s, record.interpolated_Hz)
     return np.moveaxis(run.added_csd(sensors, lines, frequency, record.segment_s), 0, -1)
-
-
-def _like(data: xr.Dataset, name: str, values: np.ndarray) -> xr.Dataset:
-    return data[[name]].copy(data={name: values})
-
-
-def _names(data: xr.Dataset, dimension: str) -> list[str]:
-    return [str(name) for name in data.variables[dimension].values]
-
-
-def _frequency(data: xr.Dataset) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    return np.asarray(data.variables["frequency"].values, dtype=np.float64)
 
 
 def _check_directions(campaign: Campaign, record: str, names: list[str]) -> None:

@@ -73,7 +73,7 @@ class Grid:
         Parameters
         ----------
         fine : ndarray of complex128, shape (N, C)
-            What channels read per source.
+            What channels read per source; it may be overwritten.
         density : ndarray, shape (N,)
             Of the source.
 
@@ -82,7 +82,8 @@ class Grid:
         ndarray of complex128, shape (F, C (C + 1) / 2)
             The upper triangle, row by row.
         """
-        return _core.cross_spectra(_rows(self.smear), fine * np.sqrt(density)[:, None])
+        fine *= np.sqrt(density)[:, None]
+        return _core.cross_spectra(_rows(self.smear), np.ascontiguousarray(fine))
 
 
 def _rows(weights: sparse.csr_array) -> tuple[np.ndarray, np.ndarray, Reals]:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from permway.arrays import Complexes, Reals
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_parts import Condition
+from permway.recordings.channel import Point, Sensor, transfers
 from permway.recordings.predict.sweeps import Need
 
 
@@ -24,7 +27,7 @@ def need(
     )
 
 
-def read(campaign: Campaign, sensors: list[str], points: list[str], frequency_Hz: Reals) -> Complexes:
+def read(sensors: Sequence[Sensor], points: Sequence[Point], frequency_Hz: Reals) -> Complexes:
     """What is read per receptance: sensors' chains over force cells' chains.
 
     Returns
@@ -32,9 +35,8 @@ def read(campaign: Campaign, sensors: list[str], points: list[str], frequency_Hz
     ndarray of complex128, shape (F, sensors, points)
         SI unit of the quantity per N, over m/N.
     """
-    top = np.stack([campaign.sensor(name).transfer(frequency_Hz) for name in sensors], axis=-1)
-    bottom = np.stack([campaign.point(name).transfer(frequency_Hz) for name in points], axis=-1)
-    return np.asarray(top[:, :, None] / bottom[:, None, :])
+    top, bottom = (transfers(chains, frequency_Hz) for chains in (sensors, points))
+    return np.asarray(top[:, :, None] * (1.0 / bottom)[:, None, :])
 
 
 def temperature(campaign: Campaign, condition: Condition) -> float | None:

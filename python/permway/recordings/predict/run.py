@@ -11,7 +11,7 @@ from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.model.file import Model
 from permway.recordings.campaign_parts import Condition, IrregularityKnown
-from permway.recordings.channel import Sensor
+from permway.recordings.channel import Direction, Quantity, Sensor, there
 from permway.recordings.predict import excitation
 from permway.recordings.predict.excitation import speed_of
 from permway.recordings.predict.grid import Grid, grid_of, solved_lines
@@ -20,6 +20,9 @@ from permway.recordings.predict.sliding import shares
 from permway.response.sliding import Remainder
 
 __all__ = ["expected_csd", "influence", "solved_lines", "wheels_of"]
+
+
+Reads = tuple[Quantity, Direction]
 
 
 @lru_cache(maxsize=8)
@@ -82,12 +85,19 @@ def expected_csd(
     fine_Hz = grid.frequency_Hz
     flat = all(sensor.chain.flat for sensor in sensors)
     chains = _chains(sensors, fine_Hz[:1] if flat else fine_Hz)
+    reads = tuple(_reads(sensor) for sensor in sensors)
     wheels = wheels_of(model, condition)
     lag = ((wheels[0] - wheels) / speed_of(condition)).tobytes()
 
+    def read(fine: Complexes) -> Complexes:
+        """By chains whose transfers are no mere gains."""
+        if not flat:
+            fine *= chains
+        return fine
+
     def expected(source: Complexes, density: Reals) -> Complexes:
         """Of what a source is read as at the solved lines, but for chains."""
-        return grid.expected(grid.spread(source, straight=interpolated) * chains, density)
+        return grid.expected(read(grid.spread(source, straight=interpolated)), density)
 
     power = excitation.profile(model, known, condition, grid)
     if interpolated:
@@ -95,7 +105,8 @@ def expected_csd(
         upper = expected(moved * _there(sensors, lines_Hz), power)
     else:
         moved = grid.spread(mine, _late(fine_Hz.tobytes(), lag), straight=False)
-        upper = grid.expected(moved * _there(sensors, fine_Hz) * chains, power)
+        moved *= _ideal(reads, grid)
+        upper = grid.expected(read(moved), power)
     for sources, density in _sources(model, known, condition, grid, lines_Hz, per_profile):
         for source in sources:
             upper += expected(source[:, chosen] * _there(sensors, lines_Hz), density)
@@ -104,10 +115,13 @@ def expected_csd(
         per_force = per_force * _there(sensors, lines_Hz)[:, None, :]
         fine = grid.spread(per_force.reshape(lines_Hz.size, -1), straight=interpolated)
         fine = fine.reshape(-1, *per_force.shape[1:])
-        fine *= chains[:, None, :]
+        if not flat:
+            fine *= chains[:, None, :]
         mixed = np.einsum("ntk,ntc->knc", shares(remainder, fine_Hz), fine)
         upper += np.sum([grid.expected(one, np.ones(fine_Hz.size)) for one in mixed], axis=0)
     rows, columns = np.triu_indices(len(sensors))
+    if flat:
+        upper *= chains[:, rows] * chains[:, columns].conj()
     if any(sensor.chain.clock_slow for sensor in sensors):
         if duration_s is None:
             remedy = "give the dataset its attribute duration_s"
@@ -181,9 +195,21 @@ def _chains(sensors: Sequence[Sensor], frequency_Hz: Reals) -> Complexes:
 
 
 def _there(sensors: Sequence[Sensor], frequency_Hz: Reals) -> Complexes:
-    each = {key: sensor.there(frequency_Hz) for key, sensor in ((_reads(s), s) for s in sensors)}
-    return np.stack([each[_reads(sensor)] for sensor in sensors], axis=-1)
+    return _each(tuple(_reads(sensor) for sensor in sensors), frequency_Hz)
 
 
-def _reads(sensor: Sensor) -> tuple[str, str]:
+@lru_cache(maxsize=16)
+def _ideal(reads: tuple[Reads, ...], grid: Grid) -> Complexes:
+    """:func:`_there` on a grid, (N, sensors), or (N, 1) where all read alike."""
+    found = _each(reads[:1] if len(set(reads)) == 1 else reads, grid.frequency_Hz)
+    found.flags.writeable = False
+    return found
+
+
+def _each(reads: tuple[Reads, ...], frequency_Hz: Reals) -> Complexes:
+    each = {one: there(*one, frequency_Hz) for one in set(reads)}
+    return np.stack([each[one] for one in reads], axis=-1)
+
+
+def _reads(sensor: Sensor) -> Reads:
     return sensor.quantity, sensor.direction
