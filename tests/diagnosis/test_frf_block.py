@@ -94,6 +94,27 @@ def test_a_large_error_of_a_chain_is_the_same_where_noise_hides_the_response(tmp
     assert np.mean(by_difference) * np.sqrt(about.size) > 6.0
 
 
+@pytest.mark.parametrize("off", [0.15, -0.2, 0.2j, -0.15 + 0.15j])
+def test_what_smooth_errors_undo_leaves_nothing_where_noise_hides_the_response(
+    tmp_path: Path, off: complex
+) -> None:
+    """A delay, or a gain, that errors of a chain take back, beside an error of a chain of 2.4 dB and 0.1 rad."""
+    made = simulate(tmp_path, 3, noise=3.0, smooth=0.0)
+    evidence = gather(made.campaign.with_values(made.truth), threads=1)
+    solved = evidence.predicted(evidence.campaign).datasets[0]
+    errors = np.full((2, 3, 1), 0.276 + 0.1j)
+    block = evidence.blocks[0].with_reference(solved, errors)
+    assert isinstance(block, FrfBlock)
+    hidden = block._hidden
+    assert hidden.mean() > 0.3
+    turned = solved.copy(data={**solved.data_vars, "frf": solved["frf"].values * np.exp(off)})
+    undone = block.off(turned)[hidden] + off * block._there[hidden]
+    # To the second order; by the third is left what the fits' next reference takes.
+    left = np.abs(undone - block.off(solved)[hidden]) / np.abs(block._there[hidden])
+    assert left.max() < 0.4 * abs(off) ** 2
+    assert left.max() < 0.012
+
+
 def test_errors_are_those_of_the_columns(tmp_path: Path) -> None:
     evidence = gather(simulate(tmp_path, 5, noise=1e-4, smooth=0.0).campaign, threads=1)
     block = evidence.blocks[0]

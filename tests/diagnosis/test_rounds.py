@@ -31,7 +31,12 @@ def run(
         offered.append(len(domains))
         left = best.get(domains, [])
         return Round(
-            cast(Any, None), cast(Any, domains), (), tuple(left[:1]) if not left else (left.pop(0),), 10.0
+            cast(Any, None),
+            cast(Any, domains),
+            (),
+            tuple(left[:1]) if not left else (left.pop(0),),
+            frozenset(),
+            10.0,
         )
 
     monkeypatch.setattr(rounds, "search", search)

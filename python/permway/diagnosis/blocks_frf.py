@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -24,9 +23,6 @@ REACH = 2
 
 MOST_PAIR_STEPS, PAIR_CLOSE = 50, 1e-3
 """Of the fixed point for the size of pairs' errors, and the change of its logarithm that is none."""
-
-LINES_PER_FREQUENCY = 40.0
-"""Lines of a frequency response within its own frequency, at most."""
 
 
 class FrfBlock:
@@ -85,12 +81,16 @@ class FrfBlock:
         own = np.nan_to_num(np.sqrt(data["log_variance"].values), nan=np.inf)
         off = np.zeros(1, dtype=np.complex128) if errors is None else errors
         expected = np.where(used, reference["frf"].values * np.exp(off), 0.0)
-        # exp(e) is, about errors E, exp(E) (1 - E) + exp(E) e.
-        self._gain: Complexes = np.exp(off) * (1.0 - off)
+        self._gain: Complexes = np.exp(off)
         # Noise alone looks large, and sure of itself, where it happens to be both.
         seen = np.minimum(size, np.abs(expected))
         self._logarithmic = used & (np.maximum(own * size, np.sqrt(noise)) < SURE * seen)
         self._seen: Complexes = self._measured[self._logarithmic]
+        self._hidden = used & ~self._logarithmic
+        gains, offs = (np.broadcast_to(v, used.shape)[self._hidden] for v in (self._gain, off))
+        # exp(e) is, about errors E, exp(E) (1 - E) + exp(E) e.
+        self._heard = gains, self._measured[self._hidden] + expected[self._hidden] * offs
+        self._behind: Complexes = reference["frf"].values[self._hidden]
         # A response that noise has made larger weighs more: so much is the weighed logarithm above zero.
         self._lifted: Reals = 2.0 * (noise[self._logarithmic] / np.abs(self._seen) ** 2)
         # Of what is mostly noise, smooth errors act on what is there.
@@ -211,9 +211,11 @@ class FrfBlock:
     def off(self, predicted: xr.Dataset) -> Complexes:
         """Measured less predicted, in the response's unit, as errors that multiply have it."""
         model = predicted["frf"].values
-        found = self._measured - model * self._gain
+        found = np.zeros_like(self._measured)
         found[self._logarithmic] = self._seen * (self._logarithms(model) - self._lifted)
-        return np.asarray(found)
+        hidden, (gains, heard) = model[self._hidden], self._heard
+        found[self._hidden] = heard - gains * hidden * _straight(hidden, self._behind)
+        return found
 
     def _logarithms(self, model: Complexes) -> Complexes:
         """Of measured over predicted, of the lines that count by it."""
@@ -274,21 +276,20 @@ class FrfBlock:
         return Smooth(tuple(Origin(name, wander, 2) for name in names), PairColumns(gains, self._phase))
 
 
+def _straight(model: Complexes, reference: Complexes) -> Complexes:
+    """By what a prediction is multiplied where noise hides it, so that smooth errors may undo what it is off by.
+
+    It is off from the reference by exp(r), and errors by -r undo that where logarithms count. So does 1 + r here,
+    and exp(r) would leave r^2 / 2: a delay whose phase smooth errors take back would be louder. What is farther
+    off than errors go stays as predicted.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = model / reference
+        size = np.abs(ratio)
+        grown, turned = np.log(size), ratio.imag / size
+        off = grown * np.exp(-0.5 * grown**2) + 1j * turned
+        return np.where(np.isfinite(off), np.exp(-0.5 * off**2), 1.0)
+
+
 def _square(values: Complexes) -> Reals:
     return np.asarray(values.real**2 + values.imag**2)
-
-
-def thinned(dataset: Dataset) -> Dataset:
-    """Frequency responses on lines no closer than 1/LINES_PER_FREQUENCY of their frequency.
-
-    What lies closer says nothing new of a structure with loss factors above that.
-    """
-    if dataset.record.statistic != "frf":
-        return dataset
-    frequency = dataset.data["frequency"].values
-    kept, last = [], -np.inf
-    for index, value in enumerate(frequency):
-        if value - last >= value / LINES_PER_FREQUENCY * (1.0 - 1e-9):
-            kept.append(index)
-            last = value
-    return replace(dataset, data=dataset.data.isel(frequency=kept))

@@ -165,9 +165,10 @@ def members(found: Round, *, explained: float, beside: Collection[str] = ()) -> 
 
 
 def _twins(found: Round, best: Finalist) -> list[Quick]:
-    """Rivals that were followed and do as well as the best did then."""
+    """Rivals that were followed and do as well as the best did then; of what was fitted in full its fits tell."""
     return [
         q
         for q in found.followed
-        if q.hypothesis.entry != best.hypothesis.entry and best.quick.gain - q.gain < CLASS_DEVIANCE
+        if q.hypothesis.entry not in {best.hypothesis.entry, *found.fitted}
+        and best.quick.gain - q.gain < CLASS_DEVIANCE
     ]

@@ -11,9 +11,10 @@ import xarray as xr
 
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Block, Rows
-from permway.diagnosis.blocks_frf import FrfBlock, thinned
+from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
+from permway.diagnosis.thinning import thinned
 from permway.diagnosis.wander import FIRST_LENGTH
 from permway.diagnosis.whitener import AllColumns, Whitener
 from permway.recordings.campaign import Campaign

@@ -9,11 +9,12 @@ import numpy as np
 import xarray as xr
 
 from permway.diagnosis.blocks import Block
-from permway.diagnosis.blocks_frf import FrfBlock, thinned
+from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
 from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.thinning import thinned
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset

@@ -8,7 +8,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from permway.diagnosis.choose import CLOSE, FOLLOWED, WORTH, chosen_of, elsewhere, finalists_of, lines, penalty
+from permway.diagnosis.choose import (
+    CLOSE,
+    FOLLOWED,
+    RIVAL,
+    WORTH,
+    chosen_of,
+    elsewhere,
+    finalists_of,
+    lines,
+    penalty,
+)
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.felt import FELT, moved
 from permway.diagnosis.fit import Fit, gained
@@ -20,6 +30,7 @@ from permway.diagnosis.quick import Quick
 from permway.diagnosis.quick_files import noted, recalled
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.refit import relearnt
+from permway.diagnosis.resonances import retuned
 from permway.errors import InputError, SolveError
 
 TOGETHER = 2
@@ -116,6 +127,8 @@ class Round:
         Those that were followed, the best first.
     finalists : tuple of Finalist
         Those that passed the threshold, the best first.
+    fitted : frozenset of str
+        Effects that were fitted in full, those that fell behind among them.
     threshold : float
         Gain of BIC that had to be passed.
     """
@@ -124,6 +137,7 @@ class Round:
     screened: tuple[Quick, ...]
     followed: tuple[Quick, ...]
     finalists: tuple[Finalist, ...]
+    fitted: frozenset[str]
     threshold: float
 
 
@@ -214,7 +228,8 @@ def search(
         # Of rivals little more is asked than how well they do; a diagnosis has dozens of them.
         if other.fit.evidence is not learnt_base.evidence:
             other.fit.evidence.forget()
-    return Round(ring, tuple(screened), tuple(followed), tuple(finalists), least)
+    tried = frozenset(one.hypothesis.entry for one, _ in fitted)
+    return Round(ring, tuple(screened), tuple(followed), tuple(finalists), tried, least)
 
 
 def looked(
@@ -256,6 +271,11 @@ def looked(
         progress("follow", len(chosen), len(chosen))
         with contextlib.suppress(InputError, SolveError):
             followed.append(ring.together(one))
+    best = max((q.gain for q in followed), default=0.0)
+    for index, one in enumerate(followed):
+        if one.gain > RIVAL * best:
+            progress("follow", len(chosen), len(chosen))
+            followed[index] = retuned(ring, one)
     followed.sort(key=lambda q: penalty(q, ring) - q.gain)
     return screened, followed
 

@@ -1,0 +1,28 @@
+"""Frequency responses on as many lines as say something new."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from permway.recordings.campaign_load import Dataset
+
+LINES_PER_FREQUENCY = 40.0
+"""Lines of a frequency response within its own frequency, at most."""
+
+
+def thinned(dataset: Dataset) -> Dataset:
+    """Frequency responses on lines no closer than 1/LINES_PER_FREQUENCY of their frequency.
+
+    What lies closer says nothing new of a structure with loss factors above that.
+    """
+    if dataset.record.statistic != "frf":
+        return dataset
+    frequency = dataset.data["frequency"].values
+    kept, last = [], -np.inf
+    for index, value in enumerate(frequency):
+        if value - last >= value / LINES_PER_FREQUENCY * (1.0 - 1e-9):
+            kept.append(index)
+            last = value
+    return replace(dataset, data=dataset.data.isel(frequency=kept))
