@@ -17,6 +17,7 @@ from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.refit import weighed_anew
 from permway.diagnosis.search import Finalist, Round
 from permway.diagnosis.speak import Proof
+from permway.diagnosis.thermometers import misread
 from permway.diagnosis.unsteady import unsteady
 
 
@@ -51,7 +52,7 @@ def prove(
         held_out=held_out,
         log_e=log_e,
         placebo=placebo_held_out,
-        unsteady=unsteady(amended, told) + idealised(weighed),
+        unsteady=unsteady(amended, told) + idealised(weighed) + misread(weighed, accepted),
         weighed=weighed,
         bic_gain=bic,
         conditions=decide.conditions(
