@@ -12,6 +12,7 @@ from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.ragged import STEADY, explains_elsewhere, raggedness, unexplained_lines, unsteady_misfit
 from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.speak import _unsteady
 from simulated_train import measured, tables, written
 
 
@@ -73,3 +74,11 @@ def test_what_hammer_tests_tell_is_told_whatever_runs_do(struck: Fit) -> None:
         right, half = (replace(struck, clean=np.where(lacking, left, 0.8)) for left in (1.0, 1.8))
         assert explains_elsewhere(base, right) is told
         assert not explains_elsewhere(base, half)
+
+
+def test_what_is_not_steady_is_said_before_that_records_do_not_tell(steady: Fit, struck: Fit) -> None:
+    """Nothing found, or something that leaves all of it: where it acts is known, and that is more."""
+    assert _unsteady(struck, struck)
+    assert not _unsteady(steady, steady)
+    # A misfit that is no scatter of lines is none of these.
+    assert not _unsteady(replace(steady, heat=3.0), replace(steady, heat=3.0))

@@ -99,6 +99,13 @@ def verdict_of(
     sizes = detectable(last.ring, last.screened, last.threshold) if fits else {}
     weight = Weight(false_alarm_threshold=first.threshold, misfit_before=base.heat)
     recalibrated = Recalibrated(before=_moved(base))
+    status: Status
+    effects: tuple[Effect, ...]
+    if _unsteady(base, accepted[-1].fit if accepted else base):
+        effects = (unexplained_lines(accepted[-1].fit if accepted else base),)
+        return Verdict(
+            status="located", effects=effects, evidence=weight, recalibrated=recalibrated, detectable=sizes
+        )
     if not accepted or proof is None:
         status, effects = _nothing(base, first, found)
         level = beyond(base, first.threshold) if status == "recalibrated" else None
@@ -110,12 +117,6 @@ def verdict_of(
     amended = accepted[-1].fit
     if _explains_little(base.heat, amended.heat):
         return Verdict(status="insufficient", evidence=weight, recalibrated=recalibrated, detectable=sizes)
-    unsteady = _explains_little(unsteady_misfit(base), unsteady_misfit(amended))
-    if unsteady and not explains_elsewhere(base, amended):
-        status, effects = "located", (unexplained_lines(amended),)
-        return Verdict(
-            status=status, effects=effects, evidence=weight, recalibrated=recalibrated, detectable=sizes
-        )
     gap = decide.explained(base, amended, left)
     by_prefix = {r.finalists[0].prefix: r for r in rounds if r.finalists}
     ends = _ends(proof)
@@ -158,6 +159,13 @@ def _explains_little(before: float, after: float) -> bool:
     if after > max(UNFIT, decide.HALF * before):
         return True
     return after > LEFT and before - after < LITTLE * (before - 1.0)
+
+
+def _unsteady(base: Fit, amended: Fit) -> bool:
+    """Whether lines of a run scatter as no steady record's do, and what was found leaves them so."""
+    after = unsteady_misfit(amended)
+    ragged = after > amended.heat and _explains_little(unsteady_misfit(base), after)
+    return ragged and not explains_elsewhere(base, amended)
 
 
 def mixed_up(base: Fit, mixed: Mislabelled) -> Verdict:
