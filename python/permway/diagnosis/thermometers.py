@@ -35,20 +35,21 @@ def misread(fit: Fit, accepted: Sequence[Finalist]) -> Reals:
     """
     evidence, found = fit.evidence, np.zeros(fit.z.size)
     read = {c.temperature_C for c in evidence.campaign.said.conditions} - {None}
-    solved = evidence.predicted(fit.campaign)
+    values, reduced = fit.values(), evidence.whitener.reduce(fit.jacobian)
+    solved = evidence.predicted(_built(evidence.campaign, None, accepted)(values))
     plain = evidence.deviations(solved.datasets)
-    reduced = evidence.whitener.reduce(fit.jacobian)
     for temperature in sorted(t for t in read if t is not None):
-        build = _built(evidence.campaign, temperature, accepted)
-        after = evidence.predicted(build(fit.values()), solved)
+        after = evidence.predicted(_built(evidence.campaign, temperature, accepted)(values), solved)
         off = (evidence.deviations(after.datasets) - plain) * (OFF_K / STEP_K)
         slope = (fit.jacobian.T @ off - reduced.T @ evidence.whitener.reduce(off)) / fit.heat
         found += (fit.covariance @ slope) ** 2
     return found
 
 
-def _warmer(campaign: Campaign, temperature_C: float) -> Campaign:
-    """As if it had been a little warmer wherever this was read."""
+def _warmer(campaign: Campaign, temperature_C: float | None) -> Campaign:
+    """As if it had been a little warmer wherever this was read; as it is without one."""
+    if temperature_C is None:
+        return campaign
     conditions = tuple(
         c.model_copy(update={"temperature_C": temperature_C + STEP_K}) if c.temperature_C == temperature_C else c
         for c in campaign.said.conditions
@@ -57,7 +58,7 @@ def _warmer(campaign: Campaign, temperature_C: float) -> Campaign:
     return Campaign(said, campaign.model, campaign.folder, campaign.parameters)
 
 
-def _built(campaign: Campaign, temperature_C: float, accepted: Sequence[Finalist]) -> Build:
+def _built(campaign: Campaign, temperature_C: float | None, accepted: Sequence[Finalist]) -> Build:
     """From values to the campaign with the effects, a little warmer before they are put in."""
 
     def base(values: Mapping[str, float]) -> Campaign:
