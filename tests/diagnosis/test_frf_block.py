@@ -107,7 +107,8 @@ def test_what_smooth_errors_undo_leaves_nothing_where_noise_hides_the_response(
     assert isinstance(block, FrfBlock)
     hidden = block._hidden
     assert hidden.mean() > 0.3
-    turned = solved.copy(data={**solved.data_vars, "frf": solved["frf"].values * np.exp(off)})
+    both = {name: solved[name].values * np.exp(off) for name in ("frf", "chain")}
+    turned = solved.copy(data={"noise_factor": solved["noise_factor"].values, **both})
     undone = block.off(turned)[hidden] + off * block._there[hidden]
     # To the second order; by the third is left what the fits' next reference takes.
     left = np.abs(undone - block.off(solved)[hidden]) / np.abs(block._there[hidden])

@@ -90,7 +90,7 @@ class FrfBlock:
         gains, offs = (np.broadcast_to(v, used.shape)[self._hidden] for v in (self._gain, off))
         # exp(e) is, about errors E, exp(E) (1 - E) + exp(E) e.
         self._heard = gains, self._measured[self._hidden] + expected[self._hidden] * offs
-        self._behind: Complexes = reference["frf"].values[self._hidden]
+        self._chain: Complexes = reference["chain"].values[self._hidden]
         # A response that noise has made larger weighs more: so much is the weighed logarithm above zero.
         self._lifted: Reals = 2.0 * (noise[self._logarithmic] / np.abs(self._seen) ** 2)
         # Of what is mostly noise, smooth errors act on what is there.
@@ -214,7 +214,9 @@ class FrfBlock:
         found = np.zeros_like(self._measured)
         found[self._logarithmic] = self._seen * (self._logarithms(model) - self._lifted)
         hidden, (gains, heard) = model[self._hidden], self._heard
-        found[self._hidden] = heard - gains * hidden * _straight(hidden, self._behind)
+        found[self._hidden] = heard - gains * hidden * _straight(
+            predicted["chain"].values[self._hidden] / self._chain
+        )
         return found
 
     def _logarithms(self, model: Complexes) -> Complexes:
@@ -276,20 +278,19 @@ class FrfBlock:
         return Smooth(tuple(Origin(name, wander, 2) for name in names), PairColumns(gains, self._phase))
 
 
-def _straight(model: Complexes, reference: Complexes) -> Complexes:
-    """By what a prediction is multiplied where noise hides it, so that smooth errors may undo what it is off by.
-
-    It is off from the reference by exp(r), and errors by -r undo that where logarithms count. So does 1 + r here,
-    and exp(r) would leave r^2 / 2: a delay whose phase smooth errors take back would be louder. What is farther
-    off than errors go stays as predicted.
-    """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = model / reference
-        size = np.abs(ratio)
-        grown, turned = np.log(size), ratio.imag / size
-        off = grown * np.exp(-0.5 * grown**2) + 1j * turned
-        return np.where(np.isfinite(off), np.exp(-0.5 * off**2), 1.0)
-
-
 def _square(values: Complexes) -> Reals:
     return np.asarray(values.real**2 + values.imag**2)
+
+
+def _straight(chain: Complexes) -> Complexes:
+    """By what a hidden prediction is multiplied, so that smooth errors may undo what its chain is off by.
+
+    It is off from the reference's by exp(r), and errors by -r undo that where logarithms count. So does 1 + r
+    here, and exp(r) would leave r^2 / 2: a delay whose phase smooth errors take back would be louder. What is
+    farther off than errors go stays as predicted.
+    """
+    if np.all(chain == 1.0):
+        return np.ones_like(chain)
+    size = np.abs(chain)
+    grown = np.log(size)
+    return np.asarray(np.exp(-0.5 * (grown * np.exp(-0.5 * grown**2) + 1j * chain.imag / size) ** 2))

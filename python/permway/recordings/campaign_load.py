@@ -70,10 +70,10 @@ class Dataset:
 
     @cached_property
     def predicted(self) -> xr.Dataset:
-        """What of it is predicted, to be filled: its variables of measured values, and noise by sensor."""
+        """What of it is predicted, to be filled; of responses chains, and noise by sensor, too."""
         if self.record.statistic == "frf":
             ones = np.ones(self.data.sizes["sensor"])
-            return self.data[["frf"]].assign(noise_factor=("sensor", ones))
+            return self.data[["frf"]].assign(noise_factor=("sensor", ones), chain=self.data["frf"])
         return self.data[
             {"csd": ["csd", "psd"], "psd": ["csd", "psd"]}.get(self.record.statistic, [self.record.statistic])
         ]

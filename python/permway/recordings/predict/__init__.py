@@ -148,7 +148,8 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
             read = hammer.read(sensors, [campaign.point(n) for n in dataset.names("force")], dataset.frequency_Hz)
             frf = np.ascontiguousarray(np.moveaxis(values * read, 0, -1))
             noise = np.array([sensor.chain.noise_factor for sensor in sensors])
-            return dataset.predicted.copy(data={"frf": frf, "noise_factor": noise})
+            chain = np.moveaxis(read, 0, -1)
+            return dataset.predicted.copy(data={"frf": frf, "noise_factor": noise, "chain": chain})
         case "csd" | "psd":
             sensors = [campaign.sensor(name) for name in dataset.names("channel")]
             lines = need.frequency_Hz
