@@ -76,3 +76,21 @@ def test_where_no_finalist_fits_the_blunted_responses_tell_which_does_better(fit
     assert {m.name: m.probability for m in members(found, explained=1.0)} == pytest.approx(
         {"right": 0.95, "novel": 0.05}
     )
+
+
+@pytest.mark.parametrize(("fitted", "share"), [((), 0.475), (("b",), None)])
+def test_a_rival_that_was_fitted_counts_by_its_fit_alone(
+    fit: Fit, fitted: tuple[str, ...], share: float | None
+) -> None:
+    """It gained more when it was followed, and fell behind when all parameters moved."""
+    quick, rival = (
+        SimpleNamespace(gain=gain, hypothesis=SimpleNamespace(entry=entry, free=()))
+        for entry, gain in (("a", 4575.0), ("b", 13879.0))
+    )
+    best = SimpleNamespace(fit=fit, rough=fit, hypothesis=quick.hypothesis, quick=quick, correction=0.0)
+    found = SimpleNamespace(
+        finalists=(best,), followed=(rival, quick), fitted=frozenset(fitted), ring=SimpleNamespace(fit=fit)
+    )
+    told = {m.name: m.probability for m in members(cast(Any, found), explained=1.0)}
+    assert told.get("b") == (None if share is None else pytest.approx(share))
+    assert told["a"] == pytest.approx(0.95 if share is None else share)

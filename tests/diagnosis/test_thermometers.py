@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
@@ -14,6 +16,7 @@ from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.thermometers import OFF_K, misread
+from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from simulated_train import measured, tables, written
 
@@ -37,6 +40,13 @@ def test_what_is_told_by_two_temperatures_is_as_sure_as_their_thermometers(tmp_p
     hypothesis = next(h for h in pad_temperature.hypotheses(situation) if not h.variant)
     one = cast(Any, SimpleNamespace(hypothesis=hypothesis, prefix=""))
 
+    def ending(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
+        """As of a law that is known up to the warmest temperature that was read, and no further."""
+        warmest = max(c.temperature_C or 0.0 for c in campaign.said.conditions)
+        if warmest > 12.0:
+            raise InputError("is known up to 12 degC", where="law", value=warmest)
+        return hypothesis.amend(campaign, values)
+
     def found(off_K: float) -> tuple[float, float, Any]:
         records = measured(_read_off(campaign, off_K), 2, lambda c: hypothesis.amend(c, TRUE))
         fit = recalibrate(gather(campaign, records, threads=1), learn=False)
@@ -44,6 +54,8 @@ def test_what_is_told_by_two_temperatures_is_as_sure_as_their_thermometers(tmp_p
         place = [f.name for f in full.free].index("softening_per_K")
         slope = full.free[place].value(1.0) - full.free[place].value(0.0)
         more = misread(full, [one])
+        ended = cast(Any, SimpleNamespace(hypothesis=replace(hypothesis, amend=ending), prefix=""))
+        np.testing.assert_allclose(misread(full, [ended]), more, rtol=0.01, atol=1e-7)
         # What no temperature acts on is known as before.
         others = [i for i, f in enumerate(full.free) if f.name.startswith("vehicle.")]
         assert np.sqrt(more[others] / np.diag(full.covariance)[others]).max() < 0.2

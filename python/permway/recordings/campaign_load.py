@@ -69,14 +69,16 @@ class Dataset:
         return self._names[dimension]
 
     @cached_property
-    def predicted(self) -> xr.Dataset:
-        """What of it is predicted, to be filled; of responses chains, and noise by sensor, too."""
-        if self.record.statistic == "frf":
-            ones = np.ones(self.data.sizes["sensor"])
-            return self.data[["frf"]].assign(noise_factor=("sensor", ones), chain=self.data["frf"])
-        return self.data[
-            {"csd": ["csd", "psd"], "psd": ["csd", "psd"]}.get(self.record.statistic, [self.record.statistic])
-        ]
+    def template(self) -> xr.Dataset:
+        """What is predicted of it, to be filled; of responses their chains, and noise by sensor, too."""
+        statistic = self.record.statistic
+        if statistic == "frf":
+            found = self.data[["frf"]]
+            found["noise_factor"] = xr.Variable("sensor", np.ones(found.sizes["sensor"]), {"units": "1"})
+            named = {"long_name": "what is read over the receptance"}
+            found["chain"] = xr.Variable(found["frf"].dims, found["frf"].values, named)
+            return found
+        return self.data[["csd", "psd"] if statistic in ("csd", "psd") else [statistic]]
 
     @cached_property
     def frequency_Hz(self) -> Reals:

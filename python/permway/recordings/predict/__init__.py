@@ -57,7 +57,8 @@ def predict(
     Returns
     -------
     list of xarray.Dataset
-        For each dataset the variable of its statistic, with the same dimensions and coordinates.
+        For each dataset the variable of its statistic, with the same dimensions and coordinates. Of frequency
+        responses `chain`, what is read over the receptance, and `noise_factor` by sensor, too.
 
     Raises
     ------
@@ -149,7 +150,7 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
             frf = np.ascontiguousarray(np.moveaxis(values * read, 0, -1))
             noise = np.array([sensor.chain.noise_factor for sensor in sensors])
             chain = np.moveaxis(read, 0, -1)
-            return dataset.predicted.copy(data={"frf": frf, "noise_factor": noise, "chain": chain})
+            return dataset.template.copy(data={"frf": frf, "noise_factor": noise, "chain": chain})
         case "csd" | "psd":
             sensors = [campaign.sensor(name) for name in dataset.names("channel")]
             lines = need.frequency_Hz
@@ -172,11 +173,11 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
                 left=work.left,
             )
             power = np.einsum("fcc->cf", matrix).real
-            return dataset.predicted.copy(data={"csd": np.moveaxis(matrix, 0, -1), "psd": power})
+            return dataset.template.copy(data={"csd": np.moveaxis(matrix, 0, -1), "psd": power})
         case "transmissibility":
             moved = shaker.transmissibility(campaign.model, need.temperature_C, need.frequency_Hz, values)
             chains = [campaign.sensor(name).chain.transfer(need.frequency_Hz) for name in dataset.names("channel")]
-            return dataset.predicted.copy(data={"transmissibility": moved.T * np.stack(chains)})
+            return dataset.template.copy(data={"transmissibility": moved.T * np.stack(chains)})
         case _:
             return decay.predicted(record, data, values)
 
