@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from permway.cli_output import Folder, Json, examples, progress_bar, say
 from permway.errors import InputError
+
+if TYPE_CHECKING:
+    from permway.challenge.follow import Advice
 
 challenges = typer.Typer(
     help="Concealed effects: make, diagnose, score.",
@@ -24,7 +27,7 @@ def challenge_make(
     seed: Annotated[int, typer.Option(min=0, help="Of the first campaign.")] = 1,
     cases: Annotated[int, typer.Option(min=1, help="How many campaigns.")] = 10,
     tier: Annotated[
-        str, typer.Option(help="null, single, twin, multiple, outside, nonlinear, graded.")
+        str, typer.Option(help="null, single, twin, multiple, outside, nonlinear, graded, sparse.")
     ] = "single",
     as_json: Json = False,
 ) -> None:
@@ -104,6 +107,47 @@ def challenge_weigh(
 def challenge_score(folder: Folder, as_json: Json = False) -> None:
     """Hold the verdicts against the truths."""
     say(_scores(folder), as_json)
+
+
+@challenges.command("follow", epilog=examples("permway challenge follow cases --workers 2"))
+def challenge_follow(
+    folder: Folder,
+    workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
+    as_json: Json = False,
+) -> None:
+    """Measure what verdicts advise, diagnose again, and see whether that tells the rivals apart.
+
+    Of campaigns that were run. The new ones lie in the folder's `followed`, a challenge of its own.
+    """
+    from dataclasses import asdict
+
+    from permway.challenge.follow import FOLLOWED, follow, separated
+    from permway.challenge.run import run
+    from permway.challenge.summary import share
+
+    follow(folder, _asked_for)
+    with progress_bar("running", as_json) as progress:
+        result = run(folder / FOLLOWED, workers=workers, progress=progress)
+    found = separated(folder)
+    shares = {
+        "apart": share([one.apart for one in found]),
+        "right": share([one.right for one in found if one.apart and one.right is not None]),
+    }
+    cases = [asdict(one) for one in found]
+    say({**result, **shares, **({"cases": cases} if as_json else {})}, as_json)
+
+
+def _asked_for(campaign: Path, words: str) -> Advice:
+    """What a verdict's words ask to measure."""
+    from permway.challenge.follow import Advice
+    from permway.diagnosis.gather import predictable
+    from permway.diagnosis.menu import item_of
+    from permway.recordings.campaign import read_campaign
+
+    read = read_campaign(campaign)
+    item = item_of(read, predictable(read).kept, words)
+    # A team writes speeds down in km/h.
+    return Advice(item.kind, item.body, 3.6 * item.value if item.kind == "speed" else item.value)
 
 
 @challenges.command(

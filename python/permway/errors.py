@@ -5,6 +5,8 @@ Every error a user can cause carries what is wrong, where, the value met and the
 
 from __future__ import annotations
 
+from functools import partial
+
 
 class PermwayError(Exception):
     """Base of all errors that permway raises on purpose."""
@@ -29,6 +31,10 @@ class InputError(PermwayError, ValueError):
         self.what, self.where, self.value, self.remedy = what, where, value, remedy
         got = "" if value is None else f" (got {_short(value)})"
         super().__init__(f"{where}: {what}{got}" + (f"; {remedy}" if remedy else ""))
+
+    def __reduce__(self) -> tuple[partial[InputError], tuple[()]]:
+        """From one process to another it goes whole."""
+        return partial(type(self), self.what, where=self.where, value=self.value, remedy=self.remedy), ()
 
 
 class SolveError(PermwayError, ArithmeticError):

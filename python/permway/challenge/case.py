@@ -36,9 +36,10 @@ from permway.challenge.layout import (
 from permway.challenge.measure import HammerTest, Run, measure
 from permway.challenge.plan import Chain, Plan, plan_of
 from permway.challenge.sheet import sheet
+from permway.challenge.sparse import NOISE, sparse
 from permway.errors import InputError
 
-Tier = Literal["null", "single", "twin", "multiple", "outside", "nonlinear", "graded"]
+Tier = Literal["null", "single", "twin", "multiple", "outside", "nonlinear", "graded", "sparse"]
 TIERS: tuple[Tier, ...] = get_args(Tier)
 
 COLD_TOO = 0.15
@@ -147,7 +148,8 @@ def draw(seed: int, tier: Tier) -> Case:
     tier : Tier
         "null": nothing concealed; "single": one effect of the catalogue; "twin": one that has a near twin;
         "multiple": two or three; "outside": one of no catalogue, or one whose family is taken out of it;
-        "nonlinear": one that depends on amplitude; "graded": one of the catalogue that is there to be faded.
+        "nonlinear": one that depends on amplitude; "graded": one of the catalogue that is there to be faded;
+        "sparse": one that has a near twin, in records so few that they may leave it open.
 
     Raises
     ------
@@ -169,6 +171,8 @@ def draw(seed: int, tier: Tier) -> Case:
     layout = draw_layout(_random(seed, tier, 1))
     nominal = draw_nominal(_random(seed, tier, 1, 1))
     tests = draw_tests(_random(seed, tier, 1, 2), layout, temperatures=temperatures)
+    if tier == "sparse":
+        tests = sparse(tests, _random(seed, tier, 1, 3))
     true = draw_true(_random(seed, tier, 2), nominal)
     chain = _chain(_random(seed, tier, 3), _noisier(_random(seed, tier, 6), tier))
     site, drawing = Site(layout, tests), _random(seed, tier, 5)
@@ -192,13 +196,14 @@ def _kinds(random: np.random.Generator, tier: Tier) -> list[type[Effect]]:
     match tier:
         case "null":
             return []
-        case "single" | "twin" | "outside" | "nonlinear" | "graded":
+        case "single" | "twin" | "outside" | "nonlinear" | "graded" | "sparse":
             pool = {
                 "single": CATALOGUE,
                 "twin": TWINS,
                 "outside": OUTSIDE,
                 "nonlinear": NONLINEAR,
                 "graded": FADING,
+                "sparse": TWINS,
             }[tier]
             return [pool[int(random.integers(len(pool)))]]
         case "multiple":
@@ -219,6 +224,8 @@ def _noisier(random: np.random.Generator, tier: Tier) -> float:
     """
     if tier == "graded":
         return float(DROWNED * 10.0 ** random.uniform(-1.0, 0.0))
+    if tier == "sparse":
+        return float(NOISE ** random.random())
     return float(NOISIEST ** random.random()) if random.random() < NOISY else 1.0
 
 

@@ -28,16 +28,16 @@ def summary(scored: Iterable[Scored]) -> list[dict[str, Any]]:
         mine = [s for s in all_cases if s.group == group]
         row: dict[str, Any] = {"tier": mine[0].tier, "group": group, "cases": len(mine)}
         alarms = [s.status in FOUND for s in mine]
-        row["called"] = _share(alarms)
+        row["called"] = share(alarms)
         for key in ("found", "placed", "family", "in_class", "all_found", "mechanics"):
             values = [v for s in mine if (v := getattr(s, key)) is not None]
             if values:
-                row[key] = _share(values)
-        row["false_name"] = _share([s.false_name for s in mine])
-        row["harmed"] = _share([s.harmed for s in mine])
+                row[key] = share(values)
+        row["false_name"] = share([s.false_name for s in mine])
+        row["harmed"] = share([s.harmed for s in mine])
         covered = [c for s in mine for c in s.covered]
         if covered:
-            row["covered"] = _share(covered)
+            row["covered"] = share(covered)
         gained = [s.gain_dB for s in mine if s.gain_dB is not None]
         if gained:
             row["gain_dB"] = round(float(np.median(gained)), 2)
@@ -59,10 +59,11 @@ def foretold_better(own: Sequence[Scored], other: Sequence[Scored]) -> str | Non
         parts = one.foretold.keys() & theirs.get(one.name, {}).keys()
         if parts:
             shares.append(sum(one.foretold[p] - theirs[one.name][p] for p in parts) > 0.0)
-    return _share(shares) if shares else None
+    return share(shares) if shares else None
 
 
-def _share(values: list[bool]) -> str:
+def share(values: Sequence[bool]) -> str:
+    """Hits of all in words, with the 90 % interval of their share."""
     hits, of = sum(values), len(values)
     low, high = interval(hits, of)
     return f"{hits}/{of} ({100.0 * low:.0f} to {100.0 * high:.0f} %)"

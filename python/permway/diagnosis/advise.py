@@ -8,10 +8,11 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
+from permway.diagnosis.clock import Progress
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import evidence_of
 from permway.diagnosis.menu import Item, menu
-from permway.diagnosis.search import Progress
+from permway.diagnosis.side_by_side import each
 from permway.diagnosis.tangent import STEP
 from permway.diagnosis.verdict_parts import NextMeasurement
 from permway.errors import InputError, SolveError
@@ -37,13 +38,21 @@ def advise(
     found: list[tuple[float, NextMeasurement]] = []
     measured = right.evidence.selected(right.evidence.records).datasets
     items = list(menu(right.evidence.campaign, measured))
-    for index, item in enumerate(items):
+
+    def told(begun: int) -> None:
         if progress is not None:
-            progress("advise", index, len(items))
+            progress("advise", begun, len(items))
+
+    def expected(item: Item) -> float | None:
         try:
-            more = separation(item, right, other)
+            return separation(item, right, other)
         except (InputError, SolveError):
             # What the model cannot predict cannot be advised.
+            return None
+
+    expectations = each(expected, items, threads=right.evidence.threads, told=told)
+    for item, more in zip(items, expectations, strict=True):
+        if more is None:
             continue
         advice = NextMeasurement(
             measurement=item.words,

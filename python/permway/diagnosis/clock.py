@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from time import perf_counter
 
-from permway.diagnosis.search import Progress
+Progress = Callable[[str, int, int], object]
+"""Told a stage, how much of it is done, and of how much."""
 
 
 @dataclass

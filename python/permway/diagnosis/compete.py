@@ -70,8 +70,8 @@ class Ring:
         self.start = self._objective(self._base)[0]
         self._others: dict[tuple[tuple[str, float], ...], Ring] = {}
 
-    def _about(self, hypothesis: Hypothesis) -> Ring:
-        """The ring about the base that a hypothesis is tried from: its own, but where it names another."""
+    def about(self, hypothesis: Hypothesis) -> Ring:
+        """The ring about the base that a hypothesis is tried from: this one, but where it names another."""
         if not hypothesis.about:
             return self
         key = tuple(sorted(hypothesis.about.items()))
@@ -140,7 +140,7 @@ class Ring:
         least : float
             Promised gain below which the step is not taken, and the promise is what it is said to gain.
         """
-        other = self._about(hypothesis)
+        other = self.about(hypothesis)
         if other is not self:
             found = other.screen(replace(hypothesis, about={}), least=least)
             return self._seen_from(other, replace(found, hypothesis=hypothesis))
@@ -198,7 +198,7 @@ class Ring:
 
     def quick(self, hypothesis: Hypothesis, *, after: Quick | None = None, steps: int = 6) -> Quick:
         """Follow a hypothesis on from where screening ended, while the base moves linearly."""
-        other = self._about(hypothesis)
+        other = self.about(hypothesis)
         if other is not self:
             begun = None if after is None else other._seen_from(self, after)
             found = other.quick(replace(hypothesis, about={}), after=begun, steps=steps)
@@ -312,7 +312,7 @@ class Ring:
         See :func:`permway.diagnosis.recalibrate.recalibrate`.
         """
         build, free = stacked(self.fit.build, quick.hypothesis, prefix)
-        known = self._about(quick.hypothesis).fit
+        known = self.about(quick.hypothesis).fit
         problem = Problem(self.evidence, build, (*self.fit.free, *free))
         ended, unmoved = (np.concatenate([base_z, quick.z]) for base_z in (quick.base_z, known.z))
         astray = self._heated(problem, ended)

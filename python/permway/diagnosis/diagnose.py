@@ -10,7 +10,7 @@ from permway.diagnosis.advise import advise
 from permway.diagnosis.bases import bases
 from permway.diagnosis.candidates import candidates
 from permway.diagnosis.catalogue import known
-from permway.diagnosis.clock import Clock
+from permway.diagnosis.clock import Clock, Progress
 from permway.diagnosis.compare import assemble
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.constancy import constancy
@@ -25,10 +25,10 @@ from permway.diagnosis.recovered import law_stiffness, same_place
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.rounds import effects
 from permway.diagnosis.sampling import corrected, sampled
-from permway.diagnosis.search import Finalist, Progress, Round
+from permway.diagnosis.search import Finalist, Round
 from permway.diagnosis.speak import Proof, mixed_up, verdict_of, with_spoilt
 from permway.diagnosis.spot import Found
-from permway.diagnosis.verdict_parts import NextMeasurement
+from permway.diagnosis.verdict_parts import RECALIBRATED, NextMeasurement
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 
@@ -98,7 +98,7 @@ def diagnose(
         if draws:
             proof = replace(proof, spans=_spans(proof.weighed, accepted, draws, seed, clock))
         amended = proof.weighed
-        advice = _advice(rounds, clock)
+        advice = _advice(base, rounds, accepted, proof, clock)
     left = description.left(accepted[-1].fit) if accepted else ()
     clock("compare")
     law, remaining = _law(base, accepted, found, left)
@@ -133,14 +133,19 @@ def _spans(
     return spans
 
 
-def _advice(rounds: Sequence[Round], clock: Clock) -> tuple[NextMeasurement, ...]:
-    """What to measure next where two effects rival each other."""
+def _advice(
+    base: Fit, rounds: Sequence[Round], accepted: Sequence[Finalist], proof: Proof, clock: Clock
+) -> tuple[NextMeasurement, ...]:
+    """What to measure next where two effects rival each other, or where one is no more than a suspicion."""
     for found in rounds:
         rivals = [f for f in found.finalists if f.hypothesis.entry != found.finalists[0].hypothesis.entry]
         if rivals:
             best, rival = found.finalists[0], rivals[0]
             if rival.fit.objective - best.fit.objective < CLASS_DEVIANCE * best.fit.heat:
                 return advise(best.fit, rival.fit, (best.hypothesis.entry, rival.hypothesis.entry), progress=clock)
+    if not proof.conditions.hold:
+        suspected = accepted[0].hypothesis.entry
+        return advise(accepted[-1].fit, base, (suspected, RECALIBRATED), progress=clock)
     return ()
 
 

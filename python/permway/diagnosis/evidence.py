@@ -14,6 +14,7 @@ from permway.diagnosis.blocks import Block, Rows
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
+from permway.diagnosis.side_by_side import threads_of_solver
 from permway.diagnosis.thinning import thinned
 from permway.diagnosis.wander import FIRST_LENGTH
 from permway.diagnosis.whitener import AllColumns, Whitener
@@ -148,7 +149,7 @@ class Evidence:
         answers = _answered(needs, campaign, near)
         sweeps = plan(need for need in needs if need is not None and need.state not in answers)
         for sweep in sweeps:
-            answers[sweep.state] = solve(sweep, campaign.model, threads=self.threads)
+            answers[sweep.state] = solve(sweep, campaign.model, threads=threads_of_solver(self.threads))
         kept = [] if near is None else _kept(self.datasets, needs, answers, campaign, near)
         datasets: list[xr.Dataset] = []
         made: dict[int, xr.Dataset] = {}

@@ -8,6 +8,7 @@ import numpy as np
 from scipy import linalg
 
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.side_by_side import each
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
 
@@ -32,6 +33,10 @@ class Glance:
         self._reduced = self._whitener.reduce(self._jacobian)
         normal = (self._jacobian.T @ self._jacobian - self._reduced.T @ self._reduced) / fit.heat
         self._factor = linalg.cho_factor(normal + np.eye(self._z.size))
+
+    def objectives(self, campaigns: Sequence[Campaign]) -> list[float]:
+        """Of several, side by side."""
+        return each(self.objective, campaigns, threads=self._fit.evidence.threads)
 
     def objective(self, campaign: Campaign) -> float:
         """The least heated objective over linear moves of the base; infinite if the model cannot be solved."""

@@ -16,6 +16,7 @@ import numpy as np
 from permway.arrays import Reals
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.nearby import Nearby, Part
+from permway.diagnosis.side_by_side import each
 from permway.model.line import Line
 
 OFF = {"law": 2e-4, "beam": 8e-4}
@@ -39,14 +40,22 @@ def idealised(fit: Fit) -> Reals:
     centres = np.arange(low, high + APART, APART)
     plain = evidence.deviations(solved.datasets)
     reduced = evidence.whitener.reduce(fit.jacobian)
-    for part, indices in _parts(line):
-        for centre in centres:
-            bent = nearby.bent(part, indices, partial(_hump, centre=float(centre)))
-            if bent is None:
-                return found
-            off = (evidence.deviations(bent.datasets) - plain) * (OFF[part] / STEP)
-            slope = (fit.jacobian.T @ off - reduced.T @ evidence.whitener.reduce(off)) / fit.heat
-            found += (fit.covariance @ slope) ** 2
+
+    def variance(of: tuple[Part, list[int], float]) -> Reals | None:
+        part, indices, centre = of
+        bent = nearby.bent(part, indices, partial(_hump, centre=centre))
+        if bent is None:
+            return None
+        off = (evidence.deviations(bent.datasets) - plain) * (OFF[part] / STEP)
+        slope = (fit.jacobian.T @ off - reduced.T @ evidence.whitener.reduce(off)) / fit.heat
+        return np.asarray((fit.covariance @ slope) ** 2)
+
+    nearby.derive()
+    humps = [(part, indices, float(centre)) for part, indices in _parts(line) for centre in centres]
+    for one in each(variance, humps, threads=evidence.threads):
+        if one is None:
+            return found
+        found += one
     return found
 
 

@@ -108,6 +108,16 @@ class Journal:
 _CURRENT: ContextVar[Journal | None] = ContextVar("journal", default=None)
 
 
+@contextlib.contextmanager
+def silent() -> Iterator[None]:
+    """Within it nothing is kept: for the parts of what is kept as a whole."""
+    token = _CURRENT.set(None)
+    try:
+        yield
+    finally:
+        _CURRENT.reset(token)
+
+
 def current() -> Journal | None:
     """The journal that steps are written into, if there is one."""
     return _CURRENT.get()

@@ -18,6 +18,7 @@ from permway.arrays import Complexes
 from permway.diagnosis.blocks import Basis
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.side_by_side import each
 from permway.diagnosis.spot import Found, Spot
 from permway.errors import InputError
 from permway.recordings.campaign_factors import campaign_under
@@ -33,6 +34,9 @@ STEP_M = 1.0
 
 COARSE, BESIDE = 3, 2
 """Of how many spots in a row one is looked at first, and beside how many of the best all are."""
+
+_At = tuple[tuple[str, str], int]
+"""Kind and name of a layer or a body, and which of its places."""
 
 Motion = tuple[Complexes, Complexes]
 """Motion of a spot by unit forces at the sensors and at the points, each of shape (F, places)."""
@@ -191,17 +195,24 @@ def scan(fit: Fit, also: Callable[[Spot], bool] = lambda _: False) -> list[Found
     scans = _scans(fit)
     rows = [_rows(one) for one in scans]
 
-    def found(key: tuple[str, str], index: int) -> Found:
+    def found(at: _At) -> Found:
+        key, index = at
         return reduce(_both, (one.of(*row[key][index]) for one, row in zip(scans, rows, strict=True)))
 
-    total: list[Found] = []
+    def all_of(places: Sequence[_At]) -> dict[_At, Found]:
+        return dict(zip(places, each(found, places, threads=fit.evidence.threads), strict=True))
+
+    known = all_of([(key, i) for key, row in rows[0].items() for i in range(0, len(row), COARSE)])
+    further: list[_At] = []
     for key, row in rows[0].items():
-        known = {i: found(key, i) for i in range(0, len(row), COARSE)}
-        best = sorted(known, key=lambda i: -known[i].surplus)[:BESIDE]
+        mine = [at for at in known if at[0] == key]
+        best = sorted(mine, key=lambda at: -known[at].surplus)[:BESIDE]
         asked = {i for i, (spot, _) in enumerate(row) if also(spot)}
-        beside = {i + d for i in best for d in range(1 - COARSE, COARSE)} | asked
-        known |= {i: found(key, i) for i in sorted(beside - known.keys()) if 0 <= i < len(row)}
-        total.extend(known.values())
+        beside = {i + d for _, i in best for d in range(1 - COARSE, COARSE)} | asked
+        further += [(key, i) for i in sorted(beside) if 0 <= i < len(row) and (key, i) not in known]
+    known |= all_of(further)
+    order = {key: place for place, key in enumerate(rows[0])}
+    total = [known[at] for at in sorted(known, key=lambda at: (order[at[0]], at in further))]
     return sorted(total, key=lambda f: -f.surplus)
 
 

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 import xarray as xr
 
+from permway.errors import InputError
 from permway.model.segments import Segment
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
 from permway.recordings.channel import Point, Sensor
 
-COST = {"repeat": 1.0, "sensor": 1.0, "blows": 1.0, "speed": 4.0, "temperature": 8.0}
+Kind = Literal["repeat", "sensor", "blows", "speed", "temperature"]
+
+COST: dict[Kind, float] = {"repeat": 1.0, "sensor": 1.0, "blows": 1.0, "speed": 4.0, "temperature": 8.0}
 """Of a measurement, in units of an hour on the track."""
 
 FASTER, COLDER_K, REPEATS = 1.3, 25.0, 4.0
@@ -28,6 +32,8 @@ class Item:
     Attributes
     ----------
     words : str
+    kind : str
+        Its key in :data:`COST`.
     cost : float
         See :data:`COST`.
     planned : callable
@@ -37,9 +43,14 @@ class Item:
     """
 
     words: str
+    kind: Kind
     cost: float
     planned: Callable[[Campaign], Campaign]
     dataset: Dataset
+    body: str = ""
+    """On which a sensor stands, or which is struck."""
+    value: float = float("nan")
+    """Where, m; or the temperature, degC, or the speed, m/s."""
 
 
 def menu(campaign: Campaign, datasets: list[Dataset]) -> Iterator[Item]:
@@ -56,19 +67,34 @@ def menu(campaign: Campaign, datasets: list[Dataset]) -> Iterator[Item]:
         yield from _sensors(campaign, hammer)
         yield from _blows(campaign, hammer)
         words = f"{hammer.record.name} again, {REPEATS:.0f} times the blows"
-        yield Item(words, COST["repeat"] * REPEATS, lambda c: c, _quieter(hammer))
+        yield Item(words, "repeat", COST["repeat"] * REPEATS, lambda c: c, _quieter(hammer))
         temperature = hammer.condition.temperature_C
         if temperature is not None:
             yield _other_condition(
                 hammer,
                 f"the hammer test at {temperature - COLDER_K:g} degC",
-                COST["temperature"],
+                "temperature",
                 temperature_C=temperature - COLDER_K,
             )
     train = next((d for d in datasets if d.condition.kind == "train"), None)
     if train is not None and train.condition.speed_m_per_s is not None:
         speed = FASTER * train.condition.speed_m_per_s
-        yield _other_condition(train, f"a run at {3.6 * speed:.0f} km/h", COST["speed"], speed_m_per_s=speed)
+        yield _other_condition(train, f"a run at {3.6 * speed:.0f} km/h", "speed", speed_m_per_s=speed)
+
+
+def item_of(campaign: Campaign, datasets: list[Dataset], words: str) -> Item:
+    """The measurement that a verdict advises in these words.
+
+    Raises
+    ------
+    InputError
+        If the menu has no such one.
+    """
+    items = {item.words: item for item in menu(campaign, datasets)}
+    if words not in items:
+        remedy = f"use one of {', '.join(items)}"
+        raise InputError("is no measurement that could come next", where="words", value=words, remedy=remedy)
+    return items[words]
 
 
 def _stretches(campaign: Campaign) -> Iterator[tuple[str, Segment, float, float]]:
@@ -90,9 +116,12 @@ def _sensors(campaign: Campaign, hammer: Dataset) -> Iterator[Item]:
             data = hammer.data.isel(sensor=[0]).assign_coords(sensor=[sensor.name])
             yield Item(
                 f"a sensor on {body} at {x:g} m in the hammer test",
+                "sensor",
                 COST["sensor"],
                 _with_sensor(sensor),
                 replace(hammer, data=_typical(data, hammer.data)),
+                body,
+                x,
             )
 
 
@@ -106,9 +135,12 @@ def _blows(campaign: Campaign, hammer: Dataset) -> Iterator[Item]:
         data = hammer.data.isel(force=[0]).assign_coords(force=[point.name])
         yield Item(
             f"blows on {body} at {x:g} m",
+            "blows",
             COST["blows"],
             _with_point(point),
             replace(hammer, data=_typical(data, hammer.data)),
+            body,
+            x,
         )
 
 
@@ -128,14 +160,15 @@ def _quieter(hammer: Dataset) -> Dataset:
     return replace(hammer, data=data)
 
 
-def _other_condition(dataset: Dataset, words: str, cost: float, **changed: float) -> Item:
+def _other_condition(dataset: Dataset, words: str, kind: Kind, **changed: float) -> Item:
     condition = dataset.condition.model_copy(update={"name": f"planned {dataset.condition.name}", **changed})
 
     def planned(campaign: Campaign) -> Campaign:
         said = campaign.said.model_copy(update={"conditions": (*campaign.said.conditions, condition)})
         return Campaign(said, campaign.model, campaign.folder, campaign.parameters)
 
-    return Item(words, cost, planned, replace(dataset, condition=condition))
+    (value,) = changed.values()
+    return Item(words, kind, COST[kind], planned, replace(dataset, condition=condition), value=value)
 
 
 def _with_sensor(sensor: Sensor) -> Callable[[Campaign], Campaign]:

@@ -16,6 +16,7 @@ import xarray as xr
 
 from permway.arrays import Complexes, Reals
 from permway.diagnosis.evidence import Evidence, Solved
+from permway.diagnosis.side_by_side import threads_of_solver
 from permway.model.line import Line
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_factors import model_under
@@ -70,6 +71,14 @@ class Nearby:
     def __init__(self, evidence: Evidence, solved: Solved) -> None:
         self.evidence, self.solved = evidence, solved
         self._known: dict[int, _Derivatives] = {}
+
+    def derive(self) -> None:
+        """Take the derivatives that campaigns near by will need, before processes share the work."""
+        model = self.solved.campaign.model
+        if model.formulation == "chain" and self._few(model.line):
+            for need in self.solved.needs:
+                if need is not None:
+                    self._derivatives(need, model_under(model, need.factors).line)
 
     def predicted(self, campaign: Campaign) -> Solved | None:
         """What a campaign near by predicts; None if its line differs by more than numbers."""
@@ -160,7 +169,7 @@ class Nearby:
                     forces=places_of(like.columns),
                     sensors=places_of(like.rows),
                     temperature_C=like.temperature_C,
-                    threads=self.evidence.threads,
+                    threads=threads_of_solver(self.evidence.threads),
                 )
                 slopes = (data[name].values for name in ("by_law", "by_beam", "by_mass"))
                 self._known[id(like)] = _Derivatives(_Numbers.of(line, like), *slopes)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from scipy import optimize
@@ -45,6 +46,11 @@ class Quick:
     direction: np.ndarray | None = None
     start: Reals | None = None
     promise: float = 0.0
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """All but the hypothesis, by name."""
+        return {one.name: getattr(self, one.name) for one in fields(self) if one.name != "hypothesis"}
 
     @property
     def values(self) -> dict[str, float]:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy import linalg
 
+from permway.arrays import Reals
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit, free_parameters
 from permway.diagnosis.learning import learnt
@@ -34,20 +35,28 @@ def relearnt(fit: Fit, sharp: Evidence, *, best: float = np.inf) -> Fit:
     best : float
         Objective of a rival: what lies behind it by more than a few times its last gain will not come near.
     """
+    return learnt_on(fit, sharp, best=best)[0]
+
+
+def learnt_on(fit: Fit, sharp: Evidence, *, best: float) -> tuple[Fit, list[Reals]]:
+    """As :func:`relearnt`, and at which z sizes were learnt on the way."""
     value, slopes = np.inf, None
     # Learning is a fixed point and no descent: it may lead to what is worse.
     kept = settled(fit) if fit.evidence is sharp else None
+    path: list[Reals] = []
+    way: list[Reals] = []
     for _ in range(MOST_RELEARNT):
         evidence, _ = learnt(sharp, sharp.predicted(fit.campaign))
+        way = [*way, fit.z]
         fit = recalibrate(evidence, build=fit.build, free=fit.free, start=fit.z, learn=False, slopes=slopes)
         slopes = fit.jacobian
         if kept is None or fit.objective < kept.objective:
-            kept = fit
+            kept, path = fit, way
         if fit.objective > value - RELEARNT or fit.objective - best > HOPELESS * (value - fit.objective):
             break
         sharp, value = evidence, fit.objective
     assert kept is not None
-    return kept
+    return kept, path
 
 
 def weighed_anew(fit: Fit) -> Fit:

@@ -29,10 +29,10 @@ from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
+from permway.diagnosis.looked import looked
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.rivals_held_out import MOST_STEPS, LeftOut
-from permway.diagnosis.search import looked
 from permway.diagnosis.verdict import NOVEL
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign, read_campaign

@@ -16,8 +16,9 @@ import numpy as np
 from scipy import linalg, stats
 
 from permway.arrays import Reals
+from permway.diagnosis.clock import Progress
 from permway.diagnosis.fit import Fit
-from permway.diagnosis.search import Progress, Round
+from permway.diagnosis.search import Round
 from permway.errors import InputError, SolveError
 
 FREEDOM, WIDER = 5, 1.3

@@ -4,47 +4,37 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from permway.diagnosis.choose import (
     CLOSE,
     FOLLOWED,
-    RIVAL,
-    WORTH,
-    chosen_of,
     elsewhere,
     finalists_of,
-    lines,
     penalty,
 )
+from permway.diagnosis.clock import Progress
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.felt import FELT, moved
 from permway.diagnosis.fit import Fit, gained
 from permway.diagnosis.heldout import Part, at_fault
 from permway.diagnosis.hypothesis import Hypothesis
-from permway.diagnosis.in_detail import in_detail
-from permway.diagnosis.journal import current
+from permway.diagnosis.in_detail import Told, in_detail
+from permway.diagnosis.journal import current, silent
+from permway.diagnosis.looked import key, looked
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.quick_files import noted, recalled
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.refit import relearnt
-from permway.diagnosis.resonances import retuned
+from permway.diagnosis.several_fits import fitted_in_full, relearnt_all
 from permway.errors import InputError, SolveError
-
-TOGETHER = 2
-"""Hypotheses that promise more than all others gain, and gain nothing while the base moves linearly."""
-
-PROMISE = 3.0
-"""Times that its other parameters may better what the start of a hypothesis promises."""
 
 FITS, CLOSE_TO_FITTING = 1.2, 0.95
 """Mean square of the deviations below which a finalist explains all there is, and the share of its gain from which
 a rival may then be the better one."""
-
-Progress = Callable[[str, int, int], object]
-"""Told a stage, how much of it is done, and of how much."""
 
 Threshold = Callable[[Ring, Sequence[Quick]], float]
 
@@ -175,9 +165,10 @@ def search(
     ring = Ring(fit)
     offered = list(hypotheses)
     journal = current()
-    kept = None if journal is None else journal.recall("search", [_key(h) for h in offered], fit.z)
+    kept = None if journal is None else journal.recall("search", [key(h) for h in offered], fit.z)
     if kept is None:
-        screened, followed = looked(ring, offered, before, most, progress)
+        with silent():
+            screened, followed = looked(ring, offered, before, most, progress)
         if journal is not None:
             journal.keep({**noted(screened, offered, "screened"), **noted(followed, offered, "followed")})
     else:
@@ -186,35 +177,25 @@ def search(
     rivals = finalists_of(followed, ring, least)
     fitted: list[tuple[Quick, Fit]] = []
     close = CLOSE
-    for index, one in enumerate(rivals):
-        progress("fit", index, len(rivals))
-        if fit.heat > FITS and fitted and fitted[0][1].heat < FITS:
-            # The first explains all there was: only a rival that did nearly as well may do so, too.
-            close = CLOSE_TO_FITTING
-            if one.gain < close * fitted[0][0].gain:
-                continue
-        # What cannot be solved all around is no finalist.
-        with contextlib.suppress(InputError, SolveError):
-            fitted.append((one, ring.full(one, prefix=prefix, settle=False)))
-    fitted.sort(key=lambda pair: pair[1].objective + penalty(pair[0], ring))
-    for one in elsewhere(fitted, followed):
-        progress("fit", len(rivals), len(rivals) + 1)
-        with contextlib.suppress(InputError, SolveError):
-            fitted.append((one, ring.full(one, prefix=prefix, settle=False)))
-            fitted.sort(key=lambda pair: pair[1].objective + penalty(pair[0], ring))
-    finalists, best = [], np.inf
-    for index, (one, rough) in enumerate(fitted):
-        if fit.objective - rough.objective < close * (fit.objective - fitted[0][1].objective):
-            continue
-        progress("learn", index, len(fitted))
-        try:
-            amended = relearnt(rough, learnt_base.evidence, best=best)
-        except (InputError, SolveError):
-            # It ends where the model ends: two changes of one place have met, say.
-            continue
-        if index == 0:
-            one, rough, amended = in_detail(ring, (one, rough, amended), learnt_base, prefix)
-        best = min(best, amended.objective)
+    in_full = partial(_in_full, ring, fitted, prefix, progress)
+    # What cannot be solved all around is no finalist.
+    waiting = rivals
+    while waiting and not fitted:
+        in_full(waiting[:1])
+        waiting = waiting[1:]
+    if fit.heat > FITS and fitted and fitted[0][1].heat < FITS:
+        # The first explains all there was: only a rival that did nearly as well may do so, too.
+        close = CLOSE_TO_FITTING
+        waiting = [one for one in waiting if one.gain >= close * fitted[0][0].gain]
+    in_full(waiting)
+    in_full(elsewhere(fitted, followed))
+    near = [
+        (one, rough)
+        for one, rough in fitted
+        if not fit.objective - rough.objective < close * (fit.objective - fitted[0][1].objective)
+    ]
+    finalists = []
+    for one, rough, amended in _learnt(ring, near, learnt_base, prefix, progress):
         gain = gained(learnt_base, amended)
         # A fault of a sensor may show in phases, or in noise, alone.
         domain = one.hypothesis.domain
@@ -232,55 +213,32 @@ def search(
     return Round(ring, tuple(screened), tuple(followed), tuple(finalists), tried, least)
 
 
-def looked(
-    ring: Ring, offered: Sequence[Hypothesis], before: Sequence[Quick], most: int, progress: Progress
-) -> tuple[list[Quick], list[Quick]]:
-    """All that could be solved after a step, and the most promising as far as they go, the best first."""
-    screened: list[Quick] = []
-    best = 0.0
-    known = {_key(q.hypothesis): q for q in before if q.direction is not None}
-    for index, hypothesis in enumerate(offered):
-        progress("screen", index, len(offered))
-        asked = len(hypothesis.free) * np.log(lines(ring.fit))
-        old = known.get(_key(hypothesis))
-        if hypothesis.domain != "path" and len(hypothesis.starts) > 1:
-            # Another of its starts may be the better one now, and what leaves the line alone is soon tried.
-            old = None
-        if old is not None and (promise := ring.promise(old)) < asked / PROMISE:
-            screened.append(replace(old, hypothesis=hypothesis, base_z=ring.fit.z, gain=promise, promise=promise))
-            continue
-        found = ring.screen(hypothesis, least=max(asked / PROMISE, WORTH * best / PROMISE))
-        if np.isfinite(found.gain):
-            screened.append(found)
-            best = max(best, found.gain)
-    screened.sort(key=lambda q: penalty(q, ring) - q.gain)
-    chosen = chosen_of(screened, ring, most)
-    followed: list[Quick] = []
-    for index, one in enumerate(chosen):
-        progress("follow", index, len(chosen))
-        followed.append(ring.quick(one.hypothesis, after=one))
-    best = max((q.gain for q in followed), default=0.0)
-    unkept = [
-        q
-        for q in screened
-        if q.hypothesis.domain == "path" and q.gain <= 0.0 and q.promise > max(best, penalty(q, ring))
-    ]
-    unkept.sort(key=lambda q: -q.promise)
-    for one in unkept[:TOGETHER]:
-        # The base is bent so far that moving it in a straight line leads nowhere.
-        progress("follow", len(chosen), len(chosen))
+def _in_full(
+    ring: Ring, fitted: list[tuple[Quick, Fit]], prefix: str, progress: Progress, quicks: Sequence[Quick]
+) -> None:
+    """Add to those that are fitted in full, and have the best of all first."""
+    total = len(fitted) + len(quicks)
+    fitted += fitted_in_full(
+        ring, quicks, prefix=prefix, told=lambda begun: progress("fit", total - len(quicks) + begun, total)
+    )
+    fitted.sort(key=lambda pair: pair[1].objective + penalty(pair[0], ring))
+
+
+def _learnt(
+    ring: Ring, near: Sequence[tuple[Quick, Fit]], learnt_base: Fit, prefix: str, progress: Progress
+) -> list[Told]:
+    """With sizes of smooth errors learnt anew; the first in more detail, and the others as far as they come near.
+
+    What ends where its model ends is left out: two changes of one place have met, say.
+    """
+    sharp, found, best = learnt_base.evidence, [], np.inf
+    if near:
+        progress("learn", 0, len(near))
+        one, rough = near[0]
         with contextlib.suppress(InputError, SolveError):
-            followed.append(ring.together(one))
-    best = max((q.gain for q in followed), default=0.0)
-    for index, one in enumerate(followed):
-        if one.gain > RIVAL * best:
-            progress("follow", len(chosen), len(chosen))
-            followed[index] = retuned(ring, one)
-    followed.sort(key=lambda q: penalty(q, ring) - q.gain)
-    return screened, followed
-
-
-def _key(hypothesis: Hypothesis) -> tuple[str, ...]:
-    """What makes a hypothesis the same as one of an earlier round: effect, place, and what is free."""
-    values = {f.name: f.value(float(z)) for f, z in zip(hypothesis.free, hypothesis.starts[0], strict=True)}
-    return *hypothesis.form, hypothesis.locate(values).label
+            first = in_detail(ring, (one, rough, relearnt(rough, sharp)), learnt_base, prefix)
+            found, best = [first], first[2].objective
+    others = [rough for _, rough in near[1:]]
+    fits = relearnt_all(others, sharp, best=best, told=lambda begun: progress("learn", 1 + begun, len(near)))
+    pairs = zip(near[1:], fits, strict=True)
+    return [*found, *((one, rough, amended) for (one, rough), amended in pairs if amended is not None)]

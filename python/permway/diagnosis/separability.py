@@ -14,13 +14,13 @@ from scipy import linalg
 
 from permway.arrays import Reals
 from permway.diagnosis.catalogue import hypotheses
+from permway.diagnosis.clock import Progress
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.decide import CLASS_DEVIANCE
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.locate import unseen
 from permway.diagnosis.refit import untouched
-from permway.diagnosis.search import Progress
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.predict import predict

@@ -10,6 +10,7 @@ from permway.arrays import Reals
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.nearby import Nearby
+from permway.diagnosis.side_by_side import each
 from permway.diagnosis.whitener import Whitener
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
@@ -113,14 +114,18 @@ class Problem:
 
     def jacobian(self, state: State) -> Reals:
         """Derivative of the deviations by z: forward differences, solves spared where derivatives do."""
-        nearby, columns = Nearby(self.evidence, state.solved), []
-        for index, f in enumerate(self.free):
-            forward = state.z[index] + STEP <= f.limits[1]
+        nearby = Nearby(self.evidence, state.solved)
+
+        def column(index: int) -> Reals:
+            forward = state.z[index] + STEP <= self.free[index].limits[1]
             try:
-                columns.append(self._slope(state, index, STEP if forward else -STEP, nearby))
+                return self._slope(state, index, STEP if forward else -STEP, nearby)
             except (SolveError, InputError):
                 # A number may stand at the edge of what there can be: then from its other side.
-                columns.append(self._slope(state, index, -STEP if forward else STEP, nearby))
+                return self._slope(state, index, -STEP if forward else STEP, nearby)
+
+        nearby.derive()
+        columns = each(column, range(len(self.free)), threads=self.evidence.threads)
         return np.column_stack(columns) if columns else np.zeros((state.deviations.size, 0))
 
     def _slope(self, state: State, index: int, step: float, nearby: Nearby) -> Reals:

@@ -186,13 +186,17 @@ class Recalibrated(VerdictPart):
     """Recalibrated together with the amendment; empty without one."""
 
 
+RECALIBRATED = "recalibrated"
+"""What rivals a suspicion: that nothing is missing."""
+
+
 class NextMeasurement(VerdictPart):
     """A measurement that would tell two rivals apart."""
 
     measurement: Named
     """What to measure, in words."""
     separates: tuple[Named, Named]
-    """The two rivals."""
+    """The two rivals; "recalibrated" is that nothing is missing."""
     separation_before: Number
     """Difference of their best fits in deviance, with the records there are."""
     separation_after: Number

@@ -5,6 +5,7 @@ from __future__ import annotations
 from html import escape
 
 from permway.diagnosis.verdict import NOVEL, Effect, Estimate, HeldOutGain, Smallest, Verdict
+from permway.diagnosis.verdict_parts import RECALIBRATED
 
 MOST_SIZES = 3
 """Detectable sizes that a sentence names, at most."""
@@ -208,7 +209,9 @@ def _advice(verdict: Verdict) -> str:
     if not verdict.next:
         return ""
     first = verdict.next[0]
-    return f"to tell {first.separates[0]} from {first.separates[1]}, measure: {first.measurement}"
+    suspected, rival = first.separates
+    aim = f"be sure of {suspected}" if rival == RECALIBRATED else f"tell {suspected} from {rival}"
+    return f"to {aim}, measure: {first.measurement}"
 
 
 def html_table(verdict: Verdict) -> str:

@@ -34,6 +34,9 @@ LADDER = (0.001, 0.01, 0.05, 0.15, 0.3, 0.5, 0.7, 0.85)
 TELLING = 0.4
 """Share of the most telling spot's surplus that a joint of the law must have for a first look."""
 
+_Stretch = tuple[int, int, float]
+"""First and last joint, and what is left."""
+
 SURPLUS = 50.0
 """Of the law's most telling spot, below which a loss is small, and gradients lead to it."""
 
@@ -124,17 +127,18 @@ def _looked(
     """
     campaign = situation.campaign
     x = stations_of(campaign.model.line, law)
-    known: dict[tuple[int, int, float], float] = {}
+    known: dict[_Stretch, float] = {}
 
-    def objective(first: int, last: int, left: float) -> float:
-        key = first, last, left
-        if key not in known:
-            low, high = float(x[first]), float(x[last])
-            changed = weakened(campaign, law, 0.5 * (low + high), high - low, left)
-            known[key] = glance.objective(changed)
-        return known[key]
+    def lost(first: int, last: int, left: float) -> Campaign:
+        low, high = float(x[first]), float(x[last])
+        return weakened(campaign, law, 0.5 * (low + high), high - low, left)
 
-    def nearby(centre: float) -> list[tuple[int, int, float]]:
+    def best_of(stretches: Sequence[_Stretch]) -> _Stretch:
+        new = [one for one in stretches if one not in known]
+        known.update(zip(new, glance.objectives([lost(*one) for one in new]), strict=True))
+        return min(stretches, key=lambda one: known[one])
+
+    def nearby(centre: float) -> list[_Stretch]:
         near = int(np.argmin(np.abs(x - centre)))
         firsts = range(max(0, near - LOOKED + 2), min(x.size, near + 2))
         return [
@@ -144,7 +148,7 @@ def _looked(
             for left in LEFT
         ]
 
-    def followed(best: tuple[int, int, float]) -> tuple[int, int, float]:
+    def followed(best: _Stretch) -> _Stretch:
         first, last, left = best
         ends = [
             pair for k in (*FURTHER, *(-k for k in FURTHER)) for pair in ((first + k, last), (first, last + k))
@@ -152,11 +156,11 @@ def _looked(
         beside = [(start, stop, left) for start, stop in ends if 0 <= start <= stop < x.size]
         rung = LADDER.index(left)
         beside += [(first, last, other) for other in LADDER[max(0, rung - 1) : rung + 2] if other != left]
-        better = min(beside, key=lambda key: objective(*key))
-        return followed(better) if objective(*better) < objective(*best) else best
+        better = best_of(beside)
+        return followed(better) if known[better] < known[best] else best
 
     for centre in centres:
-        followed(min(nearby(centre), key=lambda key: objective(*key)))
+        followed(best_of(nearby(centre)))
     least = glance.objective(campaign)
     best: dict[tuple[int, int], float] = {}
     for first, last, left in sorted(known, key=lambda key: known[key]):

@@ -11,6 +11,7 @@ from permway.diagnosis.compare_tables import LEFT
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.speak import LARGEST_E
 from permway.diagnosis.verdict import NOVEL, Effect, HeldOutGain, Moved, Verdict
+from permway.diagnosis.verdict_parts import RECALIBRATED
 from permway.diagnosis.verdict_words import DOMAIN, INCOMPLETE, STATUS, interval, probability, quantity, size, span
 from permway.report.compare.tables import NOTABLE_DB, BandTable, decibels, signed
 from permway.report.diagnosis.changes import Change
@@ -253,7 +254,7 @@ def next_rows(verdict: Verdict) -> list[dict[str, str]]:
     return [
         {
             "measurement": one.measurement,
-            "separates": " from ".join(one.separates),
+            "separates": " from ".join("nothing missing" if n == RECALIBRATED else n for n in one.separates),
             "before": quantity(one.separation_before),
             "after": quantity(one.separation_after),
         }

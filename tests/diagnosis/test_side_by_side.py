@@ -1,0 +1,165 @@
+"""Work shared between processes: the same results, errors whole, nothing left behind."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import sys
+import time
+from multiprocessing import active_children
+from pathlib import Path
+
+import numpy as np
+import pytest
+from permway.diagnosis import journal
+from permway.diagnosis.catalogue import hypotheses
+from permway.diagnosis.catalogue._relaxing import relaxing
+from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.fit import free_parameters
+from permway.diagnosis.gather import gather
+from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.locate import scanned
+from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.search import Round, search
+from permway.diagnosis.side_by_side import each
+from permway.diagnosis.tangent import Problem
+from permway.errors import InputError, SolveError
+from permway.recordings.campaign import Campaign
+from simulated import simulate
+
+forks = pytest.mark.skipif(sys.platform != "linux", reason="processes are forked on Linux alone")
+
+
+def _slowly(item: int) -> tuple[int, int]:
+    time.sleep(0.02)
+    return item**2, os.getpid()
+
+
+def test_results_come_in_the_order_of_their_items() -> None:
+    begun: list[int] = []
+    found = each(_slowly, range(20), threads=3, told=begun.append)
+    assert [square for square, _ in found] == [item**2 for item in range(20)]
+    # What others begin is not told here.
+    assert begun == sorted(set(begun))
+    assert set(begun) <= set(range(20))
+    assert begun
+
+
+@forks
+@pytest.mark.parametrize(("threads", "processes"), [(1, 1), (2, 2), (3, 3)])
+def test_as_many_processes_take_part_as_threads(threads: int, processes: int) -> None:
+    assert len({process for _, process in each(_slowly, range(24), threads=threads)}) == processes
+    assert not active_children()
+
+
+@forks
+def test_what_is_shared_already_is_not_shared_again() -> None:
+    def inner(item: int) -> set[int]:
+        return {process for _, process in each(_slowly, range(4), threads=2)} | {os.getpid()}
+
+    assert all(len(processes) == 1 for processes in each(inner, range(6), threads=2))
+
+
+def test_an_error_comes_back_whole() -> None:
+    def work(item: int) -> int:
+        time.sleep(0.02)
+        if item > 2:
+            raise InputError("is too large", where="item", value=item, remedy="take less")
+        return item
+
+    with pytest.raises(InputError, match=r"item: is too large \(got \d\); take less") as caught:
+        each(work, range(8), threads=2)
+    assert caught.value.where == "item"
+    assert caught.value.remedy == "take less"
+    assert not active_children()
+
+
+def test_an_input_error_goes_from_one_process_to_another() -> None:
+    error = InputError("is unknown", where="bodies.rail.E", value=2.1e11, remedy="name it")
+    other = pickle.loads(pickle.dumps(error))
+    assert type(other) is InputError
+    assert str(other) == str(error)
+    assert other.value == 2.1e11
+
+
+@forks
+def test_a_process_that_ends_before_its_work_is_told_of() -> None:
+    here = os.getpid()
+
+    def work(item: int) -> int:
+        time.sleep(0.02)
+        if os.getpid() != here:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return item
+
+    with pytest.raises(SolveError, match="ended before it was done"):
+        each(work, range(8), threads=2)
+
+
+@forks
+def test_an_interrupt_ends_all_within_a_second() -> None:
+    here = os.getpid()
+
+    def work(item: int) -> int:
+        if os.getpid() == here:
+            raise KeyboardInterrupt
+        time.sleep(60.0)
+        return item
+
+    begun = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        each(work, range(8), threads=2)
+    assert time.monotonic() - begun < 1.0
+    assert not active_children()
+
+
+def test_parts_of_what_is_kept_as_a_whole_are_not_kept(tmp_path: Path) -> None:
+    with journal.keeping(tmp_path / "kept", "key"):
+        assert each(lambda _: journal.current() is None, range(3), threads=1) == [True] * 3
+        assert journal.current() is not None
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
+    return simulate(tmp_path_factory.mktemp("side") / "c", 5, amend=_softer).campaign
+
+
+def _softer(campaign: Campaign) -> Campaign:
+    return relaxing(campaign, "pad", stiffness_factor=1.0, order=0.3, share=0.5, rest=1.0)
+
+
+def _slopes(evidence: Evidence) -> np.ndarray:
+    campaign = evidence.campaign
+    problem = Problem(evidence, campaign.with_values, free_parameters(campaign))
+    state = problem.at(np.zeros(len(problem.free)))
+    assert state is not None
+    return problem.jacobian(state)
+
+
+def test_slopes_are_the_same_to_the_last_digit(campaign: Campaign) -> None:
+    one, two = (_slopes(gather(campaign, threads=threads)) for threads in (1, 2))
+    np.testing.assert_array_equal(one, two)
+
+
+def test_a_round_is_the_same_whoever_worked_on_it(campaign: Campaign) -> None:
+    def found(threads: int) -> Round:
+        fit = recalibrate(gather(campaign, threads=threads))
+        return search(
+            fit,
+            hypotheses(Situation(fit, scanned(fit))),
+            learnt_base=fit,
+            prefix="1.",
+            threshold=lambda ring, screened: 10.0,
+            progress=lambda stage, done, total: None,
+        )
+
+    one, two = found(1), found(2)
+    assert [q.hypothesis.form for q in one.screened] == [q.hypothesis.form for q in two.screened]
+    np.testing.assert_array_equal([q.gain for q in one.screened], [q.gain for q in two.screened])
+    for first, second in zip(one.followed, two.followed, strict=True):
+        assert first.hypothesis.form == second.hypothesis.form
+        np.testing.assert_array_equal(first.z, second.z)
+    assert [f.hypothesis.form for f in one.finalists] == [f.hypothesis.form for f in two.finalists]
+    assert len(one.followed) > 1
+    assert one.finalists
