@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy import linalg
+from threadpoolctl import threadpool_limits
 
 from permway.arrays import Reals
 from permway.diagnosis.compete import Ring
@@ -59,7 +60,6 @@ class Classifier:
     ) -> None:
         try:
             from sklearn.ensemble import HistGradientBoostingClassifier
-            from threadpoolctl import threadpool_limits
         except ImportError as error:
             raise InputError(
                 "is not installed", where="scikit-learn", remedy="pip install 'permway[challenge]'"

@@ -18,6 +18,7 @@ from permway.diagnosis.fit import Fit, Free, free_parameters
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.residuals import standardised
+from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.tangent import STEP
 from permway.recordings.campaign import Campaign
 from permway.recordings.compare import NEPER_DB, POWER_DB, POWERS, VARIABLE, curves, flat, third_octaves
@@ -120,6 +121,7 @@ class Comparison:
         return found
 
 
+@one_thread_of_blas()
 def compare(
     campaign: Campaign, *, raw_only: bool = False, threads: int | None = None, progress: Progress | None = None
 ) -> Comparison:

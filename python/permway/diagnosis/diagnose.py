@@ -26,6 +26,7 @@ from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.rounds import effects
 from permway.diagnosis.sampling import corrected, sampled
 from permway.diagnosis.search import Finalist, Round
+from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.speak import Proof, mixed_up, verdict_of, with_spoilt
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict_parts import RECALIBRATED, NextMeasurement
@@ -36,6 +37,7 @@ SHOWN_INCONSTANT = 8
 """Parameters that would not stay constant, at most."""
 
 
+@one_thread_of_blas()
 def diagnose(
     campaign: Campaign,
     *,

@@ -156,7 +156,7 @@ def _descended(
         # Far from the records the priors lead: the deviations count as if each were no better than all are.
         heat = max(1.0, tangent.chi2(state) / max(1, state.deviations.size))
         # A base that does not fit is no more than where a search begins.
-        enough = 0.5 if heat < UNFIT else COARSE * state.deviations.size / heat
+        enough = 0.5 if heat < UNFIT else COARSE * state.deviations.size
         normal, slope = tangent.normal(heat), tangent.slope(state, heat)
         fresh = tangent.at is state and exact
         moved, gained, foretold = None, 0.0, 0.0

@@ -33,6 +33,7 @@ from permway.diagnosis.looked import looked
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.rivals_held_out import MOST_STEPS, LeftOut
+from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.verdict import NOVEL
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign, read_campaign
@@ -60,6 +61,7 @@ Answer = dict[str, Any]
 """The keys of a verdict that a score reads."""
 
 
+@one_thread_of_blas()
 def rivals(
     campaign: Campaign,
     *,

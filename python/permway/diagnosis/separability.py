@@ -21,6 +21,7 @@ from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.locate import unseen
 from permway.diagnosis.refit import untouched
+from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.predict import predict
@@ -78,6 +79,7 @@ class Separability:
         }
 
 
+@one_thread_of_blas()
 def separability(
     campaign: Campaign, *, threads: int | None = None, progress: Progress | None = None
 ) -> Separability:

@@ -18,6 +18,8 @@ from multiprocessing.connection import Connection
 from multiprocessing.context import ForkProcess
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from threadpoolctl import threadpool_limits
+
 from permway.diagnosis import journal
 from permway.errors import SolveError
 
@@ -68,6 +70,17 @@ def each(
         return found
     with journal.silent(), _sharing():
         return _forked(work, items, others, told)
+
+
+@contextmanager
+def one_thread_of_blas() -> Iterator[None]:
+    """Within it, or of a function that it decorates, BLAS has one thread, as it has in each process.
+
+    Its products here are small: more threads wait for each other longer than they work, and in several processes
+    for the processors, too.
+    """
+    with threadpool_limits(1, user_api="blas"):
+        yield
 
 
 def threads_of_solver(threads: int | None) -> int | None:
