@@ -22,11 +22,12 @@ from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.search import Round, search
-from permway.diagnosis.side_by_side import each
+from permway.diagnosis.side_by_side import each, one_thread_of_blas
 from permway.diagnosis.tangent import Problem
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
 from simulated import simulate
+from threadpoolctl import threadpool_info
 
 forks = pytest.mark.skipif(sys.platform != "linux", reason="processes are forked on Linux alone")
 
@@ -51,6 +52,12 @@ def test_results_come_in_the_order_of_their_items() -> None:
 def test_as_many_processes_take_part_as_threads(threads: int, processes: int) -> None:
     assert len({process for _, process in each(_slowly, range(24), threads=threads)}) == processes
     assert not active_children()
+
+
+@forks
+def test_no_process_is_made_for_a_few_items() -> None:
+    assert len({process for _, process in each(_slowly, range(7), threads=2, least=4)}) == 1
+    assert len({process for _, process in each(_slowly, range(8), threads=2, least=4)}) == 2
 
 
 @forks
@@ -112,6 +119,16 @@ def test_an_interrupt_ends_all_within_a_second() -> None:
         each(work, range(8), threads=2)
     assert time.monotonic() - begun < 1.0
     assert not active_children()
+
+
+def test_blas_has_one_thread_within_and_as_many_as_before_after() -> None:
+    def threads() -> list[int]:
+        return [one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"]
+
+    before = threads()
+    with one_thread_of_blas():
+        assert set(threads()) == {1}
+    assert threads() == before
 
 
 def test_parts_of_what_is_kept_as_a_whole_are_not_kept(tmp_path: Path) -> None:

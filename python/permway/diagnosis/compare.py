@@ -133,7 +133,7 @@ def compare(
     raw_only : bool
         Whether to leave recalibration out, which takes all of the time.
     threads : int, optional
-        Of the solver.
+        Of the solver, or processes that share the work.
     progress : callable, optional
         Called with steps done and how many there may be.
 

@@ -59,7 +59,7 @@ def diagnose(
     draws : int
         Of the parameters of what is found, for intervals and classes; 0 for curvature alone. Each takes a solve.
     threads : int, optional
-        Of the solver.
+        Of the solver, or processes that share the work.
     progress : callable, optional
         Called with the stage, and how much of it is done.
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import linalg
 
 from permway.diagnosis.fit import Fit
-from permway.diagnosis.side_by_side import each
+from permway.diagnosis.side_by_side import SMALL, each
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
 
@@ -36,7 +36,7 @@ class Glance:
 
     def objectives(self, campaigns: Sequence[Campaign]) -> list[float]:
         """Of several, side by side."""
-        return each(self.objective, campaigns, threads=self._fit.evidence.threads)
+        return each(self.objective, campaigns, threads=self._fit.evidence.threads, least=SMALL)
 
     def objective(self, campaign: Campaign) -> float:
         """The least heated objective over linear moves of the base; infinite if the model cannot be solved."""

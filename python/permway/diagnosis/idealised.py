@@ -16,7 +16,7 @@ import numpy as np
 from permway.arrays import Reals
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.nearby import Nearby, Part
-from permway.diagnosis.side_by_side import each
+from permway.diagnosis.side_by_side import SMALL, each
 from permway.model.line import Line
 
 OFF = {"law": 2e-4, "beam": 8e-4}
@@ -52,7 +52,7 @@ def idealised(fit: Fit) -> Reals:
 
     nearby.derive()
     humps = [(part, indices, float(centre)) for part, indices in _parts(line) for centre in centres]
-    for one in each(variance, humps, threads=evidence.threads):
+    for one in each(variance, humps, threads=evidence.threads, least=SMALL):
         if one is None:
             return found
         found += one

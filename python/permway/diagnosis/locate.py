@@ -18,7 +18,7 @@ from permway.arrays import Complexes
 from permway.diagnosis.blocks import Basis
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.fit import Fit
-from permway.diagnosis.side_by_side import each
+from permway.diagnosis.side_by_side import SMALL, each
 from permway.diagnosis.spot import Found, Spot
 from permway.errors import InputError
 from permway.recordings.campaign_factors import campaign_under
@@ -200,7 +200,7 @@ def scan(fit: Fit, also: Callable[[Spot], bool] = lambda _: False) -> list[Found
         return reduce(_both, (one.of(*row[key][index]) for one, row in zip(scans, rows, strict=True)))
 
     def all_of(places: Sequence[_At]) -> dict[_At, Found]:
-        return dict(zip(places, each(found, places, threads=fit.evidence.threads), strict=True))
+        return dict(zip(places, each(found, places, threads=fit.evidence.threads, least=SMALL), strict=True))
 
     known = all_of([(key, i) for key, row in rows[0].items() for i in range(0, len(row), COARSE)])
     further: list[_At] = []

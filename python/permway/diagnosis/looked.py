@@ -16,7 +16,7 @@ from permway.diagnosis.compete import Ring
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.resonances import retuned
-from permway.diagnosis.side_by_side import each
+from permway.diagnosis.side_by_side import SMALL, each
 from permway.errors import InputError, SolveError
 
 TOGETHER = 2
@@ -92,7 +92,7 @@ def _screened(
         for hypothesis in some:
             ring.about(hypothesis)
         told = partial(_told, progress, start, len(offered))
-        pairs = zip(some, each(numbers, some, threads=ring.evidence.threads, told=told), strict=True)
+        pairs = zip(some, each(numbers, some, threads=ring.evidence.threads, least=SMALL, told=told), strict=True)
         new = [Quick(hypothesis, **found) for hypothesis, found in pairs]
         found += [one for one in new if np.isfinite(one.gain)]
         best = max([best, *(one.gain for one in found)])

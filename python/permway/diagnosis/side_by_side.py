@@ -27,6 +27,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from multiprocessing.sharedctypes import Synchronized
 
+MOST = 8
+"""Processes: each writes to some hundred megabytes of what it shares with the others, which are its own then."""
+
+SMALL = 8
+"""Items of some milliseconds that are worth a process."""
+
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
@@ -39,6 +45,7 @@ def each(
     items: Sequence[Item],
     *,
     threads: int | None,
+    least: int = 1,
     told: Callable[[int], object] = lambda begun: None,
 ) -> list[Result]:
     """What `work` makes of each item, in their order.
@@ -49,7 +56,9 @@ def each(
         What it does beside its result is lost, or done; its result can be pickled.
     items : sequence
     threads : int, optional
-        Processes; by default as many as there are processors for this one.
+        Processes, :data:`MOST` at most; by default as many as there are processors for this one.
+    least : int
+        Items that each process should have: a fork costs some tens of milliseconds.
     told : callable
         How many are begun, whenever one is begun here.
 
@@ -60,7 +69,7 @@ def each(
     SolveError
         If a process ends without a word, as one does that the system stops for its memory.
     """
-    others = min(_processors() if threads is None else threads, len(items)) - 1
+    others = min(_processors() if threads is None else threads, len(items) // least, MOST) - 1
     if others < 1 or _shared or sys.platform != "linux":
         found = []
         with journal.silent():

@@ -10,7 +10,7 @@ from permway.arrays import Reals
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.nearby import Nearby
-from permway.diagnosis.side_by_side import each
+from permway.diagnosis.side_by_side import SMALL, each
 from permway.diagnosis.whitener import Whitener
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
@@ -125,7 +125,7 @@ class Problem:
                 return self._slope(state, index, -STEP if forward else STEP, nearby)
 
         nearby.derive()
-        columns = each(column, range(len(self.free)), threads=self.evidence.threads)
+        columns = each(column, range(len(self.free)), threads=self.evidence.threads, least=SMALL)
         return np.column_stack(columns) if columns else np.zeros((state.deviations.size, 0))
 
     def _slope(self, state: State, index: int, step: float, nearby: Nearby) -> Reals:
