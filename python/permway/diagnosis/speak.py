@@ -20,7 +20,7 @@ from permway.diagnosis.labels import Mislabelled
 from permway.diagnosis.level import beyond
 from permway.diagnosis.ragged import explains_elsewhere, unexplained_lines, unsteady_misfit
 from permway.diagnosis.recalibrate import UNFIT
-from permway.diagnosis.search import FITS, Finalist, Round
+from permway.diagnosis.search import Finalist, Round
 from permway.diagnosis.speak_effect import bands_of, effect_of, of_another_form
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL, Status, Verdict
@@ -48,6 +48,9 @@ REASON = 0.5
 LEFT, LITTLE = 1.3, 0.1
 """Mean square of the deviations from which something is left, and the share of what is too much that an effect has
 to explain then."""
+
+CREDITED = 1.1
+"""Mean square of the deviations up to which names are true as often as they say: see docs/diagnosis.md."""
 
 LARGEST_E = 1e300
 
@@ -221,7 +224,7 @@ def _credit(amended: Fit) -> float:
 
     What does not fit lacks physics, and what it has may stand in for that.
     """
-    return min(1.0, FITS / amended.heat)
+    return min(1.0, CREDITED / amended.heat)
 
 
 def _nothing(base: Fit, first: Round, found: Sequence[Found]) -> tuple[Status, tuple[Effect, ...]]:
