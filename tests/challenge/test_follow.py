@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from permway.challenge.case import draw
+from permway.challenge.case import draw, write_truth
 from permway.challenge.effects import TWINS
 from permway.challenge.follow import ADVICE, FOLLOWED, Advice, follow, measured_again, separated
 from permway.challenge.sparse import FEWEST, MOST
@@ -93,8 +93,9 @@ def say(folder: Path, name: str, said: dict[str, Any]) -> None:
 def test_verdicts_that_advise_are_followed_once(tmp_path: Path) -> None:
     say(tmp_path, "sparse-301", verdict("ambiguous", ["a", "b"], advised=("a", "b")))
     say(tmp_path, "sparse-302", verdict("named", ["a"]))
-    # What was faded is not drawn again from its seed alone.
-    say(tmp_path, "graded-303", verdict("ambiguous", ["a", "b"], advised=("a", "b")))
+    for name in ("sparse-301", "sparse-302"):
+        (tmp_path / "truth").mkdir(exist_ok=True)
+        (tmp_path / "truth" / f"{name}.json").write_text("{}")
     asked: list[str] = []
 
     def read(campaign: Path, words: str) -> Advice:
@@ -110,6 +111,17 @@ def test_verdicts_that_advise_are_followed_once(tmp_path: Path) -> None:
     truth = json.loads((tmp_path / FOLLOWED / "truth" / "sparse-301.json").read_text())
     assert truth["effects"] == draw(301, "sparse").truth["effects"]
     assert separated(tmp_path) == []
+
+
+def test_what_was_faded_is_measured_again_as_it_was(tmp_path: Path) -> None:
+    say(tmp_path, "graded-301", verdict("insufficient", ["a"], advised=("a", "recalibrated")))
+    faded = draw(301, "graded").faded(0.2)
+    (tmp_path / "truth").mkdir()
+    write_truth(faded, tmp_path / "truth" / "graded-301.json")
+    follow(tmp_path, lambda *_: Advice("repeat"))
+    again = json.loads((tmp_path / FOLLOWED / "truth" / "graded-301.json").read_text())
+    assert again["effects"] == faded.truth["effects"]
+    assert again["share"] == 0.2
 
 
 def test_where_nothing_is_advised_there_is_nothing_to_follow(tmp_path: Path) -> None:

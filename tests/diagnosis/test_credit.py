@@ -12,7 +12,9 @@ from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.search import standing
-from permway.diagnosis.speak import _credit, _explains_little
+from permway.diagnosis.speak import _credit, _explains_little, _with_its_form
+from permway.diagnosis.verdict import Effect, Estimate
+from permway.diagnosis.verdict_parts import Mechanics, Place
 from simulated import simulate
 
 
@@ -39,6 +41,25 @@ def test_a_name_is_credited_as_far_as_its_model_fits(fit: Fit, heat: float, cred
 )
 def test_what_leaves_a_misfit_as_it_was_explains_little(before: float, after: float, little: bool) -> None:
     assert _explains_little(before, after) is little
+
+
+ROD = Effect(
+    domain="path",
+    place=Place(joint="pad", x=(25.83, 27.09)),
+    bands=((161.0, 256.0),),
+    law=Mechanics(words="a rod that waves cross"),
+    parameters={"delay_s": Estimate(value=3.1e-5, unit="s", low=3.1e-5, high=3.2e-2)},
+)
+
+
+def test_a_description_that_does_not_fit_is_a_place() -> None:
+    """Of a fastener that keeps half, beside a wrong first effect, a rod was told that left a misfit of 39."""
+    assert _with_its_form("described", (ROD,), True) == ("described", (ROD,))
+    status, (one,) = _with_its_form("described", (ROD,), False)
+    assert (status, one.place, one.bands) == ("located", ROD.place, ROD.bands)
+    assert not one.parameters
+    assert not one.law.words
+    assert _with_its_form("named", (ROD,), False) == ("named", (ROD,))
 
 
 def test_what_was_found_beside_an_effect_is_no_rival_of_it(fit: Fit) -> None:

@@ -150,7 +150,10 @@ def follow(folder: Path, read: Read) -> list[Path]:
         words = verdict["next"][0]["measurement"]
         advice = read(folder / "verdicts" / name / "campaign" / "campaign.toml", words)
         tier, seed = name.rsplit("-", 1)
-        case = measured_again(draw(int(seed), cast(Tier, tier)), advice)
+        share = json.loads((folder / "truth" / f"{name}.json").read_text()).get("share", 1.0)
+        # What was faded is as far from none as it was.
+        drawn = draw(int(seed), cast(Tier, tier))
+        case = measured_again(drawn if share == 1.0 else drawn.faded(share), advice)
         write(case, new)
         for place in ("truth", ADVICE):
             (out / place).mkdir(parents=True, exist_ok=True)
@@ -169,8 +172,7 @@ def follow(folder: Path, read: Read) -> list[Path]:
 def _advised(folder: Path) -> Iterator[tuple[str, dict[str, Any]]]:
     for path in sorted(folder.glob(f"verdicts/*/{VERDICT}")):
         verdict = json.loads(path.read_text())
-        # What was faded is not drawn again from its seed alone.
-        if verdict["next"] and not path.parent.name.startswith("graded"):
+        if verdict["next"]:
             yield path.parent.name, verdict
 
 

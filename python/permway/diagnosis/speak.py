@@ -132,6 +132,7 @@ def verdict_of(
     if status == "insufficient" and proof.conditions.something and not proof.conditions.hold:
         # What foretells most records and harms others is missing, and has another form.
         status, effects = "located", (of_another_form(effects[0]),)
+    status, effects = _with_its_form(status, effects, fits)
     if status in SURE and fits and irregularity_level.ID not in names:
         level = beyond(proof.weighed, first.threshold)
         if level is not None:
@@ -203,6 +204,11 @@ def with_spoilt(said: Verdict, spoilt: Sequence[Spoilt]) -> Verdict:
     return Verdict.model_validate(
         said.model_dump(by_alias=True) | {"status": status, "effects": [*said.effects, *effects]}
     )
+
+
+def _with_its_form(status: Status, effects: tuple[Effect, ...], fits: bool) -> tuple[Status, tuple[Effect, ...]]:
+    """Without the mechanics of a description that does not fit: with so much off beside it, it is a place."""
+    return ("located", (of_another_form(effects[0]),)) if status == "described" and not fits else (status, effects)
 
 
 def _status(effects: Sequence[Effect], proof: Proof, gap: float) -> Status:
