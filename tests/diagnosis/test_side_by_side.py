@@ -7,7 +7,7 @@ import pickle
 import signal
 import sys
 import time
-from multiprocessing import active_children
+from multiprocessing import active_children, get_context
 from pathlib import Path
 
 import numpy as np
@@ -66,6 +66,13 @@ def test_what_is_shared_already_is_not_shared_again() -> None:
         return {process for _, process in each(_slowly, range(4), threads=2)} | {os.getpid()}
 
     assert all(len(processes) == 1 for processes in each(inner, range(6), threads=2))
+
+
+@forks
+def test_a_worker_of_a_pool_does_all_itself() -> None:
+    with get_context("fork").Pool(1) as pool:
+        found = pool.apply(each, (_slowly, range(6)), {"threads": 2})
+    assert len({process for _, process in found}) == 1
 
 
 def test_an_error_comes_back_whole() -> None:

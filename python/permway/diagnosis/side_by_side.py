@@ -13,7 +13,7 @@ import sys
 import warnings
 from collections.abc import Callable, Sequence
 from contextlib import contextmanager
-from multiprocessing import get_context
+from multiprocessing import current_process, get_context
 from multiprocessing.connection import Connection
 from multiprocessing.context import ForkProcess
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -70,7 +70,8 @@ def each(
         If a process ends without a word, as one does that the system stops for its memory.
     """
     others = min(_processors() if threads is None else threads, len(items) // least, MOST) - 1
-    if others < 1 or _shared or sys.platform != "linux":
+    # A daemon, as those of multiprocessing's pools are, may have no processes of its own.
+    if others < 1 or _shared or sys.platform != "linux" or current_process().daemon:
         found = []
         with journal.silent():
             for index, item in enumerate(items):
