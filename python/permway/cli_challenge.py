@@ -115,9 +115,10 @@ def challenge_follow(
     workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
     as_json: Json = False,
 ) -> None:
-    """Measure what verdicts advise, diagnose again, and see whether that tells the rivals apart.
+    """Measure what verdicts advise, and diagnose again.
 
-    Of campaigns that were run. The new ones lie in the folder's `followed`, a challenge of its own.
+    Of campaigns that were run: whether the rivals are told apart then. The new ones lie in the folder's
+    `followed`, a challenge of its own.
     """
     from dataclasses import asdict
 
