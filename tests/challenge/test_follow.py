@@ -66,7 +66,9 @@ def test_what_is_advised_is_measured_beside_all_else(advice: Advice, changed: di
 
 def test_a_test_made_again_has_more_blows() -> None:
     case = small_case(11, "sparse")
-    assert measured_again(case, Advice("repeat")).tests == replace(case.tests, blows=4 * case.tests.blows)
+    assert measured_again(case, Advice("repeat", value=4.0)).tests == replace(
+        case.tests, blows=4 * case.tests.blows
+    )
 
 
 def test_what_cannot_be_made_is_refused() -> None:
@@ -118,10 +120,16 @@ def test_what_was_faded_is_measured_again_as_it_was(tmp_path: Path) -> None:
     faded = draw(301, "graded").faded(0.2)
     (tmp_path / "truth").mkdir()
     write_truth(faded, tmp_path / "truth" / "graded-301.json")
-    follow(tmp_path, lambda *_: Advice("repeat"))
+    follow(tmp_path, lambda *_: Advice("repeat", value=4.0))
     again = json.loads((tmp_path / FOLLOWED / "truth" / "graded-301.json").read_text())
     assert again["effects"] == faded.truth["effects"]
     assert again["share"] == 0.2
+
+
+def test_without_its_truth_nothing_is_followed(tmp_path: Path) -> None:
+    say(tmp_path, "sparse-301", verdict("ambiguous", ["a", "b"], advised=("a", "b")))
+    with pytest.raises(InputError, match=r"sparse-301.json: is not there"):
+        follow(tmp_path, lambda *_: Advice("repeat", value=4.0))
 
 
 def test_where_nothing_is_advised_there_is_nothing_to_follow(tmp_path: Path) -> None:
@@ -176,5 +184,7 @@ def test_words_of_a_verdict_lead_back_to_what_they_ask_for(campaign: Campaign) -
         assert (found.kind, found.body) == (item.kind, item.body)
         if item.kind in ("sensor", "blows"):
             assert f"on {item.body} at {item.value:g} m" in item.words
+        if item.kind == "repeat":
+            assert f"{item.value:g} times the blows" in item.words
     with pytest.raises(InputError, match="is no measurement that could come next"):
         item_of(campaign, datasets, "a drone")

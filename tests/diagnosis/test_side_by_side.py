@@ -16,18 +16,20 @@ from permway.diagnosis import journal
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.catalogue._relaxing import relaxing
 from permway.diagnosis.evidence import Evidence
-from permway.diagnosis.fit import free_parameters
+from permway.diagnosis.fit import Fit, free_parameters
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.refit import moved
 from permway.diagnosis.search import Round, search
+from permway.diagnosis.several_fits import relearnt_all
 from permway.diagnosis.side_by_side import each, one_thread_of_blas
 from permway.diagnosis.tangent import Problem
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
 from simulated import simulate
-from threadpoolctl import threadpool_info
+from threadpoolctl import threadpool_info, threadpool_limits
 
 forks = pytest.mark.skipif(sys.platform != "linux", reason="processes are forked on Linux alone")
 
@@ -132,10 +134,11 @@ def test_blas_has_one_thread_within_and_as_many_as_before_after() -> None:
     def threads() -> list[int]:
         return [one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"]
 
-    before = threads()
-    with one_thread_of_blas():
-        assert set(threads()) == {1}
-    assert threads() == before
+    with threadpool_limits(2, user_api="blas"):
+        assert set(threads()) == {2}
+        with one_thread_of_blas():
+            assert set(threads()) == {1}
+        assert set(threads()) == {2}
 
 
 def test_parts_of_what_is_kept_as_a_whole_are_not_kept(tmp_path: Path) -> None:
@@ -187,3 +190,25 @@ def test_a_round_is_the_same_whoever_worked_on_it(campaign: Campaign) -> None:
     assert [f.hypothesis.form for f in one.finalists] == [f.hypothesis.form for f in two.finalists]
     assert len(one.followed) > 1
     assert one.finalists
+
+
+def test_what_a_rival_learnt_elsewhere_is_learnt_here(campaign: Campaign) -> None:
+    """Numbers and sizes of errors of fits that were made in a fork, which comes back without its evidence."""
+
+    def learnt(threads: int) -> list[Fit]:
+        evidence = gather(campaign, threads=threads)
+        base = recalibrate(evidence)
+        rivals = [base, moved(base, {"pad.k": 0.5}), moved(base, {"pad.k": -0.5})]
+        found = relearnt_all(rivals, evidence, best=np.inf, told=lambda begun: None)
+        return [one for one in found if one is not None]
+
+    alone, shared = learnt(1), learnt(2)
+    assert len(alone) == len(shared) == 3
+    for one, two in zip(alone, shared, strict=True):
+        np.testing.assert_array_equal(one.z, two.z)
+        assert one.objective == two.objective
+        assert one.evidence.sizes == two.evidence.sizes
+        assert one.evidence.length == two.evidence.length
+        # The evidence that it came back to tells of the same deviations.
+        again = two.evidence.deviations(two.evidence.predicted(two.campaign).datasets)
+        np.testing.assert_allclose(again, two.deviations, rtol=0.0, atol=1e-9)

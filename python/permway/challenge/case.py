@@ -54,8 +54,8 @@ NOISY, NOISIEST = 0.5, 100.0
 DROWNED = 1000.0
 """Times the noise of the cleanest hammer test at most where effects are graded, and at least a tenth of it."""
 
-SLOW_OR_FAST = 0.005
-"""Largest relative error of a speed."""
+SLOW_OR_FAST, WARMER_K = 0.005, 0.5
+"""Largest relative error of a speed, and standard deviation of that of a temperature."""
 
 
 @dataclass(frozen=True)
@@ -235,7 +235,7 @@ def _chain(random: np.random.Generator, noisier: float) -> Chain:
         wander_dB=round(float(random.uniform(0.5, 1.5)), 3),
         noise=round(noisier * 1.2e-6 * float(np.exp(0.4 * random.standard_normal())), 9),
         speed=speeds,
-        warmer_C=tuple(round(0.5 * float(x), 3) for x in random.standard_normal(2)),
+        warmer_C=tuple(round(WARMER_K * float(x), 3) for x in random.standard_normal(2)),
     )
 
 

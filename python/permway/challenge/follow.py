@@ -10,7 +10,7 @@ from typing import Any, Literal, cast
 
 import numpy as np
 
-from permway.challenge.case import Case, Tier, draw, write, write_truth
+from permway.challenge.case import SLOW_OR_FAST, WARMER_K, Case, Tier, draw, write, write_truth
 from permway.challenge.run import VERDICT
 from permway.challenge.score import FOUND
 from permway.challenge.weigh import whole
@@ -21,12 +21,6 @@ FOLLOWED, ADVICE = "followed", "advice"
 
 NOTHING = "recalibrated"
 """The rival of a suspicion, and the status of a verdict that calls nothing."""
-
-REPEATS = 4
-"""Times the blows of a test that is made again."""
-
-WARMER_K, FASTER = 0.5, 0.005
-"""Errors of a further temperature (standard deviation) and of a further speed (largest, relative)."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +34,7 @@ class Advice:
     body : str
         Of a sensor, or of blows.
     value : float
-        The place, m; the temperature, degC; the speed, km/h.
+        The place, m; how many times the blows; the temperature, degC; the speed, km/h.
     """
 
     kind: Literal["sensor", "blows", "repeat", "temperature", "speed"]
@@ -104,7 +98,7 @@ def measured_again(case: Case, advice: Advice) -> Case:
         case "blows":
             tests = replace(tests, points=(*tests.points, (advice.body, advice.value)))
         case "repeat":
-            tests = replace(tests, blows=REPEATS * tests.blows)
+            tests = replace(tests, blows=round(advice.value * tests.blows))
         case "temperature":
             made = len(tests.temperatures_C)
             warmer = round(WARMER_K * float(random.standard_normal()), 3)
@@ -112,7 +106,7 @@ def measured_again(case: Case, advice: Advice) -> Case:
             chain = replace(chain, warmer_C=(*chain.warmer_C[:made], warmer))
         case "speed":
             made = len(tests.speeds_kmh)
-            faster = round(1.0 + float(random.uniform(-FASTER, FASTER)), 5)
+            faster = round(1.0 + float(random.uniform(-SLOW_OR_FAST, SLOW_OR_FAST)), 5)
             tests = replace(tests, speeds_kmh=(*tests.speeds_kmh, round(advice.value, 3)))
             chain = replace(chain, speed=(*chain.speed[:made], faster))
         case _:
@@ -137,7 +131,7 @@ def follow(folder: Path, read: Read) -> list[Path]:
     Raises
     ------
     InputError
-        If no verdict advises a measurement.
+        If no verdict advises a measurement, or a truth is not there.
     """
     folder = Path(folder)
     made = []
@@ -150,7 +144,10 @@ def follow(folder: Path, read: Read) -> list[Path]:
         words = verdict["next"][0]["measurement"]
         advice = read(folder / "verdicts" / name / "campaign" / "campaign.toml", words)
         tier, seed = name.rsplit("-", 1)
-        share = json.loads((folder / "truth" / f"{name}.json").read_text()).get("share", 1.0)
+        truth = folder / "truth" / f"{name}.json"
+        if not truth.is_file():
+            raise InputError("is not there", where=str(truth), remedy="keep truths beside what is followed")
+        share = json.loads(truth.read_text()).get("share", 1.0)
         # What was faded is as far from none as it was.
         drawn = draw(int(seed), cast(Tier, tier))
         case = measured_again(drawn if share == 1.0 else drawn.faded(share), advice)

@@ -50,7 +50,7 @@ class Item:
     body: str = ""
     """On which a sensor stands, or which is struck."""
     value: float = float("nan")
-    """Where, m; or the temperature, degC, or the speed, m/s."""
+    """Where, m; or how many times the blows, the temperature, degC, or the speed, m/s."""
 
 
 def menu(campaign: Campaign, datasets: list[Dataset]) -> Iterator[Item]:
@@ -67,7 +67,7 @@ def menu(campaign: Campaign, datasets: list[Dataset]) -> Iterator[Item]:
         yield from _sensors(campaign, hammer)
         yield from _blows(campaign, hammer)
         words = f"{hammer.record.name} again, {REPEATS:.0f} times the blows"
-        yield Item(words, "repeat", COST["repeat"] * REPEATS, lambda c: c, _quieter(hammer))
+        yield Item(words, "repeat", COST["repeat"] * REPEATS, lambda c: c, _quieter(hammer), value=REPEATS)
         temperature = hammer.condition.temperature_C
         if temperature is not None:
             yield _other_condition(

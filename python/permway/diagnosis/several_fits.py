@@ -15,7 +15,7 @@ from permway.diagnosis.journal import Arrays, current
 from permway.diagnosis.learning import learnt
 from permway.diagnosis.quick import Quick, stacked
 from permway.diagnosis.refit import learnt_on
-from permway.diagnosis.side_by_side import each
+from permway.diagnosis.side_by_side import Begun, each
 from permway.errors import InputError, SolveError
 
 NUMBERS = ("z", "covariance", "deviations", "clean", "chi2", "prior", "log_determinant", "jacobian", "heat")
@@ -26,11 +26,8 @@ LEARNT_AT = "learnt_at"
 
 Item = TypeVar("Item")
 
-Told = Callable[[int], object]
-"""Told how many are begun."""
 
-
-def fitted_in_full(ring: Ring, quicks: Sequence[Quick], *, prefix: str, told: Told) -> list[tuple[Quick, Fit]]:
+def fitted_in_full(ring: Ring, quicks: Sequence[Quick], *, prefix: str, told: Begun) -> list[tuple[Quick, Fit]]:
     """Those that can be solved all around, with their fits.
 
     Parameters
@@ -59,7 +56,7 @@ def fitted_in_full(ring: Ring, quicks: Sequence[Quick], *, prefix: str, told: To
     return fits
 
 
-def relearnt_all(fits: Sequence[Fit], sharp: Evidence, *, best: float, told: Told) -> list[Fit | None]:
+def relearnt_all(fits: Sequence[Fit], sharp: Evidence, *, best: float, told: Begun) -> list[Fit | None]:
     """As :func:`permway.diagnosis.refit.relearnt`; None for one that ends where its model ends.
 
     Parameters
@@ -102,7 +99,7 @@ def _each_kept(
     *,
     given: Sequence[object],
     threads: int | None,
-    told: Told,
+    told: Begun,
 ) -> list[Fit | Arrays | None]:
     """Fits of items, where they are made here, else their numbers and where they learnt sizes.
 

@@ -36,6 +36,9 @@ SMALL = 8
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
+Begun = Callable[[int], object]
+"""Told how many items are begun."""
+
 _shared = False
 """Whether this process shares its work already, or is such a fork itself."""
 
@@ -46,7 +49,7 @@ def each(
     *,
     threads: int | None,
     least: int = 1,
-    told: Callable[[int], object] = lambda begun: None,
+    told: Begun = lambda begun: None,
 ) -> list[Result]:
     """What `work` makes of each item, in their order.
 
@@ -112,9 +115,7 @@ def _sharing() -> Iterator[None]:
         _shared = False
 
 
-def _forked(
-    work: Callable[[Item], Result], items: Sequence[Item], others: int, told: Callable[[int], object]
-) -> list[Result]:
+def _forked(work: Callable[[Item], Result], items: Sequence[Item], others: int, told: Begun) -> list[Result]:
     context = get_context("fork")
     begun: Synchronized[int] = context.Value("i", 0)
     processes: list[ForkProcess] = []
@@ -153,7 +154,7 @@ def _taken(
     work: Callable[[Item], Result],
     items: Sequence[Item],
     begun: Synchronized[int],
-    told: Callable[[int], object] = lambda begun: None,
+    told: Begun = lambda begun: None,
 ) -> dict[int, Result]:
     """One item after another, until all are taken by somebody."""
     found: dict[int, Result] = {}
