@@ -11,7 +11,7 @@ from permway.challenge.case import write_truth
 from permway.challenge.effects.recorders import Clipping
 from permway.challenge.score import score
 from permway.diagnosis.diagnose import diagnose
-from permway.diagnosis.speak import with_spoilt
+from permway.diagnosis.speak_measurement import with_spoilt
 from permway.diagnosis.verdict import Verdict
 from permway.recordings.importers.sheet import import_sheet
 from permway.recordings.spoilt import Spoilt

@@ -87,6 +87,7 @@ def test_something_is_missing_only_if_all_but_harm_is_well(fails: str) -> None:
     harmed = Conditions(bic=True, e_value=True, held_out=False, placebo=True, helps=True)
     assert harmed.something
     assert not harmed.hold
+    assert harmed.unmet == ("held_out",)
     assert not replace(harmed, **{fails: False}).something
 
 
@@ -209,4 +210,5 @@ def test_noise_that_claims_to_be_coherent_names_nothing(tmp_path: Path) -> None:
 
     verdict = diagnose(_changed(case.path, noise), threads=1).verdict
     assert verdict.status in ("insufficient", "measurement")
+    assert bool(verdict.evidence.unmet) == (verdict.status == "insufficient")
     assert all(effect.domain == "measurement" for effect in verdict.effects)

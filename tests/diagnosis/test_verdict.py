@@ -24,7 +24,7 @@ from permway.diagnosis.verdict import (
     Weight,
     json_schema,
 )
-from permway.diagnosis.verdict_parts import Moved, Recalibrated
+from permway.diagnosis.verdict_parts import Condition, Moved, Recalibrated
 from permway.diagnosis.verdict_words import smallest, span
 from permway.errors import InputError
 from permway.model.line import Line
@@ -99,7 +99,9 @@ def test_every_key_of_the_design_is_in_the_file_in_its_order() -> None:
         "false_alarm_threshold",
         "misfit_before",
         "misfit_after",
+        "unmet",
     ]
+    assert table["evidence"].pop("unmet") == []
     assert set(table["evidence"].values()) == {None}
     (effect,) = json.loads(NAMED.to_json())["effects"]
     assert list(effect) == ["domain", "place", "bands", "name", "class", "law", "parameters"]
@@ -270,6 +272,18 @@ def test_rivals_and_the_measurement_that_parts_them_in_one_sentence() -> None:
     )
 
 
+def unmet(*names: Condition, **changed: Any) -> Weight:
+    """What a suspicion falls short of."""
+    known = {
+        "bic_gain": 12.5,
+        "false_alarm_threshold": 21.0,
+        "e_value": 3.2,
+        "misfit_before": 9.1,
+        "misfit_after": 1.0,
+    }
+    return Weight(**{**known, **changed}, unmet=names)
+
+
 @pytest.mark.parametrize(
     ("one", "says"),
     [
@@ -284,6 +298,27 @@ def test_rivals_and_the_measurement_that_parts_them_in_one_sentence() -> None:
         ),
         (verdict("insufficient", detectable=SMALLEST), "mass_kg above 400 kg would have been seen"),
         (verdict("insufficient", effects=(LOST,)), "the suspicion is pad from 20.3 to 22.4 m: 0.05"),
+        (
+            verdict("insufficient", effects=(LOST,), evidence=unmet("bic_gain", "e_value")),
+            "its gain of BIC is 12.5, 21 are asked and its e-value is 3.2, 20 are asked",
+        ),
+        (
+            verdict("insufficient", effects=(LOST,), evidence=unmet("held_out")),
+            "; records that were left out are not foretold better by it",
+        ),
+        (verdict("insufficient", evidence=unmet("placebo")), "as many parameters elsewhere gain half as much"),
+        (
+            verdict("insufficient", evidence=unmet("explained_gap"), explained_gap=0.31),
+            "it explains 31 % of what is missing",
+        ),
+        (
+            verdict("insufficient", evidence=unmet("misfit", misfit_after=None)),
+            "what is left has 9.1 times the mean square",
+        ),
+        (
+            verdict("insufficient", evidence=unmet("misfit", misfit_after=7.0)),
+            "what is left has 7 times the mean square",
+        ),
         (
             verdict("ambiguous", effects=(LOST, unnamed(("pad_frequency", 0.5), ("pad_preload", 0.4)))),
             "pad_preload (0.40); beside that pad from 20.3 to 22.4 m: 0.05 of the stiffness is left (fast",

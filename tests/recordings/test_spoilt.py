@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from permway.arrays import Reals
 from permway.diagnosis.gather import predictable
-from permway.diagnosis.speak import with_spoilt
+from permway.diagnosis.speak_measurement import with_spoilt
 from permway.diagnosis.verdict import Verdict
 from permway.diagnosis.verdict_parts import ClassMember, Effect, Place
 from permway.errors import InputError

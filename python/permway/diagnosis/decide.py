@@ -14,9 +14,8 @@ from permway.diagnosis.quick import Quick
 from permway.diagnosis.search import Finalist, Round, standing
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL
-from permway.diagnosis.verdict_parts import ClassMember
+from permway.diagnosis.verdict_parts import E_VALUE, ClassMember, Condition
 
-E_VALUE = 20.0
 STANDARD_ERRORS = 2.0
 HARM_NATS = 3.0
 """Loss of log predictive density on an axis below which nothing is called harm: where an effect does not show, its
@@ -76,7 +75,18 @@ class Conditions:
     @property
     def hold(self) -> bool:
         """Whether all do."""
-        return self.bic and self.e_value and self.held_out and self.placebo
+        return not self.unmet
+
+    @property
+    def unmet(self) -> tuple[Condition, ...]:
+        """Those that do not hold."""
+        held: dict[Condition, bool] = {
+            "bic_gain": self.bic,
+            "e_value": self.e_value,
+            "held_out": self.held_out,
+            "placebo": self.placebo,
+        }
+        return tuple(name for name, holds in held.items() if not holds)
 
 
 def conditions(

@@ -8,11 +8,10 @@ import numpy as np
 
 from permway.diagnosis.choose import penalty
 from permway.diagnosis.compete import Ring
-from permway.diagnosis.decide import E_VALUE
 from permway.diagnosis.felt import FELT
 from permway.diagnosis.fit import Free
 from permway.diagnosis.quick import Quick
-from permway.diagnosis.verdict_parts import Smallest
+from permway.diagnosis.verdict_parts import E_VALUE, Smallest
 from permway.errors import InputError, SolveError
 
 HALVES = 5.0

@@ -27,7 +27,8 @@ from permway.diagnosis.rounds import effects
 from permway.diagnosis.sampling import corrected, sampled
 from permway.diagnosis.search import Finalist, Round
 from permway.diagnosis.side_by_side import one_thread_of_blas
-from permway.diagnosis.speak import Proof, mixed_up, verdict_of, with_spoilt
+from permway.diagnosis.speak import Proof, verdict_of
+from permway.diagnosis.speak_measurement import mixed_up, with_spoilt
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict_parts import RECALIBRATED, NextMeasurement
 from permway.errors import InputError

@@ -13,7 +13,6 @@ from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.choose import BEYOND, lines, penalty
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.compete import Ring
-from permway.diagnosis.decide import E_VALUE
 from permway.diagnosis.describe import Description
 from permway.diagnosis.e_value import log_e_value
 from permway.diagnosis.fit import Fit
@@ -26,6 +25,7 @@ from permway.diagnosis.refit import settled, weighed_anew
 from permway.diagnosis.search import Finalist, Round, search
 from permway.diagnosis.slips import EXACT, MOST, gain_by_cell, mended
 from permway.diagnosis.spot import Found
+from permway.diagnosis.verdict_parts import E_VALUE
 from permway.errors import InputError, SolveError
 
 MOST_EFFECTS, MOST_ROUNDS = 3, 5

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -16,7 +17,6 @@ from permway.diagnosis.detectable import detectable
 from permway.diagnosis.fit import WIDTH, Fit
 from permway.diagnosis.heldout import Gain
 from permway.diagnosis.idealised import idealised
-from permway.diagnosis.labels import Mislabelled
 from permway.diagnosis.level import beyond
 from permway.diagnosis.ragged import explains_elsewhere, unexplained_lines, unsteady_misfit
 from permway.diagnosis.recalibrate import UNFIT
@@ -25,19 +25,15 @@ from permway.diagnosis.speak_effect import bands_of, effect_of, of_another_form
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL, Status, Verdict
 from permway.diagnosis.verdict_parts import (
+    Condition,
     Effect,
     HeldOutGain,
-    Mechanics,
     Moved,
     NextMeasurement,
     Place,
     Recalibrated,
     Weight,
 )
-from permway.recordings.spoilt import Spoilt
-
-LABELS = "sensor_labels"
-"""Name of the fault that channels carry each other's labels."""
 
 SURE: tuple[Status, ...] = ("named", "measurement")
 """Statuses whose effects have names."""
@@ -100,14 +96,14 @@ def verdict_of(
     fits = (accepted[-1].fit if accepted else base).heat < UNFIT
     last = rounds[-1]
     sizes = detectable(last.ring, last.screened, last.threshold) if fits else {}
-    weight = Weight(false_alarm_threshold=first.threshold, misfit_before=base.heat)
-    recalibrated = Recalibrated(before=_moved(base))
+    weight = partial(Weight, false_alarm_threshold=first.threshold, misfit_before=base.heat)
+    recalibrated = Recalibrated(before=recalibrated_of(base))
     status: Status
     effects: tuple[Effect, ...]
     if _unsteady(base, accepted[-1].fit if accepted else base):
         effects = (unexplained_lines(accepted[-1].fit if accepted else base),)
         return Verdict(
-            status="located", effects=effects, evidence=weight, recalibrated=recalibrated, detectable=sizes
+            status="located", effects=effects, evidence=weight(), recalibrated=recalibrated, detectable=sizes
         )
     if not accepted or proof is None:
         status, effects = _nothing(base, first, found)
@@ -115,11 +111,16 @@ def verdict_of(
         if level is not None:
             status, effects = "named", (level,)
         return Verdict(
-            status=status, effects=effects, evidence=weight, recalibrated=recalibrated, detectable=sizes
+            status=status,
+            effects=effects,
+            evidence=weight(unmet=("misfit",) if status == "insufficient" else ()),
+            recalibrated=recalibrated,
+            detectable=sizes,
         )
     amended = accepted[-1].fit
     if _explains_little(base.heat, amended.heat):
-        return Verdict(status="insufficient", evidence=weight, recalibrated=recalibrated, detectable=sizes)
+        short = weight(misfit_after=amended.heat, unmet=("misfit",))
+        return Verdict(status="insufficient", evidence=short, recalibrated=recalibrated, detectable=sizes)
     gap = decide.explained(base, amended, left)
     by_prefix = {r.finalists[0].prefix: r for r in rounds if r.finalists}
     ends = _ends(proof)
@@ -128,7 +129,8 @@ def verdict_of(
     effects = tuple(
         effect_of(one, by_prefix[one.prefix], proof.weighed, base, explained, ends, names) for one in accepted
     )
-    status = _status(effects, proof, gap)
+    unmet = _unmet(effects, proof, gap)
+    status = "insufficient" if unmet else _status(effects, gap)
     if status == "insufficient" and proof.conditions.something and not proof.conditions.hold:
         # What foretells most records and harms others is missing, and has another form.
         status, effects = "located", (of_another_form(effects[0]),)
@@ -141,18 +143,17 @@ def verdict_of(
     return Verdict(
         status=status,
         effects=effects,
-        evidence=Weight(
+        evidence=weight(
             bic_gain=proof.bic_gain,
             log10_bayes_factor=(amended.log_evidence - base.log_evidence) / np.log(10.0),
             e_value=float(np.exp(min(proof.log_e, np.log(LARGEST_E)))),
-            false_alarm_threshold=first.threshold,
-            misfit_before=base.heat,
             misfit_after=amended.heat,
+            unmet=unmet if status == "insufficient" else (),
         ),
         held_out=_held_out(proof.held_out),
         placebo=_held_out(proof.placebo),
         explained_gap=gap,
-        recalibrated=Recalibrated(before=_moved(base), after=_moved(proof.weighed)),
+        recalibrated=Recalibrated(before=recalibrated_of(base), after=recalibrated_of(proof.weighed)),
         next=advice,
         detectable=sizes,
     )
@@ -172,48 +173,19 @@ def _unsteady(base: Fit, amended: Fit) -> bool:
     return ragged and not explains_elsewhere(base, amended)
 
 
-def mixed_up(base: Fit, mixed: Mislabelled) -> Verdict:
-    """Of records whose labels are wrong: nothing else can be said of them."""
-    effect = Effect(
-        domain="measurement",
-        place=Place(channels=mixed.channels),
-        name=LABELS,
-        law=Mechanics(words=mixed.words),
-    )
-    return Verdict(status="measurement", effects=(effect,), recalibrated=Recalibrated(before=_moved(base)))
-
-
-def with_spoilt(said: Verdict, spoilt: Sequence[Spoilt]) -> Verdict:
-    """The verdict with channels whose samples are no measurement, which nothing was estimated from."""
-    if not spoilt:
-        return said
-    faults: dict[tuple[str, str], list[Spoilt]] = {}
-    for one in spoilt:
-        faults.setdefault((one.channel, one.kind), []).append(one)
-    effects = tuple(
-        Effect(
-            domain="measurement",
-            place=Place(channels=(channel,)),
-            name=kind.replace(" ", "_"),
-            law=Mechanics(words="; ".join(f"{one.record}: {one.what}" for one in ones) + "; left out"),
-        )
-        for (channel, kind), ones in faults.items()
-    )
-    status: Status = "measurement" if said.status == "recalibrated" else said.status
-    # Through a check: a copy would not be.
-    return Verdict.model_validate(
-        said.model_dump(by_alias=True) | {"status": status, "effects": [*said.effects, *effects]}
-    )
-
-
 def _with_its_form(status: Status, effects: tuple[Effect, ...], fits: bool) -> tuple[Status, tuple[Effect, ...]]:
     """Without the mechanics of a description that does not fit: with so much off beside it, it is a place."""
     return ("located", (of_another_form(effects[0]),)) if status == "described" and not fits else (status, effects)
 
 
-def _status(effects: Sequence[Effect], proof: Proof, gap: float) -> Status:
-    if not proof.conditions.hold or (gap < decide.HALF and any(e.domain != "path" for e in effects)):
-        return "insufficient"
+def _unmet(effects: Sequence[Effect], proof: Proof, gap: float) -> tuple[Condition, ...]:
+    """Conditions that do not hold; what explains less than half is no effect of a domain that has no places."""
+    opens = gap < decide.HALF and any(e.domain != "path" for e in effects)
+    return (*proof.conditions.unmet, *(("explained_gap",) if opens else ()))
+
+
+def _status(effects: Sequence[Effect], gap: float) -> Status:
+    """Of effects that meet every condition."""
     if effects[0].class_ and effects[0].class_[0].name == NOVEL:
         # Of a form of the catalogue that is believed no more than this, no mechanics are told.
         sole = len(effects[0].class_) == 1
@@ -271,7 +243,8 @@ def _ends(proof: Proof) -> dict[str, tuple[float, float]]:
     return found
 
 
-def _moved(fit: Fit) -> dict[str, Moved]:
+def recalibrated_of(fit: Fit) -> dict[str, Moved]:
+    """The owner's parameters as a fit has them, by name."""
     known, more = fit.evidence.campaign.parameters.known, idealised(fit)
     values, ends = fit.values(), {name: sorted(pair) for name, pair in fit.intervals(more=more).items()}
     return {

@@ -5,7 +5,7 @@ Docstrings of keys go into the published schema.
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
@@ -132,6 +132,13 @@ class Effect(VerdictPart):
         return self
 
 
+E_VALUE = 20.0
+"""From which an e-value speaks for an effect."""
+
+Condition = Literal["bic_gain", "e_value", "held_out", "placebo", "explained_gap", "misfit"]
+"""What a suspicion has to meet to be called missing."""
+
+
 class Weight(VerdictPart):
     """How strongly the records speak for the effects together, against the recalibrated base."""
 
@@ -147,6 +154,8 @@ class Weight(VerdictPart):
     """Mean square of what the recalibrated base leaves, over what noise and smooth errors explain: 1 fits."""
     misfit_after: Positive | None = None
     """The same of the amended model: well above 1 the effects are not all that is missing, or not quite it."""
+    unmet: tuple[Condition, ...] = ()
+    """Conditions that a suspicion does not meet; empty where something is called missing, or nothing is."""
 
 
 class HeldOutGain(VerdictPart):

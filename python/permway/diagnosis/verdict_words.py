@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 
 from permway.diagnosis.verdict import NOVEL, Effect, Estimate, HeldOutGain, Smallest, Verdict
-from permway.diagnosis.verdict_parts import RECALIBRATED
+from permway.diagnosis.verdict_parts import E_VALUE, RECALIBRATED, Condition
 
 MOST_SIZES = 3
 """Detectable sizes that a sentence names, at most."""
@@ -51,7 +51,7 @@ def sentence(verdict: Verdict) -> str:
             suspect = f"the suspicion is {_named(suspects[0])}" if suspects else ""
             words = "Nothing that was tried explains enough of these records to be called missing"
             sure = f"at fault is {' and '.join(spoilt)}" if spoilt else ""
-            parts = [words, suspect, sure, _seen(verdict), _advice(verdict)]
+            parts = [words, suspect, sure, _short(verdict), _seen(verdict), _advice(verdict)]
         case "named":
             parts = [_named(verdict.effects[0]), _more(verdict), _better(verdict), _open(verdict)]
         case "measurement":
@@ -175,6 +175,27 @@ def _better(verdict: Verdict) -> str:
     before, after = found[1].db_before or 0.0, found[1].db_after or 0.0
     moves = "improves" if after < before else "does not improve:"
     return f"the prediction of held-out records {moves} from {before:.1f} to {after:.1f} dB"
+
+
+def _short(verdict: Verdict) -> str:
+    """What a suspicion falls short of, or the model where there is none."""
+    weight, gap = verdict.evidence, verdict.explained_gap
+    left = weight.misfit_before if weight.misfit_after is None else weight.misfit_after
+
+    asked = weight.false_alarm_threshold
+
+    def number(value: float | None) -> str:
+        return "not known" if value is None else quantity(value)
+
+    words: dict[Condition, str] = {
+        "bic_gain": f"its gain of BIC is {number(weight.bic_gain)}, {number(asked)} are asked",
+        "e_value": f"its e-value is {number(weight.e_value)}, {E_VALUE:.0f} are asked",
+        "held_out": "records that were left out are not foretold better by it",
+        "placebo": "as many parameters elsewhere gain half as much",
+        "explained_gap": f"it explains {number(None if gap is None else 100.0 * gap)} % of what is missing",
+        "misfit": f"what is left has {number(left)} times the mean square that errors explain",
+    }
+    return " and ".join(words[one] for one in weight.unmet)
 
 
 def _open(verdict: Verdict) -> str:

@@ -121,9 +121,9 @@ def _looked(
 ) -> list[tuple[float, float, float]]:
     """First and last joint of the stretches whose loss explains most, and what is left; none if no loss explains.
 
-    All short stretches about each place, and from its best one on by a few joints more or less at an end, or by
-    more or less that is left. What a few lost joints do shows beside them, too: the most telling place need not be
-    among them.
+    All short stretches about each place, and the joint there alone by whatever it keeps; from the best of either
+    on by a few joints more or less at an end, or by more or less that is left. What a few lost joints do shows
+    beside them, too: the most telling place need not be among them.
     """
     campaign = situation.campaign
     x = stations_of(campaign.model.line, law)
@@ -161,6 +161,9 @@ def _looked(
 
     for centre in centres:
         followed(best_of(nearby(centre)))
+        # By little that is left many joints about one that keeps half look better than that one.
+        near = int(np.argmin(np.abs(x - centre)))
+        followed(best_of([(near, near, left) for left in LADDER]))
     least = glance.objective(campaign)
     best: dict[tuple[int, int], float] = {}
     for first, last, left in sorted(known, key=lambda key: known[key]):

@@ -11,13 +11,13 @@ from permway.diagnosis.compare_tables import LEFT
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.speak import LARGEST_E
 from permway.diagnosis.verdict import NOVEL, Effect, HeldOutGain, Moved, Verdict
-from permway.diagnosis.verdict_parts import RECALIBRATED
+from permway.diagnosis.verdict_parts import E_VALUE, RECALIBRATED
 from permway.diagnosis.verdict_words import DOMAIN, INCOMPLETE, STATUS, interval, probability, quantity, size, span
 from permway.report.compare.tables import NOTABLE_DB, BandTable, decibels, signed
 from permway.report.diagnosis.changes import Change
 
-BAR_E_VALUE, BAR_ERRORS = 20.0, 2.0
-"""Of the e-value, and of a held-out gain in standard errors, to call physics missing."""
+BAR_ERRORS = 2.0
+"""Of a held-out gain in standard errors, to call physics missing."""
 
 WENT_BACK = 0.5
 """Standard deviations of the prior by which a parameter must near its owner's value to be said to."""
@@ -42,7 +42,7 @@ def headline(verdict: Verdict) -> list[tuple[str, str]]:
         words = "gain of BIC" if bar is None else f"gain of BIC; chance reaches {quantity(bar)} in 5 of 100"
         found.append((quantity(weight.bic_gain), words))
     if weight.e_value is not None:
-        found.append((_e_value(weight.e_value), f"e-value on held-out records; the bar is {BAR_E_VALUE:g}"))
+        found.append((_e_value(weight.e_value), f"e-value on held-out records; the bar is {E_VALUE:g}"))
     if verdict.explained_gap is not None:
         found.append((f"{100.0 * verdict.explained_gap:.0f} %", "of the gap to noise explained"))
     if weight.misfit_after is not None and weight.misfit_after >= INCOMPLETE:
@@ -150,7 +150,7 @@ def weight_rows(verdict: Verdict) -> list[tuple[str, str, str]]:
     if weight.log10_bayes_factor is not None:
         found.append(("Bayes factor, common logarithm", quantity(weight.log10_bayes_factor), ""))
     if weight.e_value is not None:
-        found.append(("e-value on held-out records", _e_value(weight.e_value), f"above {BAR_E_VALUE:g}"))
+        found.append(("e-value on held-out records", _e_value(weight.e_value), f"above {E_VALUE:g}"))
     if weight.bic_gain is None and bar is not None:
         found.append(
             (

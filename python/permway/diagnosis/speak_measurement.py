@@ -1,0 +1,51 @@
+"""What a verdict says of records that are wrong themselves: labels mixed up, channels that are spoilt."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from permway.diagnosis.fit import Fit
+from permway.diagnosis.labels import Mislabelled
+from permway.diagnosis.speak import recalibrated_of
+from permway.diagnosis.verdict import Status, Verdict
+from permway.diagnosis.verdict_parts import Effect, Mechanics, Place, Recalibrated
+from permway.recordings.spoilt import Spoilt
+
+LABELS = "sensor_labels"
+"""Name of the fault that channels carry each other's labels."""
+
+
+def mixed_up(base: Fit, mixed: Mislabelled) -> Verdict:
+    """Of records whose labels are wrong: nothing else can be said of them."""
+    effect = Effect(
+        domain="measurement",
+        place=Place(channels=mixed.channels),
+        name=LABELS,
+        law=Mechanics(words=mixed.words),
+    )
+    return Verdict(
+        status="measurement", effects=(effect,), recalibrated=Recalibrated(before=recalibrated_of(base))
+    )
+
+
+def with_spoilt(said: Verdict, spoilt: Sequence[Spoilt]) -> Verdict:
+    """The verdict with channels whose samples are no measurement, which nothing was estimated from."""
+    if not spoilt:
+        return said
+    faults: dict[tuple[str, str], list[Spoilt]] = {}
+    for one in spoilt:
+        faults.setdefault((one.channel, one.kind), []).append(one)
+    effects = tuple(
+        Effect(
+            domain="measurement",
+            place=Place(channels=(channel,)),
+            name=kind.replace(" ", "_"),
+            law=Mechanics(words="; ".join(f"{one.record}: {one.what}" for one in ones) + "; left out"),
+        )
+        for (channel, kind), ones in faults.items()
+    )
+    status: Status = "measurement" if said.status == "recalibrated" else said.status
+    # Through a check: a copy would not be.
+    return Verdict.model_validate(
+        said.model_dump(by_alias=True) | {"status": status, "effects": [*said.effects, *effects]}
+    )
