@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,12 @@ from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
 from simulated import simulate
+
+
+def started(situation: Situation) -> dict[str, float]:
+    """Constants that the first hypothesis begins with."""
+    first = next(iter(entries()["fastener_loss"].hypotheses(situation)))
+    return {f.name: f.value(z) for f, z in zip(first.free, first.starts[0], strict=True)}
 
 
 @pytest.mark.parametrize(
@@ -35,8 +42,17 @@ def test_a_fit_begins_with_the_right_joints_and_about_what_is_left(
         tmp_path / "c", seed, amend=lambda campaign: weakened(campaign, "pad", centre_m, length_m, left)
     )
     _, searched = bases(gather(case.campaign, threads=1), Clock(None))
-    first = next(iter(entries()["fastener_loss"].hypotheses(Situation(searched, scanned(searched)))))
-    start = {f.name: f.value(z) for f, z in zip(first.free, first.starts[0], strict=True)}
+    start = started(Situation(searched, scanned(searched)))
     assert start["centre_m"] == pytest.approx(centre_m)
     assert start["length_m"] == pytest.approx(length_m)
     assert start["factor"] == pytest.approx(left, rel=0.45)
+
+
+def test_where_a_bent_base_names_other_places_joints_are_looked_at_all_along(tmp_path: Path) -> None:
+    """As of three sensors about a long line: the scan named bearings, and no pad near the one that keeps half."""
+    case = simulate(tmp_path / "c", 5, amend=lambda campaign: weakened(campaign, "pad", 7.2, 0.0, 0.5))
+    _, searched = bases(gather(case.campaign, threads=1), Clock(None))
+    found = [one for one in scanned(searched) if one.spot.name == "bearing" or one.spot.x_m[0] < 3.0]
+    assert started(Situation(searched, tuple(found)))["centre_m"] != pytest.approx(7.2, abs=0.5)
+    start = started(Situation(replace(searched, heat=2.0), tuple(found)))
+    assert (start["centre_m"], start["length_m"], start["factor"]) == (pytest.approx(7.2), 0.0, 0.5)

@@ -14,6 +14,7 @@ from permway.diagnosis.catalogue._roles import spacing
 from permway.diagnosis.fit import Free
 from permway.diagnosis.glance import Glance
 from permway.diagnosis.hypothesis import Hypothesis, Situation, Where, between_free, linear_free
+from permway.diagnosis.recalibrate import UNFIT
 from permway.recordings.campaign import Campaign
 
 LONGEST = 12.0
@@ -30,6 +31,9 @@ LEFT = (0.05, 0.001)
 
 LADDER = (0.001, 0.01, 0.05, 0.15, 0.3, 0.5, 0.7, 0.85)
 """Of the stiffness, along which the best stretch is followed: with another part left others explain more."""
+
+HALF, EVERY = 0.5, 2
+"""What joints all along keep, and every which is looked at, where the scan may lead astray."""
 
 TELLING = 0.4
 """Share of the most telling spot's surplus that a joint of the law must have for a first look."""
@@ -62,12 +66,14 @@ def local_loss(
     for centre in [f.spot.x_m[0] for f in told] or places:
         if all(abs(centre - other) >= 4.0 * step for other in taken):
             taken.append(centre)
-    telling = bool(told) and told[0].surplus > TELLING * situation.found[0].surplus
-    glance = Glance(situation.fit) if telling and told[0].surplus > SURPLUS else None
-    looked = [] if glance is None else _looked(situation, glance, law, taken[:CENTRES])
+    telling = bool(told) and told[0].surplus > max(TELLING * situation.found[0].surplus, SURPLUS)
+    # About a base that does not fit the scan of slopes may tell of what bent it.
+    bent = bool(situation.found) and situation.fit.heat > UNFIT
+    centres = taken[:CENTRES] if telling else []
+    looked = _looked(situation, law, centres, everywhere=bent) if telling or bent else []
     for found in looked:
-        yield _hypothesis(law, x, taken[0], found, entry, family)
-    for centre in [] if looked else taken[:most]:
+        yield _hypothesis(law, x, found[0], found, entry, family)
+    for centre in [] if telling and looked else taken[:most]:
         yield _hypothesis(law, x, centre, None, entry, family)
 
 
@@ -117,15 +123,15 @@ def _length(length: float, sigma: float, step: float) -> Free:
 
 
 def _looked(
-    situation: Situation, glance: Glance, law: str, centres: Sequence[float]
+    situation: Situation, law: str, centres: Sequence[float], *, everywhere: bool
 ) -> list[tuple[float, float, float]]:
     """First and last joint of the stretches whose loss explains most, and what is left; none if no loss explains.
 
     All short stretches about each place, and the joint there alone by whatever it keeps; from the best of either
     on by a few joints more or less at an end, or by more or less that is left. What a few lost joints do shows
-    beside them, too: the most telling place need not be among them.
+    beside them, too: the most telling place need not be among them. And every second joint by half, if asked for.
     """
-    campaign = situation.campaign
+    campaign, glance = situation.campaign, Glance(situation.fit)
     x = stations_of(campaign.model.line, law)
     known: dict[_Stretch, float] = {}
 
@@ -164,6 +170,8 @@ def _looked(
         # By little that is left many joints about one that keeps half look better than that one.
         near = int(np.argmin(np.abs(x - centre)))
         followed(best_of([(near, near, left) for left in LADDER]))
+    if everywhere:
+        followed(best_of([(index, index, HALF) for index in range(0, x.size, EVERY)]))
     least = glance.objective(campaign)
     best: dict[tuple[int, int], float] = {}
     for first, last, left in sorted(known, key=lambda key: known[key]):
