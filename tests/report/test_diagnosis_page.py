@@ -310,8 +310,10 @@ def test_nothing_found_says_what_was_looked_for_and_what_would_have_been_seen(no
 
 
 def test_what_is_only_suspected_is_said_to_be(diagnosis: Diagnosis) -> None:
-    verdict = diagnosis.verdict.model_copy(update={"status": "insufficient"})
+    evidence = diagnosis.verdict.evidence.model_copy(update={"unmet": ("held_out",)})
+    verdict = diagnosis.verdict.model_copy(update={"status": "insufficient", "evidence": evidence})
     text = " ".join(Reader(render(replace(diagnosis, verdict=verdict), {})).text.split())
+    assert "; records that were left out are not foretold better by it" in text
     assert "No effect is called missing. Suspected, without passing every bar:" in text
     assert "the suspicion is pad from 7.2 to 7.8 m" in text
 

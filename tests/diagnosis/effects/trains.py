@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from permway.diagnosis.blocks_spectra import FIRST_LINE
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
@@ -24,7 +25,7 @@ from permway.recordings.predict import predict
 
 AVERAGES, BLOWS, DURATION_S = 120, 16, 60.0
 HAMMER_HZ = np.geomspace(8.0, 160.0, 30)
-RUN_HZ = np.arange(4.0, 141.0)
+HIGHEST_HZ = 140.0
 RAIL = {"from_m": 0.0, "to_m": 24.0, "spacing_m": 0.6}
 BESIDE = [{"from_m": -6.0, "to_m": -0.6, "spacing_m": 0.6}, {"from_m": 24.6, "to_m": 30.0, "spacing_m": 0.6}]
 ON_BOARD = {
@@ -128,12 +129,13 @@ CAMPAIGN: dict[str, Any] = {
 }
 
 
-def campaign_in(folder: Path) -> Campaign:
+def campaign_in(folder: Path, *, segment_s: float = 1.0) -> Campaign:
     """The campaign as its owner believes it; its records are drawn, and their file is empty."""
+    records = [{**r, "segment_s": segment_s} if r["statistic"] == "csd" else r for r in CAMPAIGN["records"]]
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "model.toml").write_text(to_toml(MODEL))
     (folder / "none.csv").write_text("drawn, not read\n")
-    (folder / "campaign.toml").write_text(to_toml(CAMPAIGN))
+    (folder / "campaign.toml").write_text(to_toml({**CAMPAIGN, "records": records}))
     return read_campaign(folder / "campaign.toml")
 
 
@@ -145,9 +147,10 @@ def blank(campaign: Campaign) -> list[Dataset]:
             names = {"sensor": list(ON_TRACK), "force": ["hit", "hit far"], "frequency": HAMMER_HZ}
             data = _ones("frf", names)
         else:
-            names = {"channel": list(ON_BOARD), "channel2": list(ON_BOARD), "frequency": RUN_HZ}
+            lines = np.arange(FIRST_LINE / record.segment_s, HIGHEST_HZ + 1e-9, 1.0 / record.segment_s)
+            names = {"channel": list(ON_BOARD), "channel2": list(ON_BOARD), "frequency": lines}
             data = _ones("csd", names)
-            data["psd"] = (("channel", "frequency"), np.ones((len(ON_BOARD), RUN_HZ.size)))
+            data["psd"] = (("channel", "frequency"), np.ones((len(ON_BOARD), lines.size)))
             data.attrs["duration_s"] = DURATION_S
         found.append(Dataset(record, campaign.condition(record.condition), data))
     return found
@@ -177,13 +180,14 @@ def drawn(truth: Campaign, seed: int, *, noise: float = 0.03) -> list[Dataset]:
             found.append(replace(dataset, data=data.assign_attrs(averages=BLOWS)))
         else:
             root = np.linalg.cholesky(np.moveaxis(right["csd"].values, -1, 0))
-            shape = (*root.shape[:2], AVERAGES)
+            averages = round(AVERAGES / dataset.record.segment_s)
+            shape = (*root.shape[:2], averages)
             z = np.sqrt(0.5) * (random.standard_normal(shape) + 1j * random.standard_normal(shape))
             x = root @ z
-            matrix = np.moveaxis(x @ np.conj(np.swapaxes(x, 1, 2)) / AVERAGES, 0, -1)
+            matrix = np.moveaxis(x @ np.conj(np.swapaxes(x, 1, 2)) / averages, 0, -1)
             data["csd"] = data["csd"].copy(data=matrix)
             data["psd"] = data["psd"].copy(data=np.einsum("ccf->cf", matrix).real)
-            found.append(replace(dataset, data=data.assign_attrs(averages=AVERAGES)))
+            found.append(replace(dataset, data=data.assign_attrs(averages=averages)))
     return found
 
 
