@@ -14,13 +14,13 @@ from permway.diagnosis.resonances import retuned
 TRUE = {"mass_kg": 40.0, "frequency_Hz": 110.0, "loss_factor": 0.1}
 
 
-@pytest.mark.parametrize(("seed", "size"), [(3, -1.5), (4, 0.0)])
-def test_a_resonance_is_found_from_another_valley(tmp_path: Path, seed: int, size: float) -> None:
-    """Begun at 60 Hz it ends as a mass that hangs on almost rigidly, and gains a third of what there is."""
+@pytest.mark.parametrize("seed", [3, 4])
+def test_a_resonance_is_found_from_another_valley(tmp_path: Path, seed: int) -> None:
+    """Begun far above it ends as a mass that hangs on almost rigidly, and gains a third of what there is."""
     owner = campaign_in(tmp_path)
     hypothesis = next(iter(axlebox_absorber.hypotheses(situation_of(owner, seed))))
     ring = Ring(situation_of(owner, seed, amend=lambda campaign: hypothesis.amend(campaign, TRUE)).fit)
-    begun = ring.quick(replace(hypothesis, starts=((size, 0.0, 0.3),)))
+    begun = ring.quick(replace(hypothesis, starts=((0.0, 2.0, 0.3),)))
     assert begun.values["frequency_Hz"] > 200.0
     found = retuned(ring, begun)
     assert found.gain > 3.0 * begun.gain > 0.0

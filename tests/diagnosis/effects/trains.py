@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from permway.diagnosis.blocks_spectra import FIRST_LINE
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
@@ -25,7 +24,7 @@ from permway.recordings.predict import predict
 
 AVERAGES, BLOWS, DURATION_S = 120, 16, 60.0
 HAMMER_HZ = np.geomspace(8.0, 160.0, 30)
-HIGHEST_HZ = 140.0
+LOWEST_LINE, HIGHEST_HZ = 4, 140.0
 RAIL = {"from_m": 0.0, "to_m": 24.0, "spacing_m": 0.6}
 BESIDE = [{"from_m": -6.0, "to_m": -0.6, "spacing_m": 0.6}, {"from_m": 24.6, "to_m": 30.0, "spacing_m": 0.6}]
 ON_BOARD = {
@@ -147,7 +146,7 @@ def blank(campaign: Campaign) -> list[Dataset]:
             names = {"sensor": list(ON_TRACK), "force": ["hit", "hit far"], "frequency": HAMMER_HZ}
             data = _ones("frf", names)
         else:
-            lines = np.arange(FIRST_LINE / record.segment_s, HIGHEST_HZ + 1e-9, 1.0 / record.segment_s)
+            lines = np.arange(LOWEST_LINE / record.segment_s, HIGHEST_HZ + 1e-9, 1.0 / record.segment_s)
             names = {"channel": list(ON_BOARD), "channel2": list(ON_BOARD), "frequency": lines}
             data = _ones("csd", names)
             data["psd"] = (("channel", "frequency"), np.ones((len(ON_BOARD), lines.size)))
