@@ -158,6 +158,8 @@ def test_statuses_ask_for_what_they_say() -> None:
     with pytest.raises(InputError, match="has no effects"):
         Verdict(status="recalibrated", effects=(LOST,))
     assert Verdict(status="insufficient", effects=(LOST,)).effects == (LOST,)
+    with pytest.raises(InputError, match="conditions that are not met"):
+        Verdict(status="named", effects=(LOST,), evidence=Weight(unmet=("placebo",)))
 
 
 def test_a_file_that_is_not_there_is_said(tmp_path: Path) -> None:

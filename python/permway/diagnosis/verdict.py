@@ -71,6 +71,8 @@ class Verdict(VerdictPart):
             raise fault('the status "recalibrated" has no effects', "effects")
         if self.status not in UNPROVED and not self.effects:
             raise fault(f'the status "{self.status}" needs an effect', "effects")
+        if self.evidence.unmet and self.status != "insufficient":
+            raise fault('only the status "insufficient" has conditions that are not met', "evidence", "unmet")
         if self.status == "named" and self.effects[0].name is None:
             raise fault('the status "named" needs a name', "effects", 0, "name")
         if self.status == "ambiguous" and all(effect.name is not None for effect in self.effects):

@@ -181,7 +181,6 @@ def _short(verdict: Verdict) -> str:
     """What a suspicion falls short of, or the model where there is none."""
     weight, gap = verdict.evidence, verdict.explained_gap
     left = weight.misfit_before if weight.misfit_after is None else weight.misfit_after
-
     asked = weight.false_alarm_threshold
 
     def number(value: float | None) -> str:
