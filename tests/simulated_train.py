@@ -20,7 +20,7 @@ from simulated import CAMPAIGN, MODEL
 
 BLOWS, AVERAGES, COHERENCE = 16, 60, 0.98
 STRUCK = np.geomspace(6.0, 200.0, 25)
-RUN_HZ = (3.0, 90.0)
+RUN = np.arange(3.0, 91.0)
 ON_BOARD = {
     "axlebox1": ("car1.wheelset1", 1e-5),
     "axlebox2": ("car1.wheelset2", 1e-5),
@@ -38,9 +38,7 @@ VEHICLE: dict[str, Any] = {
 }
 
 
-def tables(
-    *, train: bool = True, cold: bool = True, segment_s: float = 1.0
-) -> tuple[dict[str, Any], dict[str, Any]]:
+def tables(*, train: bool = True, cold: bool = True) -> tuple[dict[str, Any], dict[str, Any]]:
     """Campaign and model, with or without a train and a test in the cold."""
     model, campaign = copy.deepcopy(MODEL), copy.deepcopy(CAMPAIGN)
     conditions = campaign["conditions"]
@@ -56,7 +54,7 @@ def tables(
         for name, speed in (("slow", 40.0), ("fast", 80.0)):
             conditions.append({"name": name, "kind": "train", "temperature_C": 12.0, "speed_m_per_s": speed})
             record = {"name": f"run {name}", "file": "frf.npz", "condition": name, "statistic": "csd"}
-            campaign["records"].append({**record, "segment_s": segment_s, "channels": {n: n for n in ON_BOARD}})
+            campaign["records"].append({**record, "segment_s": 1.0, "channels": {n: n for n in ON_BOARD}})
         for name, path in (
             ("vehicle.kp", "primary_stiffness_N_per_m"),
             ("vehicle.cp", "primary_damping_Ns_per_m"),
@@ -92,15 +90,14 @@ def blank(campaign: Campaign) -> list[Dataset]:
             )
         else:
             names = {kind: list(record.channels.values()) for kind in ("channel", "channel2")}
-            count, (low, high) = len(record.channels), RUN_HZ
-            lines = np.arange(low, high + 1e-9, 1.0 / record.segment_s)
+            count = len(record.channels)
             data = xr.Dataset(
                 {
-                    "csd": ((*names, "frequency"), np.zeros((count, count, lines.size), complex)),
-                    "psd": (("channel", "frequency"), np.zeros((count, lines.size))),
+                    "csd": ((*names, "frequency"), np.zeros((count, count, RUN.size), complex)),
+                    "psd": (("channel", "frequency"), np.zeros((count, RUN.size))),
                 },
-                coords={**names, "frequency": lines},
-                attrs={"averages": round(AVERAGES / record.segment_s)},
+                coords={**names, "frequency": RUN},
+                attrs={"averages": AVERAGES},
             )
         found.append(Dataset(record, campaign.condition(record.condition), data))
     return found
@@ -122,9 +119,8 @@ def measured(
             data["log_variance"] = right["frf"].copy(data=np.full(right["frf"].shape, variance))
         else:
             root = np.linalg.cholesky(np.moveaxis(right["csd"].values, -1, 0))
-            averages = data.attrs["averages"]
-            draws = root @ _normal(random, (*root.shape[:2], averages)) / np.sqrt(2.0)
-            estimate = np.moveaxis(draws @ draws.conj().transpose(0, 2, 1), 0, -1) / averages
+            draws = root @ _normal(random, (RUN.size, root.shape[1], AVERAGES)) / np.sqrt(2.0)
+            estimate = np.moveaxis(draws @ draws.conj().transpose(0, 2, 1), 0, -1) / AVERAGES
             data["csd"] = right["csd"].copy(data=estimate)
             data["psd"] = data["psd"].copy(data=np.einsum("ccf->cf", estimate).real)
     return datasets

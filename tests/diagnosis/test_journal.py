@@ -36,7 +36,7 @@ def test_what_was_found_is_taken_up_again_and_the_verdict_is_the_same(campaign: 
     key = key_of(campaign, 0)
     with keeping(tmp_path / "unfinished", key), pytest.raises(StoppedError):
         diagnose(campaign, threads=1, progress=stop)
-    assert {"recalibrate", "screen", "learn"} <= set(stages)
+    assert {"recalibrate", "screen", "nulls", "learn"} <= set(stages)
     kept = sorted(p.name for p in (tmp_path / "unfinished").iterdir())
     assert len(kept) > 5
     stages.clear()
@@ -45,7 +45,7 @@ def test_what_was_found_is_taken_up_again_and_the_verdict_is_the_same(campaign: 
         assert journal.recalled == len(kept)
         journal.close()
     # Nothing was screened a second time but what comes after.
-    assert stages.count("screen") == 0
+    assert stages.count("screen") == stages.count("nulls") == 0
     assert not (tmp_path / "unfinished").exists()
     whole = diagnose(campaign, threads=1)
     assert again.verdict.model_dump_json() == whole.verdict.model_dump_json()

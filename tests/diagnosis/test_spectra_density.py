@@ -11,7 +11,7 @@ import xarray as xr
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.errors import InputError
 
-LINES = np.arange(4.0, 604.0)
+LINES = np.arange(2.0, 602.0)
 
 
 def csd(values: np.ndarray, averages: float) -> xr.Dataset:
@@ -45,16 +45,13 @@ def block(averages: int, seed: int, coherence: float = 0.5) -> SpectraBlock:
     return SpectraBlock(cast(Any, dataset), expected, added=np.zeros((2, 2, LINES.size)), floor=0.0)
 
 
-def test_lines_near_zero_are_not_used() -> None:
-    """In segments of 2 s the eighth line is at 4 Hz, and is the first that is used."""
+def test_lines_within_the_window_s_reach_of_zero_are_not_used() -> None:
+    """In segments of 2 s it reaches over 2 Hz: so does the line at 2 Hz to zero, and is the first that is used."""
     one = block(14, 3)
     assert one.frequency.tolist() == LINES[::2].tolist()
-    lower, expected = (data.assign_coords(frequency=LINES - 2.0) for data in (one.dataset.data, one._expected))
-    begun = SimpleNamespace(data=lower, record=one.dataset.record)
-    assert SpectraBlock(cast(Any, begun), expected, added=np.zeros((2, 2, LINES.size))).frequency[0] == 4.0
-    first = one.dataset.data.isel(frequency=slice(0, 1)).assign_coords(frequency=[3.5])
+    first = one.dataset.data.isel(frequency=slice(0, 1)).assign_coords(frequency=[1.5])
     near = SimpleNamespace(data=first.assign_attrs(averages=14.0), record=one.dataset.record)
-    with pytest.raises(InputError, match=r"run: has no line .*got 'up to 3.5 Hz.*; give a longer segment_s"):
+    with pytest.raises(InputError, match=r"run: has no line .*got 'up to 1.5 Hz.*; give a longer segment_s"):
         SpectraBlock(cast(Any, near), first, added=np.zeros((2, 2, 1)))
 
 

@@ -25,9 +25,12 @@ SMALL = 1e-4
 LEAST_LINES = 20
 """Of a part, from which its scatter is learnt."""
 
-FIRST_LINE = 8
-"""From zero, from which lines are used: at the fourth and sixth what one channel does not share with another
-scatters 1.7 and 1.3 times as much as so many averages do, which a camber of the spans then seems to explain."""
+FIRST_LINE = 4
+"""From zero, from which lines are used: Hann's window takes in two on either side, and nearer ones a record's mean."""
+
+TORN = 0.08
+"""Of a channel's power, at the first line from zero, what smooth errors of 1.5 dB and as many neper of phase tear
+from what it shares with another: they differ within the window. At further lines less by their square."""
 
 FEWEST = 3.0
 """Averages of a run."""
@@ -48,6 +51,9 @@ class SpectraBlock:
         The prediction by which the tree is chosen and transfers are weighed.
     added : ndarray, shape (channels, channels, F)
         Expected cross spectra of noise and hum, which gains do not act on.
+    away : ndarray of complex128, shape (channels, channels, F), optional
+        Expected cross spectra times the distance from the line, which errors that grow from line to line act on;
+        see :func:`permway.recordings.predict.away_from_lines`. By default they act on nothing.
     floor : float
         Relative error of transfers that adds to their scatter.
     scatter : sequence of float, optional
@@ -70,18 +76,20 @@ class SpectraBlock:
         *,
         floor: float = 0.01,
         added: Reals,
+        away: Complexes | None = None,
         scatter: Sequence[float] = (),
         shared: Reals | None = None,
         span: tuple[float, float] | None = None,
     ) -> None:
         self.dataset, self._expected, self._floor, self._added = dataset, expected, floor, added
         self._scatter, self._shared = tuple(scatter), shared
+        self._away: Complexes = np.zeros(added.shape, dtype=np.complex128) if away is None else away
         data = dataset.data
         known_Hz, segment_s = data["frequency"].values, dataset.record.segment_s
         lines = np.flatnonzero(known_Hz * segment_s >= FIRST_LINE - 1e-9)
         if lines.size == 0:
             raise InputError(
-                f"has no line that is {FIRST_LINE} lines from zero: nearer ones scatter more than is known",
+                f"has no line that is {FIRST_LINE} lines from zero: nearer ones hold the record's mean",
                 where=dataset.record.name,
                 value=f"up to {known_Hz.max():g} Hz, segments of {segment_s:g} s",
                 remedy="give a longer segment_s, or a wider band_Hz",
@@ -129,7 +137,8 @@ class SpectraBlock:
             relative = np.sqrt((1.0 - g2[at]) / (2.0 * (self.averages - 1.0) * g2[at]) + floor**2)
             add("transfer", child, parent, at, relative)
             at = np.flatnonzero(g2 <= self.MOST_COHERENCE)
-            add("rest", child, parent, at, np.full(at.size, remaining))
+            torn = TORN / (self.frequency[at] * segment_s) ** 2 / (1.0 - g2[at])
+            add("rest", child, parent, at, np.hypot(remaining, torn))
         text = np.array(labels, dtype=str)
         self.rows = Rows(
             text,
@@ -199,7 +208,7 @@ class SpectraBlock:
 
     def scattered(self, predicted: xr.Dataset) -> SpectraBlock:
         """The same with scatter and correlations of its parts, by how lines differ from their neighbours."""
-        plain = self.expecting(self._expected, self._added)
+        plain = self.expecting(self._expected, self._added, self._away)
         deviations, scatter, start = plain.deviations(predicted), [], 0
         for what, _, _, at, _ in plain._parts:
             size = (2 if what == "transfer" else 1) * at.size
@@ -212,15 +221,16 @@ class SpectraBlock:
             self.dataset,
             self._expected,
             added=self._added,
+            away=self._away,
             floor=self._floor,
             scatter=scatter,
             shared=covariance(plain._by_kind(deviations)),
             span=self._span,
         )
 
-    def expecting(self, expected: xr.Dataset, added: Reals) -> SpectraBlock:
+    def expecting(self, expected: xr.Dataset, added: Reals, away: Complexes) -> SpectraBlock:
         """The same weighed by another prediction, with the scatter of a stationary record."""
-        return SpectraBlock(self.dataset, expected, added=added, floor=self._floor, span=self._span)
+        return SpectraBlock(self.dataset, expected, added=added, away=away, floor=self._floor, span=self._span)
 
     def of(self, dataset: Dataset) -> SpectraBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
@@ -228,23 +238,25 @@ class SpectraBlock:
             dataset,
             self._expected,
             added=self._added,
+            away=self._away,
             floor=self._floor,
             scatter=self._scatter,
             shared=self._shared,
             span=self._span,
         )
 
-    def _answers(self, gains: Reals) -> list[Reals]:
-        """Growth of each part's logarithm with that of a gain on what moves, and not on noise and hum.
+    def _answers(self, value: Complexes, rate: Complexes) -> list[Complexes]:
+        """Growth of each part's logarithm with that of errors of what moves, and not of noise and hum.
 
         Parameters
         ----------
-        gains : ndarray, shape (channels,)
-            How much of it each channel has.
+        value, rate : ndarray of complex128, shape (channels,)
+            Of each channel's error, log gain and i times phase: itself, and its growth from line to line.
         """
         model, added = self._expected["csd"].values[:, :, self._lines], self._model_added
-        each = np.exp(SMALL * gains)
-        moved = (model - added) * each[:, None, None] * each[:, None] + added
+        each, more = SMALL * value, SMALL * rate
+        moved = (model - added) * np.exp(each[:, None, None] + each[:, None].conj())
+        moved = moved + (more[:, None, None] + more[:, None].conj()) * self._away[:, :, self._lines] + added
         before, after = (self._logarithms(csd) for csd in (model, moved))
         return [(new - old) / SMALL for new, old in zip(after, before, strict=True)]
 
@@ -257,50 +269,55 @@ class SpectraBlock:
         share = np.sqrt(np.minimum(1.0, model / np.maximum(added[own, own], 1e-300)))
         return np.asarray(added * share * share[:, None], dtype=np.complex128)
 
-    def _logarithms(self, csd: Complexes) -> list[Reals]:
-        """Of each part's modulus."""
+    def _logarithms(self, csd: Complexes) -> list[Complexes]:
+        """Of each part; the imaginary part of a transfer's is its phase."""
         found = []
         for what, c, o, at, _ in self._parts:
             if what == "power":
-                found.append(np.log(csd[c, c, at].real))
+                found.append(np.log(csd[c, c, at].real).astype(np.complex128))
             elif what == "transfer":
-                found.append(np.log(np.abs(csd[c, o, at]) / csd[o, o, at].real))
+                found.append(np.log(transfer(csd, c, o, at)))
             else:
-                found.append(np.log(remainder(csd, c, o, at)))
+                found.append(np.log(remainder(csd, c, o, at)).astype(np.complex128))
         return found
+
+    def _columns(self, channels: Complexes, of: Wander, at: Reals, step: float) -> Reals:
+        """What errors do to deviations that are sums of functions, in these channels.
+
+        Parameters
+        ----------
+        channels : ndarray of complex128, shape (channels,)
+        of : Wander
+        at : ndarray, shape (F,)
+            Where the functions are taken, line by line.
+        step : float
+            From line to line.
+        """
+        values, rates = of.values(at), of.values(at + 0.5 * step) - of.values(at - 0.5 * step)
+        nothing, found = np.zeros_like(channels), []
+        both = (self._answers(channels, nothing), self._answers(nothing, channels))
+        for (what, _, _, lines, sigma), by_value, by_rate in zip(self._parts, *both, strict=True):
+            moved = (by_value[:, None] * values[lines] + by_rate[:, None] * rates[lines]) / sigma[:, None]
+            found.extend([moved.real, moved.imag] if what == "transfer" else [moved.real])
+        return np.vstack(found)
 
     @cached_property
     def smooth(self) -> Smooth:
         """Of each channel's chain, log gain and phase, and of the irregularity's level."""
         names = self.dataset.data["channel"].values.astype(str)
-        speed = self.dataset.condition.speed_m_per_s
-        model = self._expected["csd"].values[:, :, self._lines]
-        wander = Wander(*self._span)
-        each = wander.values(self.frequency)
-        origins, columns = [Origin(f"channel {name}", wander, 2) for name in names], []
-        for channel in range(names.size):
-            gains, phases = [], []
-            answers = self._answers(np.eye(names.size)[channel])
-            for (what, c, o, at, sigma), answer in zip(self._parts, answers, strict=True):
-                values = each[at] / sigma[:, None]
-                zero = np.zeros_like(values)
-                if what == "transfer":
-                    gains.extend([answer[:, None] * values, zero])
-                    moving = 1.0 - (self._model_added[c, o, at] / model[c, o, at]).real
-                    phases.extend([zero, (float(c == channel) - float(o == channel)) * moving[:, None] * values])
-                else:
-                    gains.append(answer[:, None] * values)
-                    phases.append(zero)
-            columns.append(np.hstack([np.vstack(gains), np.vstack(phases)]))
+        speed, step_Hz = self.dataset.condition.speed_m_per_s, 1.0 / self.dataset.record.segment_s
+        wander, one = Wander(*self._span), np.eye(names.size, dtype=np.complex128)
+        origins = [Origin(f"channel {name}", wander, 2) for name in names]
+        columns = [
+            self._columns(part * one[channel], wander, self.frequency, step_Hz)
+            for channel in range(names.size)
+            for part in (1.0, 1j)
+        ]
         if speed is not None:
             # The same track under every speed: of a power, as half as much in every channel.
-            level, each = [], LEVEL.values(self.frequency / speed)
-            answers = self._answers(np.full(names.size, 0.5))
-            for (what, _, _, at, sigma), answer in zip(self._parts, answers, strict=True):
-                values = answer[:, None] * each[at] / sigma[:, None]
-                level.extend([values, np.zeros_like(values)] if what == "transfer" else [values])
+            half = np.full(names.size, 0.5, dtype=np.complex128)
             origins.append(Origin("irregularity", LEVEL, 1, chain=False))
-            columns.append(np.vstack(level))
+            columns.append(self._columns(half, LEVEL, self.frequency / speed, step_Hz / speed))
         whole = np.hstack(columns)
         if self._apart is not None:
             whole = np.asarray(self._apart @ whole)

@@ -20,7 +20,17 @@ from permway.diagnosis.wander import FIRST_LENGTH
 from permway.diagnosis.whitener import AllColumns, Whitener
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import Answer, Need, State, added_to, need_of, plan, predict_one, solve
+from permway.recordings.predict import (
+    Answer,
+    Need,
+    State,
+    added_to,
+    away_from_lines,
+    need_of,
+    plan,
+    predict_one,
+    solve,
+)
 
 SMALLEST_SMOOTH, LARGEST_SMOOTH = 0.001, 0.2
 """Between which the size of smooth errors is learnt, neper or rad: 0.009 and 1.7 dB."""
@@ -241,7 +251,10 @@ class Evidence:
         blocks: list[Block] = []
         for index, (block, prediction) in enumerate(zip(self.blocks, solved.datasets, strict=True)):
             if isinstance(block, SpectraBlock):
-                block = block.expecting(prediction, added_to(solved.campaign, block.dataset))
+                campaign, need = solved.campaign, solved.needs[index]
+                assert need is not None
+                away = away_from_lines(campaign, block.dataset, need, solved.answers[need.state])
+                block = block.expecting(prediction, added_to(campaign, block.dataset), away)
             elif isinstance(block, FrfBlock):
                 block = block.with_reference(prediction, block.errors(self.whitener.of_part(explained, index)))
             blocks.append(block)

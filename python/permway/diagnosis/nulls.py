@@ -14,10 +14,14 @@ from scipy import linalg
 
 from permway.arrays import Reals
 from permway.diagnosis.choose import penalty
+from permway.diagnosis.clock import Progress
 from permway.diagnosis.compete import Ring
+from permway.diagnosis.journal import current
 from permway.diagnosis.quick import Quick
 
-DRAWS = 2000
+DRAWS, BATCH = 2000, 250
+"""Simulated campaigns, and how many at once."""
+
 LEVEL = 0.95
 """Share of campaigns with nothing missing that stay below the threshold."""
 
@@ -26,7 +30,14 @@ LEAST = 10.0
 (Kass and Raftery 1995)."""
 
 
-def null_gains(ring: Ring, screened: Sequence[Quick], *, seed: int = 0, draws: int = DRAWS) -> Reals:
+def null_gains(
+    ring: Ring,
+    screened: Sequence[Quick],
+    *,
+    seed: int = 0,
+    draws: int = DRAWS,
+    progress: Progress | None = None,
+) -> Reals:
     """The best gain of BIC of each simulated campaign, shape (draws,).
 
     Parameters
@@ -35,27 +46,31 @@ def null_gains(ring: Ring, screened: Sequence[Quick], *, seed: int = 0, draws: i
         Of the recalibrated base.
     screened : sequence of Quick
         With their columns.
+    progress : callable, optional
+        Told how many campaigns are simulated.
     """
     known = [(q, c) for q in screened if (c := _columns(q)) is not None]
+    best = np.full(draws, -np.inf)
     if not known:
-        return np.full(draws, -np.inf)
+        return best
     columns = np.concatenate([c for _, c in known], axis=1)
     # Heat lessens what each record says; with nothing missing there is none.
     information = ring.projected(columns, columns) * ring.fit.heat
     information = 0.5 * (information + information.T)
     values, vectors = linalg.eigh(information)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
-    random = np.random.default_rng(seed)
-    slopes = root @ random.standard_normal((root.shape[1], draws))
-    best = np.full(draws, -np.inf)
-    start = 0
-    for quick, own in known:
-        stop = start + own.shape[1]
-        inner = information[start:stop, start:stop] + np.eye(stop - start)
-        pull = slopes[start:stop]
-        gain = np.einsum("pd,pd->d", pull, linalg.solve(inner, pull, assume_a="pos"))
-        best = np.maximum(best, gain - penalty(quick, ring))
-        start = stop
+    noise = np.random.default_rng(seed).standard_normal((root.shape[1], draws))
+    stops = np.cumsum([c.shape[1] for _, c in known])
+    own = [(stop - c.shape[1], stop, penalty(q, ring)) for (q, c), stop in zip(known, stops, strict=True)]
+    inverses = [linalg.inv(information[a:b, a:b] + np.eye(b - a)) for a, b, _ in own]
+    for begun in range(0, draws, BATCH):
+        if progress is not None:
+            progress("nulls", begun, draws)
+        slopes = root @ noise[:, begun : begun + BATCH]
+        for (start, stop, asked), inverse in zip(own, inverses, strict=True):
+            pull = slopes[start:stop]
+            gain = np.einsum("pd,pd->d", pull, inverse @ pull) - asked
+            best[begun : begun + BATCH] = np.maximum(best[begun : begun + BATCH], gain)
     return best
 
 
@@ -66,6 +81,16 @@ def _columns(quick: Quick) -> Reals | None:
     return None if quick.direction is None else np.asarray(quick.direction[:, None], dtype=np.float64)
 
 
-def threshold(ring: Ring, screened: Sequence[Quick], *, seed: int = 0) -> float:
-    """Gain of BIC that 95 of 100 campaigns of this layout stay below if nothing is missing."""
-    return max(LEAST, float(np.quantile(null_gains(ring, screened, seed=seed), LEVEL)))
+def threshold(ring: Ring, screened: Sequence[Quick], *, seed: int = 0, progress: Progress | None = None) -> float:
+    """Gain of BIC that 95 of 100 campaigns of this layout stay below if nothing is missing.
+
+    It is a step of the journal: a diagnosis that goes on where it was does not simulate them again.
+    """
+    journal = current()
+    kept = None if journal is None else journal.recall("nulls", seed, DRAWS)
+    if kept is not None:
+        return float(kept["threshold"])
+    found = max(LEAST, float(np.quantile(null_gains(ring, screened, seed=seed, progress=progress), LEVEL)))
+    if journal is not None:
+        journal.keep({"threshold": np.array(found)})
+    return found

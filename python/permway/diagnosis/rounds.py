@@ -57,7 +57,7 @@ def effects(
     """
 
     def least(ring: Ring, screened: Sequence[Quick]) -> float:
-        return threshold(ring, screened, seed=seed)
+        return threshold(ring, screened, seed=seed, progress=clock)
 
     rounds: list[Round] = []
     accepted: list[Finalist] = []

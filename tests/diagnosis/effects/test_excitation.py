@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -67,8 +66,6 @@ class Case:
         How far fitted values may lie off, relatively.
     none : float
         Of the size.
-    segment_s : float
-        Of the runs' spectra: what shows below the eighth line of usual ones asks for longer.
     """
 
     entry: str
@@ -77,7 +74,6 @@ class Case:
     values: Mapping[str, float]
     within: Mapping[str, float]
     none: float = 0.0
-    segment_s: float = 1.0
 
     def at(self, strength: float) -> dict[str, float]:
         """Values at a strength between 0 and 1: the size goes from none to its strongest."""
@@ -178,7 +174,7 @@ CASES = (
         {"amplitude_m": 4e-6, "decay": 2.0},
         {"amplitude_m": 0.2},
     ),
-    Case("moving_load", "deck", crossing, {"factor": 6.0}, {"factor": 0.3}, segment_s=4.0),
+    Case("moving_load", "deck", crossing, {"factor": 6.0}, {"factor": 0.3}),
     Case(
         "span_camber",
         "deck",
@@ -236,18 +232,9 @@ CASES = (
 )
 
 
-Owners = Callable[[float], Campaign]
-
-
 @pytest.fixture(scope="module")
-def owners(tmp_path_factory: pytest.TempPathFactory) -> Owners:
-    """Campaigns by the length of their segments, s."""
-    return cache(lambda segment_s: campaign_in(tmp_path_factory.mktemp("train"), segment_s=segment_s))
-
-
-@pytest.fixture(scope="module")
-def owner(owners: Owners) -> Campaign:
-    return owners(1.0)
+def owner(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
+    return campaign_in(tmp_path_factory.mktemp("train"))
 
 
 @pytest.fixture(scope="module")
@@ -262,9 +249,9 @@ def hypotheses(situation: Situation, entry: str, place: str = "") -> list[Hypoth
     return [h for h in every if place in h.locate({f.name: f.value(0.0) for f in h.free}).label]
 
 
-def injected(owners: Owners, case: Case, strength: float) -> Situation:
+def injected(owner: Campaign, case: Case, strength: float) -> Situation:
     """What is measured when the effect is there."""
-    return situation_of(owners(case.segment_s), 11, amend=lambda truth: case.inject(truth, case.at(strength)))
+    return situation_of(owner, 11, amend=lambda truth: case.inject(truth, case.at(strength)))
 
 
 def rivals(situation: Situation, family: str) -> Iterator[Hypothesis]:
@@ -297,8 +284,8 @@ MEASURED = [*CASES, *DIPS]
 
 @pytest.mark.injection
 @pytest.mark.parametrize("case", MEASURED, ids=[f"{case.entry}-{[*case.values][-1]}" for case in MEASURED])
-def test_the_strongest_is_named_and_measured(owners: Owners, case: Case) -> None:
-    situation = injected(owners, case, 1.0)
+def test_the_strongest_is_named_and_measured(owner: Campaign, case: Case) -> None:
+    situation = injected(owner, case, 1.0)
     ring = Ring(situation.fit)
     own = best_of(ring, hypotheses(situation, case.entry), most=3)
     assert case.place in own.hypothesis.locate(own.values).label
@@ -312,10 +299,10 @@ def test_the_strongest_is_named_and_measured(owners: Owners, case: Case) -> None
 
 @pytest.mark.injection
 @pytest.mark.parametrize("case", CASES, ids=[f"{case.entry}-{[*case.values][-1]}" for case in CASES])
-def test_more_effect_is_more_gain(owners: Owners, case: Case) -> None:
+def test_more_effect_is_more_gain(owner: Campaign, case: Case) -> None:
     gains = []
     for strength in (0.25, 0.6):
-        situation = injected(owners, case, strength)
+        situation = injected(owner, case, strength)
         own = hypotheses(situation, case.entry, case.place) or hypotheses(situation, case.entry)
         # The records count less while the base does not fit: by its heat.
         gains.append(situation.fit.heat * best_of(Ring(situation.fit), own).gain)

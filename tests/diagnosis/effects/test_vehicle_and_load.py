@@ -49,12 +49,12 @@ def entry(name: str) -> Entry:
 
 
 @pytest.fixture(scope="module")
-def sound(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Fit]:
-    """The base where nothing is missing, with a test in the cold or without, and segments of a length."""
+def sound(tmp_path_factory: pytest.TempPathFactory) -> Callable[[bool], Fit]:
+    """The base where nothing is missing, with a test in the cold or without."""
 
     @cache
-    def made(cold: bool, segment_s: float = 1.0) -> Fit:
-        campaign = written(tmp_path_factory.mktemp("sound"), *tables(cold=cold, segment_s=segment_s))
+    def made(cold: bool) -> Fit:
+        campaign = written(tmp_path_factory.mktemp("sound"), *tables(cold=cold))
         return recalibrate(gather(campaign, measured(campaign, 1), threads=1), learn=False)
 
     return made
@@ -75,10 +75,9 @@ def centre(hypothesis: Hypothesis) -> dict[str, float]:
 
 @pytest.mark.injection
 @pytest.mark.parametrize("name", list(INJECTED))
-def test_an_effect_is_named_and_sized(name: str, sound: Callable[..., Fit]) -> None:
+def test_an_effect_is_named_and_sized(name: str, sound: Callable[[bool], Fit]) -> None:
     what, sizes, rest = INJECTED[name]
-    # What shows below the eighth line of usual segments asks for longer ones.
-    base = sound(name == "pad_temperature", 2.0 if name == "air_spring" else 1.0)
+    base = sound(name == "pad_temperature")
     campaign, hypothesis = base.evidence.campaign, placed(name, base)
     gains = []
     for size in sizes:
@@ -112,7 +111,7 @@ def test_an_effect_is_named_and_sized(name: str, sound: Callable[..., Fit]) -> N
 
 
 def test_pads_that_shift_with_temperature_are_told_from_pads_that_only_stiffen(
-    sound: Callable[..., Fit],
+    sound: Callable[[bool], Fit],
 ) -> None:
     """Their springpot, and by how much ten kelvin move it."""
     base = sound(True)
@@ -140,7 +139,9 @@ def test_where_there_is_no_such_part_there_is_no_hypothesis(name: str, tmp_path:
 
 @pytest.mark.injection
 @pytest.mark.parametrize("name", list(INJECTED))
-def test_none_is_no_effect_and_the_ends_of_the_range_can_be_solved(name: str, sound: Callable[..., Fit]) -> None:
+def test_none_is_no_effect_and_the_ends_of_the_range_can_be_solved(
+    name: str, sound: Callable[[bool], Fit]
+) -> None:
     base = sound(name == "pad_temperature")
     campaign: Campaign = base.evidence.campaign
     datasets = blank(campaign)

@@ -24,7 +24,7 @@ from permway.recordings.predict import predict
 
 AVERAGES, BLOWS, DURATION_S = 120, 16, 60.0
 HAMMER_HZ = np.geomspace(8.0, 160.0, 30)
-LOWEST_LINE, HIGHEST_HZ = 4, 140.0
+RUN_HZ = np.arange(4.0, 141.0)
 RAIL = {"from_m": 0.0, "to_m": 24.0, "spacing_m": 0.6}
 BESIDE = [{"from_m": -6.0, "to_m": -0.6, "spacing_m": 0.6}, {"from_m": 24.6, "to_m": 30.0, "spacing_m": 0.6}]
 ON_BOARD = {
@@ -128,13 +128,12 @@ CAMPAIGN: dict[str, Any] = {
 }
 
 
-def campaign_in(folder: Path, *, segment_s: float = 1.0) -> Campaign:
+def campaign_in(folder: Path) -> Campaign:
     """The campaign as its owner believes it; its records are drawn, and their file is empty."""
-    records = [{**r, "segment_s": segment_s} if r["statistic"] == "csd" else r for r in CAMPAIGN["records"]]
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "model.toml").write_text(to_toml(MODEL))
     (folder / "none.csv").write_text("drawn, not read\n")
-    (folder / "campaign.toml").write_text(to_toml({**CAMPAIGN, "records": records}))
+    (folder / "campaign.toml").write_text(to_toml(CAMPAIGN))
     return read_campaign(folder / "campaign.toml")
 
 
@@ -146,10 +145,9 @@ def blank(campaign: Campaign) -> list[Dataset]:
             names = {"sensor": list(ON_TRACK), "force": ["hit", "hit far"], "frequency": HAMMER_HZ}
             data = _ones("frf", names)
         else:
-            lines = np.arange(LOWEST_LINE / record.segment_s, HIGHEST_HZ + 1e-9, 1.0 / record.segment_s)
-            names = {"channel": list(ON_BOARD), "channel2": list(ON_BOARD), "frequency": lines}
+            names = {"channel": list(ON_BOARD), "channel2": list(ON_BOARD), "frequency": RUN_HZ}
             data = _ones("csd", names)
-            data["psd"] = (("channel", "frequency"), np.ones((len(ON_BOARD), lines.size)))
+            data["psd"] = (("channel", "frequency"), np.ones((len(ON_BOARD), RUN_HZ.size)))
             data.attrs["duration_s"] = DURATION_S
         found.append(Dataset(record, campaign.condition(record.condition), data))
     return found
@@ -179,14 +177,13 @@ def drawn(truth: Campaign, seed: int, *, noise: float = 0.03) -> list[Dataset]:
             found.append(replace(dataset, data=data.assign_attrs(averages=BLOWS)))
         else:
             root = np.linalg.cholesky(np.moveaxis(right["csd"].values, -1, 0))
-            averages = round(AVERAGES / dataset.record.segment_s)
-            shape = (*root.shape[:2], averages)
+            shape = (*root.shape[:2], AVERAGES)
             z = np.sqrt(0.5) * (random.standard_normal(shape) + 1j * random.standard_normal(shape))
             x = root @ z
-            matrix = np.moveaxis(x @ np.conj(np.swapaxes(x, 1, 2)) / averages, 0, -1)
+            matrix = np.moveaxis(x @ np.conj(np.swapaxes(x, 1, 2)) / AVERAGES, 0, -1)
             data["csd"] = data["csd"].copy(data=matrix)
             data["psd"] = data["psd"].copy(data=np.einsum("ccf->cf", matrix).real)
-            found.append(replace(dataset, data=data.assign_attrs(averages=averages)))
+            found.append(replace(dataset, data=data.assign_attrs(averages=AVERAGES)))
     return found
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from permway.arrays import Reals
+from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_factors import campaign_under, factors_of
@@ -26,6 +26,7 @@ __all__ = [
     "State",
     "Sweep",
     "added_to",
+    "away_from_lines",
     "need_of",
     "plan",
     "predict",
@@ -152,26 +153,7 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
             chain = np.moveaxis(read, 0, -1)
             return dataset.template.copy(data={"frf": frf, "noise_factor": noise, "chain": chain})
         case "csd" | "psd":
-            sensors = [campaign.sensor(name) for name in dataset.names("channel")]
-            lines = need.frequency_Hz
-            if record.interpolated_Hz is None:
-                lines, values = halved(lines, values, record.segment_s)
-            grid = grid_of(lines, dataset.frequency_Hz, record.segment_s)
-            known = campaign.said.irregularity
-            work = worked(campaign.model, known, condition, grid, lines, values)
-            matrix = run.expected_csd(
-                work.model,
-                known,
-                condition,
-                sensors,
-                lines,
-                run.influence(work.model, lines, values),
-                dataset.frequency_Hz,
-                segment_s=record.segment_s,
-                interpolated=record.interpolated_Hz is not None,
-                duration_s=data.attrs.get("duration_s"),
-                left=work.left,
-            )
+            matrix = _csd(campaign, dataset, condition, need.frequency_Hz, values)
             power = np.einsum("fcc->cf", matrix).real
             return dataset.template.copy(data={"csd": np.moveaxis(matrix, 0, -1), "psd": power})
         case "transmissibility":
@@ -180,6 +162,54 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
             return dataset.template.copy(data={"transmissibility": moved.T * np.stack(chains)})
         case _:
             return decay.predicted(record, data, values)
+
+
+def away_from_lines(campaign: Campaign, dataset: Dataset, need: Need, answer: Answer) -> Complexes:
+    """Expected cross spectra of a run but noise and hum, every part times its distance from its line, in lines.
+
+    Hann's window takes in two lines on either side. An error of a chain that grows by so much from line to line
+    acts on this.
+
+    Returns
+    -------
+    ndarray of complex128, shape (channels, channels, F)
+    """
+    condition = campaign.condition(dataset.condition.name)
+    values = answer.of(need)
+    matrix = _csd(campaign_under(campaign, condition), dataset, condition, need.frequency_Hz, values, away=True)
+    return np.moveaxis(matrix, 0, -1)
+
+
+def _csd(
+    campaign: Campaign,
+    dataset: Dataset,
+    condition: Condition,
+    lines_Hz: Reals,
+    values: Complexes,
+    *,
+    away: bool = False,
+) -> Complexes:
+    """Of a run, (F, channels, channels); of the campaign under its condition."""
+    record, known = dataset.record, campaign.said.irregularity
+    sensors = [campaign.sensor(name) for name in dataset.names("channel")]
+    if record.interpolated_Hz is None:
+        lines_Hz, values = halved(lines_Hz, values, record.segment_s)
+    grid = grid_of(lines_Hz, dataset.frequency_Hz, record.segment_s)
+    work = worked(campaign.model, known, condition, grid, lines_Hz, values)
+    return run.expected_csd(
+        work.model,
+        known,
+        condition,
+        sensors,
+        lines_Hz,
+        run.influence(work.model, lines_Hz, values),
+        dataset.frequency_Hz,
+        segment_s=record.segment_s,
+        interpolated=record.interpolated_Hz is not None,
+        duration_s=dataset.data.attrs.get("duration_s"),
+        left=work.left,
+        away=away,
+    )
 
 
 def added_to(campaign: Campaign, dataset: Dataset) -> Reals:

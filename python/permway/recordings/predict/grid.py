@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy import sparse
@@ -39,6 +39,8 @@ class Grid:
         From the solved lines to the grid: by cubics through the four nearest, and linear between them.
     smear : sparse array, shape (F, N)
         Power of Hann's spectral window about every line of the estimate, each row of sum 1.
+    estimate_Hz : ndarray, shape (F,)
+    segment_s : float
     """
 
     frequency_Hz: Reals
@@ -46,6 +48,18 @@ class Grid:
     cubic: sparse.csr_array
     straight: sparse.csr_array
     smear: sparse.csr_array
+    estimate_Hz: Reals
+    segment_s: float
+
+    @cached_property
+    def away(self) -> Grid:
+        """The same with the window's power times the distance from its line, in lines."""
+        distance = self.smear.copy()
+        rows = np.repeat(np.arange(distance.shape[0]), np.diff(distance.indptr))
+        distance.data = (
+            distance.data * (self.frequency_Hz[distance.indices] - self.estimate_Hz[rows]) * self.segment_s
+        )
+        return replace(self, smear=distance)
 
     def spread(self, values: Complexes, late: Complexes | None = None, *, straight: bool) -> Complexes:
         """From the solved lines to the grid: linear between them if `straight`, else by cubics.
@@ -116,7 +130,7 @@ def _grid(lines: bytes, estimate: bytes, segment_s: float) -> Grid:
     count = int(np.floor((lines_Hz[-1] - lines_Hz[0]) / step + 1e-9)) + 1
     fine = np.asarray(lines_Hz[0] + step * np.arange(count), dtype=np.float64)
     cubic, straight = (interpolating(lines_Hz, fine, through) for through in (4, 2))
-    return Grid(fine, step, cubic, straight, _window(fine, estimate_Hz, segment_s))
+    return Grid(fine, step, cubic, straight, _window(fine, estimate_Hz, segment_s), estimate_Hz, segment_s)
 
 
 def interpolating(x: Reals, at: Reals, through: int = 4) -> sparse.csr_array:

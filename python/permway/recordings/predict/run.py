@@ -46,6 +46,7 @@ def expected_csd(
     interpolated: bool,
     duration_s: float | None = None,
     left: Sequence[Remainder] = (),
+    away: bool = False,
 ) -> Complexes:
     """Expectation of Welch's cross-spectral matrix with Hann's window, and the noise of the channels.
 
@@ -66,6 +67,9 @@ def expected_csd(
         Of the run, over which clocks run apart.
     left : sequence of Remainder
         Forces of suspensions that slide, as :func:`permway.recordings.predict.sliding.worked` gives them.
+    away : bool
+        Whether each part counts by how far it is from its line, in lines, and noise not at all: what an error
+        acts on that grows from line to line.
 
     Returns
     -------
@@ -79,6 +83,7 @@ def expected_csd(
     """
     assert model.train is not None
     grid = grid_of(lines_Hz, estimate_Hz, segment_s)
+    grid = grid.away if away else grid
     degrees = model.train.vehicle.degrees
     chosen = [degrees.index(str(sensor.degree)) for sensor in sensors]
     mine = per_profile[:, chosen, :]
@@ -131,8 +136,7 @@ def expected_csd(
     matrix = np.empty((estimate_Hz.size, len(sensors), len(sensors)), dtype=np.complex128)
     matrix[:, columns, rows] = upper.conj()
     matrix[:, rows, columns] = upper
-    matrix += added_csd(sensors, lines_Hz, estimate_Hz, segment_s)
-    return matrix
+    return matrix if away else matrix + added_csd(sensors, lines_Hz, estimate_Hz, segment_s)
 
 
 def _apart(sensors: Sequence[Sensor], estimate_Hz: Reals, segment_s: float, duration_s: float) -> Complexes:
