@@ -14,19 +14,17 @@ from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks import SURE, Rows
 from permway.diagnosis.blocks_shared import apart, covariance
 from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
+from permway.diagnosis.spectra_errors import Moved, Part, at_most
 from permway.diagnosis.spectra_parts import coherence, mean_of_logarithm, remainder, transfer, tree_of
 from permway.diagnosis.wander import Wander
 from permway.errors import InputError
 from permway.recordings.campaign_load import Dataset
 
-SMALL = 1e-4
-"""Neper, of the gains by which answers to gains are found."""
-
 LEAST_LINES = 20
 """Of a part, from which its scatter is learnt."""
 
 FIRST_LINE = 4
-"""From zero, from which lines are used: Hann's window takes in two on either side, and nearer ones a record's mean."""
+"""From zero, from which lines are used: Hann's window takes in two beside, and a record's mean is not there."""
 
 TORN = 0.08
 """Of a channel's power, at the first line from zero, what smooth errors of 1.5 dB and as many neper of phase tear
@@ -112,7 +110,7 @@ class SpectraBlock:
         self.root, self.tree = tree_of(np.nanmean(coherent, axis=-1))
         self._transfers = {(c, o): transfer(whole, c, o, everywhere) for c, o in self.tree}
         labels, frequency, scale, kind = [], [], [], []
-        self._parts: list[tuple[str, int, int, np.ndarray, Reals]] = []
+        self._parts: list[Part] = []
         self.log_determinant = 0.0
         # Of powers by so many averages, and of what remains of one when another's share is taken off.
         single, remaining = (float(np.sqrt(polygamma(1, k))) for k in (self.averages, self.averages - 1.0))
@@ -245,79 +243,28 @@ class SpectraBlock:
             span=self._span,
         )
 
-    def _answers(self, value: Complexes, rate: Complexes) -> list[Complexes]:
-        """Growth of each part's logarithm with that of errors of what moves, and not of noise and hum.
-
-        Parameters
-        ----------
-        value, rate : ndarray of complex128, shape (channels,)
-            Of each channel's error, log gain and i times phase: itself, and its growth from line to line.
-        """
-        model, added = self._expected["csd"].values[:, :, self._lines], self._model_added
-        each, more = SMALL * value, SMALL * rate
-        moved = (model - added) * np.exp(each[:, None, None] + each[:, None].conj())
-        moved = moved + (more[:, None, None] + more[:, None].conj()) * self._away[:, :, self._lines] + added
-        before, after = (self._logarithms(csd) for csd in (model, moved))
-        return [(new - old) / SMALL for new, old in zip(after, before, strict=True)]
-
-    @cached_property
-    def _model_added(self) -> Complexes:
-        """Noise and hum at the lines in use, at most what is expected there."""
-        own = np.arange(self.measured.shape[0])
-        model = self._expected["csd"].values[own, own][:, self._lines].real
-        added = self._added[:, :, self._lines]
-        share = np.sqrt(np.minimum(1.0, model / np.maximum(added[own, own], 1e-300)))
-        return np.asarray(added * share * share[:, None], dtype=np.complex128)
-
-    def _logarithms(self, csd: Complexes) -> list[Complexes]:
-        """Of each part; the imaginary part of a transfer's is its phase."""
-        found = []
-        for what, c, o, at, _ in self._parts:
-            if what == "power":
-                found.append(np.log(csd[c, c, at].real).astype(np.complex128))
-            elif what == "transfer":
-                found.append(np.log(transfer(csd, c, o, at)))
-            else:
-                found.append(np.log(remainder(csd, c, o, at)).astype(np.complex128))
-        return found
-
-    def _columns(self, channels: Complexes, of: Wander, at: Reals, step: float) -> Reals:
-        """What errors do to deviations that are sums of functions, in these channels.
-
-        Parameters
-        ----------
-        channels : ndarray of complex128, shape (channels,)
-        of : Wander
-        at : ndarray, shape (F,)
-            Where the functions are taken, line by line.
-        step : float
-            From line to line.
-        """
-        values, rates = of.values(at), of.values(at + 0.5 * step) - of.values(at - 0.5 * step)
-        nothing, found = np.zeros_like(channels), []
-        both = (self._answers(channels, nothing), self._answers(nothing, channels))
-        for (what, _, _, lines, sigma), by_value, by_rate in zip(self._parts, *both, strict=True):
-            moved = (by_value[:, None] * values[lines] + by_rate[:, None] * rates[lines]) / sigma[:, None]
-            found.extend([moved.real, moved.imag] if what == "transfer" else [moved.real])
-        return np.vstack(found)
+    @property
+    def moved(self) -> Moved:
+        """What errors of chains and of the level act on."""
+        model = self._expected["csd"].values[:, :, self._lines]
+        added = at_most(self._added[:, :, self._lines], model)
+        return Moved(tuple(self._parts), model, added, self._away[:, :, self._lines])
 
     @cached_property
     def smooth(self) -> Smooth:
         """Of each channel's chain, log gain and phase, and of the irregularity's level."""
         names = self.dataset.data["channel"].values.astype(str)
         speed, step_Hz = self.dataset.condition.speed_m_per_s, 1.0 / self.dataset.record.segment_s
-        wander, one = Wander(*self._span), np.eye(names.size, dtype=np.complex128)
+        moved, wander, each = self.moved, Wander(*self._span), np.eye(names.size, dtype=np.complex128)
         origins = [Origin(f"channel {name}", wander, 2) for name in names]
         columns = [
-            self._columns(part * one[channel], wander, self.frequency, step_Hz)
-            for channel in range(names.size)
-            for part in (1.0, 1j)
+            moved.columns(part * one, wander, self.frequency, step_Hz) for one in each for part in (1.0, 1j)
         ]
         if speed is not None:
             # The same track under every speed: of a power, as half as much in every channel.
             half = np.full(names.size, 0.5, dtype=np.complex128)
             origins.append(Origin("irregularity", LEVEL, 1, chain=False))
-            columns.append(self._columns(half, LEVEL, self.frequency / speed, step_Hz / speed))
+            columns.append(moved.columns(half, LEVEL, self.frequency / speed, step_Hz / speed))
         whole = np.hstack(columns)
         if self._apart is not None:
             whole = np.asarray(self._apart @ whole)
