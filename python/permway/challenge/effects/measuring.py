@@ -233,13 +233,12 @@ class MainsLines(Effect):
 
 @dataclass(frozen=True)
 class SpeedError(Effect):
-    """The speed written down is wrong for all runs."""
+    """The speed written down is wrong for all runs. It is not faded: any speed may be off by half a percent."""
 
     KIND = "speed_error"
     ID = "speed_error"
     FAMILY = "speed"
     DOMAIN = "measurement"
-    FADES = (("factor", 1.0),)
 
     factor: float
 
