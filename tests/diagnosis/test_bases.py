@@ -28,25 +28,26 @@ def stale(fit: Fit) -> float:
     return float(np.median(np.abs(block._reference["frf"].values / prediction["frf"].values - 1.0)))
 
 
-@pytest.mark.parametrize("astray", [False, True])
+@pytest.mark.parametrize("astray", [(), (2,), (1, 2, 3)])
 def test_a_base_that_fits_is_searched_itself_and_weighed_by_its_own_predictions(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, astray: bool
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, astray: tuple[int, ...]
 ) -> None:
-    """Also if the first fit goes astray, and another start finds the way."""
+    """Also if a fit goes astray, or all of the first start, and another start finds the way: a blunter one."""
     evidence = gather(simulate(tmp_path / "c", 4).campaign, threads=1)
-    calls = 0
+    calls, floors = 0, list[object]()
 
     def lost_at_first(*args: object, **options: object) -> Fit:
         nonlocal calls
         calls += 1
-        if calls == 2:
+        floors.append(args[0].blocks[0].floor)  # type: ignore[attr-defined]
+        if calls in astray:
             # Far off, and no step to come back.
             options |= {"start": np.full(5, 3.0), "most_steps": 0, "learn": False}
         return recalibrate(*args, **options)  # type: ignore[arg-type]
 
-    if astray:
-        monkeypatch.setattr(module, "recalibrate", lost_at_first)
+    monkeypatch.setattr(module, "recalibrate", lost_at_first)
     base, searched = bases(evidence, Clock(None))
+    assert any(np.all(floor == module.BLUNTER) for floor in floors) == (len(astray) == 3)
     assert base is searched
     assert base.heat < 1.2
     assert stale(base) < 0.01

@@ -17,8 +17,8 @@ NEARLY = 1.3
 BENT = 2.0
 """Mean square of the parameters, in standard deviations of their priors, from which a base that fits is bent."""
 
-BLUNT = 0.2
-"""Relative error of frequency responses with which the search then begins."""
+BLUNT, BLUNTER = 0.2, 1.0
+"""Relative error of frequency responses with which the search then begins, and where that leads nowhere."""
 
 MOST_REFINED, STAYS = 4, 0.5
 """Times that a base is weighed by what it predicts, and standard deviations that its parameters may then move."""
@@ -52,8 +52,15 @@ def bases(evidence: Evidence, clock: Clock) -> tuple[Fit, Fit]:
         searched = fitted(sharp.blunted(BLUNT), searched.z)
     base = fitted(sharp, searched.z, learn=True)
     if not _fits(base) and searched.heat > NEARLY:
-        # Where blunt ones lead nowhere either, the owner's own values may.
-        base = min(base, fitted(sharp, None, learn=True), key=lambda fit: fit.objective)
+        # Where blunt ones lead nowhere, still blunter ones may; or else the owner's own values.
+        blunter = fitted(evidence.blunted(BLUNTER), None, reweigh=True)
+        start = None
+        if blunter.heat < NEARLY:
+            sharp = evidence.reweighed(evidence.predicted(blunter.campaign))
+            start = fitted(sharp.blunted(BLUNT), blunter.z).z
+        other = fitted(sharp, start, learn=True)
+        if _fits(other) or other.objective < base.objective:
+            base = other
     if _fits(base):
         base = _refined(base, clock)
         return base, base

@@ -16,6 +16,11 @@ SPIKE_SCALES = 8.0
 """A spike lies so many local standard deviations from the median of its neighbours; Gaussian noise never does."""
 
 
+BY_CHANCE = 1e-6
+"""Records in which samples stand still by chance for as long as a dropout: a suite of campaigns has thousands, and
+where numbers are written with so many digits larger ones stand still more often than all do."""
+
+
 _SHORTEST_CLIP = 3
 
 
@@ -63,9 +68,12 @@ def dropouts(name: str, values: Reals, usable: Flags, step: float) -> tuple[Flag
     """Runs of one and the same value, longer than the quantisation would give by chance."""
     same = np.zeros(values.size, dtype=np.bool_)
     same[1:] = (values[1:] == values[:-1]) & usable[1:]
-    share = min(max(float(same.mean()), 1e-12), 0.999)
-    # A run of n equal samples comes about share^(n - 1) often by chance; less than once in a thousand records.
-    by_chance = 1 + int(np.ceil(np.log(1e-3 / values.size) / np.log(share)))
+    by_chance = _by_chance(same)
+    # What stands still for much longer is no chance, and hides short dropouts as if it were.
+    moving = same.copy()
+    for a, b in runs(same, 4 * by_chance):
+        moving[a:b] = False
+    by_chance = _by_chance(moving)
     flags = np.zeros(values.size, dtype=np.bool_)
     found = []
     for a, b in runs(same, max(_SHORTEST_DROPOUT, by_chance) - 1):
@@ -75,6 +83,12 @@ def dropouts(name: str, values: Reals, usable: Flags, step: float) -> tuple[Flag
         what = f"{b - a + 1} samples held at {values[a]:.6g}"
         found.append(Finding("dropout", "error", name, what, a - 1, b - 1, value=float(values[a])))
     return flags, found
+
+
+def _by_chance(same: Flags) -> int:
+    """How many equal samples there may be: a run of n comes about share^(n - 1) often."""
+    share = min(max(float(same.mean()), 1e-12), 0.999)
+    return 1 + int(np.ceil(np.log(BY_CHANCE / same.size) / np.log(share)))
 
 
 def spikes(name: str, values: Reals, usable: Flags) -> list[Finding]:

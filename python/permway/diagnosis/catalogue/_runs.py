@@ -61,7 +61,12 @@ class Excess:
         return self.condition.speed_m_per_s
 
     def score_at(self, frequency_Hz: Reals, channel: str = "") -> Reals:
-        """What stands out about frequencies, by default in the mean over channels; NaN outside the record."""
+        """What stands out about frequencies, by default in the mean over channels; NaN outside the record.
+
+        And NaN of a channel that this run was not read by, or whose record of it is spoilt.
+        """
+        if channel and channel not in self.sharp:
+            return np.full(np.shape(frequency_Hz), np.nan)
         values = self.sharp[channel] if channel else np.mean(list(self.sharp.values()), axis=0)
         near = np.interp(frequency_Hz, self.frequency_Hz, values, left=np.nan, right=np.nan)
         return np.asarray(np.clip(near, -LARGEST_SCORE, LARGEST_SCORE))
@@ -72,7 +77,9 @@ class Excess:
         return np.asarray(np.max(list(self.by_channel.values()), axis=0))
 
     def neper_at(self, frequency_Hz: Reals, channel: str = "") -> Reals:
-        """Excess about frequencies, by default of the channel that shows most; NaN outside the record."""
+        """Excess about frequencies, by default of the channel that shows most; NaN as of :meth:`score_at`."""
+        if channel and channel not in self.by_channel:
+            return np.full(np.shape(frequency_Hz), np.nan)
         values = self.by_channel[channel] if channel else self.neper
         return np.asarray(np.interp(frequency_Hz, self.frequency_Hz, values, left=np.nan, right=np.nan))
 
@@ -184,6 +191,8 @@ def combs(
     for value in per_speed:
         scores = []
         for run in runs:
+            if channel and channel not in run.sharp:
+                continue
             number = _numbers(run, value, harmonics)
             lines = number * value * run.speed
             seen = run.score_at(lines, channel)
