@@ -20,6 +20,9 @@ BENT = 2.0
 BLUNT, BLUNTER = 0.2, 1.0
 """Relative error of frequency responses with which the search then begins, and where that leads nowhere."""
 
+BETTER = 0.8
+"""Share of the mean square of one start that another may leave to be better."""
+
 MOST_REFINED, STAYS = 4, 0.5
 """Times that a base is weighed by what it predicts, and standard deviations that its parameters may then move."""
 
@@ -53,14 +56,13 @@ def bases(evidence: Evidence, clock: Clock) -> tuple[Fit, Fit]:
     base = fitted(sharp, searched.z, learn=True)
     if not _fits(base) and searched.heat > NEARLY:
         # Where blunt ones lead nowhere, still blunter ones may; or else the owner's own values.
-        blunter = fitted(evidence.blunted(BLUNTER), None, reweigh=True)
-        start = None
+        start, blunter = None, fitted(evidence.blunted(BLUNTER), None, reweigh=True)
         if blunter.heat < NEARLY:
-            sharp = evidence.reweighed(evidence.predicted(blunter.campaign))
-            start = fitted(sharp.blunted(BLUNT), blunter.z).z
-        other = fitted(sharp, start, learn=True)
-        if _fits(other) or other.objective < base.objective:
-            base = other
+            weighed = evidence.reweighed(evidence.predicted(blunter.campaign))
+            again = fitted(weighed.blunted(BLUNT), blunter.z)
+            if again.heat < BETTER * searched.heat:
+                sharp, start, searched = weighed, again.z, again
+        base = min(base, fitted(sharp, start, learn=True), key=lambda fit: fit.objective)
     if _fits(base):
         base = _refined(base, clock)
         return base, base
