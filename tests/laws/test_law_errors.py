@@ -68,6 +68,9 @@ SWEEP = DmaTable(
         (lambda: Prony(relaxed=1.0, strengths=(1.0,), relaxation_times_s=(-1.0,)), "prony", "above zero"),
         (lambda: WLF(c1=1.0, c2_K=0.0, reference_temperature_C=0.0), "wlf", "c2_K must be above zero"),
         (lambda: Free(temperatures_C=(1.0, 0.0), log10_shift=(0.0, 1.0)), "free", "increase strictly"),
+        (lambda: Free(temperatures_C=(0.0, 1e200), log10_shift=(0.0, 1.0)), "free", "at most 3000"),
+        (lambda: Free(temperatures_C=(0.0, 1e-200), log10_shift=(0.0, 1.0)), "free", "0.001 K apart"),
+        (lambda: Free(temperatures_C=(0.0, 1.0), log10_shift=(0.0, 1e300)), "free", "within 100 decades"),
         (
             lambda: Tabulated(frequency_Hz=(1.0, 1.0), storage=(1.0, 1.0), loss_factor=(0.0, 0.0)),
             "tabulated",

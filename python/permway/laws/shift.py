@@ -18,6 +18,10 @@ GAS_CONSTANT = 8.31446261815324
 """J/(mol K), exact in the SI of 2019."""
 
 
+CLOSEST_K, HOTTEST_C, MOST_DECADES = 1e-3, 3000.0, 100.0
+"""Of a shift known at some temperatures: what lies beyond is a slip, and overflows between them."""
+
+
 class Shift(FrozenModel, ABC):
     """A shift factor alpha_T: the law at temperature T and frequency f is the reference law at alpha_T f."""
 
@@ -143,6 +147,10 @@ class Free(Shift):
             raise ValueError("a free shift needs at least two temperatures")
         if not np.all(np.diff(self.temperatures_C) > 0.0):
             raise ValueError("temperatures_C must increase strictly")
+        if np.diff(self.temperatures_C).min() < CLOSEST_K or self.temperatures_C[-1] > HOTTEST_C:
+            raise ValueError(f"temperatures_C must be {CLOSEST_K:g} K apart or more, and at most {HOTTEST_C:g}")
+        if max(map(abs, self.log10_shift)) > MOST_DECADES:
+            raise ValueError(f"log10_shift must be within {MOST_DECADES:g} decades of frequency")
         return self
 
     def _log10(self, temperature_C: Reals) -> Reals:
