@@ -24,7 +24,7 @@ LEAST_LINES = 20
 """Of a part, from which its scatter is learnt."""
 
 FIRST_LINE = 4
-"""From zero, from which lines are used: Hann's window takes in two beside, and a record's mean is not there."""
+"""From zero, from which lines are used: Hann's window reaches over four: nearer ones hold what is beyond zero."""
 
 TORN = 0.08
 """Of a channel's power, at the first line from zero, what smooth errors of 1.5 dB and as many neper of phase tear
@@ -87,7 +87,7 @@ class SpectraBlock:
         lines = np.flatnonzero(known_Hz * segment_s >= FIRST_LINE - 1e-9)
         if lines.size == 0:
             raise InputError(
-                f"has no line that is {FIRST_LINE} lines from zero: nearer ones hold the record's mean",
+                f"has no line that is {FIRST_LINE} lines from zero: nearer ones hold what is beyond zero",
                 where=dataset.record.name,
                 value=f"up to {known_Hz.max():g} Hz, segments of {segment_s:g} s",
                 remedy="give a longer segment_s, or a wider band_Hz",

@@ -147,10 +147,14 @@ class Free(Shift):
             raise ValueError("a free shift needs at least two temperatures")
         if not np.all(np.diff(self.temperatures_C) > 0.0):
             raise ValueError("temperatures_C must increase strictly")
-        if np.diff(self.temperatures_C).min() < CLOSEST_K or self.temperatures_C[-1] > HOTTEST_C:
-            raise ValueError(f"temperatures_C must be {CLOSEST_K:g} K apart or more, and at most {HOTTEST_C:g}")
-        if max(map(abs, self.log10_shift)) > MOST_DECADES:
-            raise ValueError(f"log10_shift must be within {MOST_DECADES:g} decades of frequency")
+        closest, hottest = float(np.diff(self.temperatures_C).min()), self.temperatures_C[-1]
+        if closest < CLOSEST_K:
+            raise ValueError(f"temperatures_C must be {CLOSEST_K:g} K apart or more, not {closest:g}")
+        if hottest > HOTTEST_C:
+            raise ValueError(f"temperatures_C must be at most {HOTTEST_C:g}, not {hottest:g}")
+        farthest = max(self.log10_shift, key=abs)
+        if abs(farthest) > MOST_DECADES:
+            raise ValueError(f"log10_shift must be within {MOST_DECADES:g} decades of frequency, not {farthest:g}")
         return self
 
     def _log10(self, temperature_C: Reals) -> Reals:
