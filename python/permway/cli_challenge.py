@@ -27,14 +27,15 @@ def challenge_make(
     seed: Annotated[int, typer.Option(min=0, help="Of the first campaign.")] = 1,
     cases: Annotated[int, typer.Option(min=1, help="How many campaigns.")] = 10,
     tier: Annotated[
-        str, typer.Option(help="null, single, twin, multiple, outside, nonlinear, graded, sparse.")
+        str, typer.Option(help="null, single, twin, multiple, outside, nonlinear, graded, sparse, running.")
     ] = "single",
     as_json: Json = False,
 ) -> None:
     """Campaigns with something concealed in each.
 
     Made by finite elements that share no code with the solver. The truths lie in a folder of their own. Graded
-    effects are faded until the records hardly tell of them, which takes a minute each.
+    effects are faded until the records hardly tell of them, which takes a minute each; trains that run are
+    integrated in time, which takes ten.
     """
     from permway.challenge.case import TIERS
     from permway.challenge.make import make

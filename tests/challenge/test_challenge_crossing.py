@@ -13,6 +13,7 @@ from permway.challenge import write
 from permway.challenge.assembly import assemble
 from permway.challenge.crossing import Consist, Crossing, cross
 from permway.challenge.layout import NOMINAL, Layout, Values
+from permway.challenge.mesh import Mesh
 from permway.challenge.plan import CONTACT_N_PER_M
 from permway.challenge.vehicle import wheel_load
 from permway.errors import InputError
@@ -55,7 +56,7 @@ def test_five_spans_under_two_cars_move_as_the_solver_s_do(tmp_path: Path) -> No
     train = Consist({**values, "vehicle": light}, cars=2, car_m=25.0, speed_m_per_s=60.0)
     spots = [("girder", FIVE.station(10)), ("girder", FIVE.station(50)), ("rail", FIVE.station(50))]
     ours = cross(
-        assemble(FIVE, values),
+        Mesh(assemble(FIVE, values), spots),
         train,
         from_m=-5.0,
         to_m=FIVE.length_m + 5.0,
@@ -86,7 +87,7 @@ def test_a_dip_presses_wheels_as_the_solver_s_coupling_in_time_has_it(tmp_path: 
         return np.asarray(0.5e-4 * (1.0 + np.cos(2.0 * np.pi * along)))
 
     ours = cross(
-        assemble(ONE, values),
+        Mesh(assemble(ONE, values), ()),
         Consist(values, cars=1, car_m=25.0, speed_m_per_s=50.0),
         from_m=-12.0,
         to_m=12.0,
@@ -125,7 +126,7 @@ def over_a_weld(*, leaves: bool) -> Crossing:
         return np.asarray(1e-3 * (1.0 + np.cos(2.0 * np.pi * along)))
 
     train = Consist(NOMINAL, cars=1, car_m=25.0, speed_m_per_s=70.0)
-    return cross(assemble(ONE, NOMINAL), train, from_m=0.0, to_m=13.0, leaves=leaves, profile=weld)
+    return cross(Mesh(assemble(ONE, NOMINAL), ()), train, from_m=0.0, to_m=13.0, leaves=leaves, profile=weld)
 
 
 def test_wheels_leave_a_deep_weld_and_land_harder() -> None:
@@ -166,11 +167,11 @@ def test_a_train_that_does_not_run_is_refused(wrong: dict[str, float], where: st
     of_train = {key: train.pop(key) for key in ("cars", "car_m", "speed_m_per_s")}
     run = {"from_m": 0.0, "to_m": 10.0, **{key: wrong[key] for key in wrong if key not in of_train}}
     with pytest.raises(InputError, match=where):
-        cross(assemble(ONE, NOMINAL), Consist(NOMINAL, **of_train), **run)
+        cross(Mesh(assemble(ONE, NOMINAL), ()), Consist(NOMINAL, **of_train), **run)
 
 
 @pytest.mark.parametrize(("key", "value"), [("from_m", -40.0), ("to_m", 80.0)])
 def test_a_wheel_off_the_rail_is_refused(key: str, value: float) -> None:
     train = Consist(NOMINAL, cars=1, car_m=25.0, speed_m_per_s=70.0)
     with pytest.raises(InputError, match=f"{key}.*the rail goes from"):
-        cross(assemble(ONE, NOMINAL), train, **{"from_m": 0.0, "to_m": 10.0, key: value})
+        cross(Mesh(assemble(ONE, NOMINAL), ()), train, **{"from_m": 0.0, "to_m": 10.0, key: value})

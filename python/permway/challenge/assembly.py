@@ -31,7 +31,7 @@ def assemble(layout: Layout, values: Values) -> Track:
         step_m=layout.spacing_m / PARTS,
     )
     for layer in ("pad", "mortar", "sliding", "bearing"):
-        track.springs[layer] = hysteretic(values[layer]["k"], values[layer]["eta"])
+        track.springs[layer] = lossy(**values[layer])
 
     def named(layer: str) -> Scalar:
         return lambda f, t: track.springs[layer](f, t)
@@ -54,11 +54,12 @@ def assemble(layout: Layout, values: Values) -> Track:
     return track
 
 
-def hysteretic(stiffness: float, loss: float) -> Scalar:
-    """A stiffness k (1 + i eta) at all frequencies and temperatures."""
+def lossy(k: float, eta: float, viscous_at_Hz: float | None = None) -> Scalar:
+    """A stiffness k (1 + i eta) at all frequencies, or one with a dashpot that loses as much at one of them."""
 
     def law(frequency_Hz: Reals, _: float) -> Complexes:
-        return np.full(frequency_Hz.shape, stiffness * (1.0 + 1j * loss))
+        share = 1.0 if viscous_at_Hz is None else frequency_Hz / viscous_at_Hz
+        return np.full(frequency_Hz.shape, k) + 1j * k * eta * share
 
     return law
 

@@ -21,6 +21,7 @@ from permway.challenge.effects import (
     Site,
     Strength,
 )
+from permway.challenge.effects.rolling_train import RollingTrain
 from permway.challenge.effects.taken_out import TAKEN_OUT, TakenOut
 from permway.challenge.files import write_csv, write_mat, write_npz, write_uff
 from permway.challenge.layout import (
@@ -35,11 +36,12 @@ from permway.challenge.layout import (
 )
 from permway.challenge.measure import HammerTest, Run, measure
 from permway.challenge.plan import Chain, Plan, plan_of
+from permway.challenge.running import running_layout, running_tests, with_dashpots
 from permway.challenge.sheet import sheet
 from permway.challenge.sparse import NOISE, sparse
 from permway.errors import InputError
 
-Tier = Literal["null", "single", "twin", "multiple", "outside", "nonlinear", "graded", "sparse"]
+Tier = Literal["null", "single", "twin", "multiple", "outside", "nonlinear", "graded", "sparse", "running"]
 TIERS: tuple[Tier, ...] = get_args(Tier)
 
 COLD_TOO = 0.15
@@ -149,7 +151,8 @@ def draw(seed: int, tier: Tier) -> Case:
         "null": nothing concealed; "single": one effect of the catalogue; "twin": one that has a near twin;
         "multiple": two or three; "outside": one of no catalogue, or one whose family is taken out of it;
         "nonlinear": one that depends on amplitude; "graded": one of the catalogue that is there to be faded;
-        "sparse": one that has a near twin, in records so few that they may leave it open.
+        "sparse": one that has a near twin, in records so few that they may leave it open; "running": trains that
+        truly run, where the model has them stand.
 
     Raises
     ------
@@ -168,13 +171,17 @@ def draw(seed: int, tier: Tier) -> Case:
     strength = None if tier == "null" else STRENGTHS[int(random.integers(3))]
     cold = 2 if random.random() < COLD_TOO else 1
     temperatures = max([cold, *(kind.TEMPERATURES for kind in kinds)])
-    layout = draw_layout(_random(seed, tier, 1))
+    layout = (running_layout if tier == "running" else draw_layout)(_random(seed, tier, 1))
     nominal = draw_nominal(_random(seed, tier, 1, 1))
+    if tier == "running":
+        nominal = with_dashpots(nominal)
     tests = draw_tests(_random(seed, tier, 1, 2), layout, temperatures=temperatures)
     if tier == "sparse":
         tests = sparse(tests, _random(seed, tier, 1, 3))
     true = draw_true(_random(seed, tier, 2), nominal)
     chain = _chain(_random(seed, tier, 3), _noisier(_random(seed, tier, 6), tier))
+    if tier == "running":
+        tests = running_tests(tests, layout, chain.speed)
     site, drawing = Site(layout, tests), _random(seed, tier, 5)
     effects = tuple(kind.draw(drawing, strength or "medium", site) for kind in kinds)
     return Case(
@@ -196,6 +203,8 @@ def _kinds(random: np.random.Generator, tier: Tier) -> list[type[Effect]]:
     match tier:
         case "null":
             return []
+        case "running":
+            return [RollingTrain]
         case "single" | "twin" | "outside" | "nonlinear" | "graded" | "sparse":
             pool = {
                 "single": CATALOGUE,

@@ -13,14 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
-from permway.challenge.beams import Reals, shape, within
+from permway.challenge.beams import Reals
 from permway.challenge.contact import Hertz
 from permway.challenge.layout import Values
-from permway.challenge.mesh import Mesh
-from permway.challenge.newmark import Marched, line_matrices, train_matrices
+from permway.challenge.newmark import Marched, Meshed, line_matrices, train_matrices
 from permway.challenge.plan import CONTACT_N_PER_M
-from permway.challenge.track import Spot, Track
-from permway.challenge.vehicle import GRAVITY, WHEELS, vehicle, wheel_load
+from permway.challenge.track import Spot
+from permway.challenge.vehicle import GRAVITY, WHEELS, Arm, vehicle, wheel_load
+from permway.challenge.wheels_on_rail import Rail
 from permway.errors import InputError, SolveError
 
 ROUNDS, CLOSE = 100, 1e-10
@@ -28,9 +28,6 @@ ROUNDS, CLOSE = 100, 1e-10
 
 AT_REST = 1e-6
 """Change of a force over the load at which the train stands."""
-
-POINTS = 33
-"""Of an element, at which it is known how far it yields within."""
 
 PITCHING = (1, 3, 5)
 """Degrees of a car that have no weight."""
@@ -77,6 +74,8 @@ class Crossing:
         m, down.
     axlebox : ndarray, shape (N, wheels)
         Accelerations of the wheelsets, m/s2, down.
+    felt : ndarray, shape (N, arms)
+        Accelerations on board of the first car, m/s2.
     """
 
     times: Reals
@@ -84,10 +83,11 @@ class Crossing:
     contact_force: Reals
     displacement: Reals
     axlebox: Reals
+    felt: Reals
 
 
 def cross(
-    track: Track,
+    line: Meshed,
     train: Consist,
     *,
     from_m: float,
@@ -95,6 +95,7 @@ def cross(
     leaves: bool = True,
     profile: Callable[[Reals], Reals] | None = None,
     sensors: Sequence[Spot] = (),
+    arms: Sequence[Arm] = (),
     step_s: float = 2.5e-4,
     viscous_at_Hz: float = 20.0,
 ) -> Crossing:
@@ -102,8 +103,9 @@ def cross(
 
     Parameters
     ----------
-    track : Track
-        Its stiffnesses are taken at `viscous_at_Hz`; the rail ends where its elements do.
+    line : Mesh or Ring
+        Its stiffnesses are taken at `viscous_at_Hz`. A mesh's rail ends where its elements do; round a ring a
+        train may run as far as it likes, and x is where it is from the first station on.
     train : Consist
     from_m, to_m : float
         Of the first wheel. The train is at rest on the line at `from_m`, and has its speed at once.
@@ -112,6 +114,9 @@ def cross(
     profile : callable, optional
         Of x (m): how much lower the rail's surface is, m.
     sensors : sequence of Spot
+        Places of nodes, whose deflections are wanted.
+    arms : sequence of Arm
+        Combinations of the first car's degrees, whose accelerations are wanted.
     step_s : float
     viscous_at_Hz : float
         Where viscous losses are the hysteretic ones.
@@ -124,8 +129,7 @@ def cross(
         If a step's contacts are not found.
     """
     _check(train, from_m, to_m, step_s, viscous_at_Hz)
-    mesh = Mesh(track, sensors)
-    rail = _Rail(mesh)
+    rail = Rail(line)
     behind = train.behind_m
     for where, x in (("from_m", from_m - behind[-1]), ("to_m", to_m)):
         if not rail.ends[0] <= x <= rail.ends[1]:
@@ -134,34 +138,37 @@ def cross(
     surface = profile or np.zeros_like
     law = _Contact(Hertz(wheel_load(train.values), CONTACT_N_PER_M), leaves)
     car = vehicle(train.values, CONTACT_N_PER_M)
-    line = Marched(line_matrices(mesh, viscous_at_Hz=viscous_at_Hz), step_s)
+    below = Marched(line_matrices(line, viscous_at_Hz=viscous_at_Hz), step_s)
     cars = Marched(train_matrices(car, train.cars), step_s)
     size = len(car.masses)
     wheels = np.array([size * number + wheel for number in range(train.cars) for wheel in WHEELS])
     weight = GRAVITY * cars.mass.diagonal()
     weight[[size * number + degree for number in range(train.cars) for degree in PITCHING]] = 0.0
-    gives_rail, gives_car = line.flexibility(rail.degrees), cars.flexibility(wheels)
-    read = [mesh.at(spot) for spot in sensors]
-    steps = int((to_m - from_m) / train.speed_m_per_s / step_s)
+    rail_gives, wheels_give = below.gives(rail.degrees), cars.gives(wheels)
+    read = [line.at(spot) for spot in sensors]
+    rows, still = car.rows(arms), np.zeros(line.size)
+    steps = round((to_m - from_m) / train.speed_m_per_s / step_s)
     times: Reals = step_s * np.arange(steps + 1, dtype=np.float64)
     front: Reals = np.asarray(from_m + train.speed_m_per_s * times)
-    forces, moved, felt = (np.zeros((times.size, n)) for n in (wheels.size, len(read), wheels.size))
-    force = _rest(line, cars, rail, law, wheels, weight, front[0] - behind, surface)
+    forces, moved, hurried, felt = (
+        np.zeros((times.size, n)) for n in (wheels.size, len(read), wheels.size, len(rows))
+    )
+    force = _rest(below, cars, rail, law, wheels, weight, front[0] - behind, surface)
     for step in range(times.size):
         at = front[step] - behind
         under = rail.under(at)
         if step:
-            free, hanging = line.free(np.zeros(mesh.size)), cars.free(weight)
-            between = under.weigh(gives_rail, rail.places) + gives_car
+            free, hanging = below.free(still), cars.free(weight)
+            pressed = under.gathered(rail_gives, rail.places)
+            between = under.weigh(pressed) + wheels_give[:, wheels]
             left = hanging[wheels] - under.read(free) - surface(at)
             force = law.settle(left, between, forces[step - 1])
-            line.go_on(free + line.gives(under.press(force, mesh.size)))
-            pull = np.zeros(cars.moved.size)
-            pull[wheels] = -force
-            cars.go_on(hanging + cars.gives(pull))
+            below.go_on(free + force @ pressed)
+            cars.go_on(hanging - force @ wheels_give)
         forces[step] = force
-        moved[step], felt[step] = line.moved[read], cars.hurried[wheels]
-    return Crossing(times, front, forces, moved, felt)
+        moved[step], hurried[step] = below.moved[read], cars.hurried[wheels]
+        felt[step] = rows @ cars.hurried[:size]
+    return Crossing(times, front, forces, moved, hurried, felt)
 
 
 def _check(train: Consist, from_m: float, to_m: float, step_s: float, viscous_at_Hz: float) -> None:
@@ -213,67 +220,10 @@ class _Contact:
         raise SolveError("the contacts of a step are not found; take a shorter step")
 
 
-class _Rail:
-    """Elements of the rail, and where a wheel is on them."""
-
-    def __init__(self, mesh: Mesh) -> None:
-        found = mesh.elements("rail")
-        self.dofs = np.array([dofs for dofs, _, _ in found])
-        self.left = np.array([left for _, left, _ in found])
-        self.ends = float(self.left[0]), float(found[-1][2])
-        self.length = np.array([right - left for _, left, right in found])
-        self.section = mesh.track.beams["rail"].section
-        # Alike for all elements of a length.
-        self.share = np.linspace(0.0, 1.0, POINTS)
-        tables = {h: within(self.section, h, h * self.share) for h in set(self.length.round(6).tolist())}
-        self.yielding = np.array([tables[h] for h in self.length.round(6).tolist()])
-        self.degrees: NDArray[np.int64] = np.unique(self.dofs)
-        self.places = np.full(mesh.size, -1)
-        self.places[self.degrees] = np.arange(self.degrees.size)
-
-    def under(self, at: Reals) -> _Under:
-        """What a wheel at each place touches."""
-        number = np.clip(np.searchsorted(self.left, at, side="right") - 1, 0, self.left.size - 1)
-        shares = np.concatenate(
-            [
-                shape(self.section, float(self.length[i]), np.array([x - self.left[i]]))
-                for i, x in zip(number, at, strict=True)
-            ]
-        )
-        along = (at - self.left[number]) / self.length[number]
-        yielding = [np.interp(share, self.share, self.yielding[i]) for i, share in zip(number, along, strict=True)]
-        return _Under(self.dofs[number], shares, np.array(yielding))
-
-
-@dataclass(frozen=True)
-class _Under:
-    """Degrees of freedom under wheels, shares of each, (wheels, 4); what elements yield inside, (wheels,)."""
-
-    dofs: NDArray[np.int64]
-    shares: Reals
-    yielding: Reals
-
-    def read(self, moved: Reals, force: Reals | None = None) -> Reals:
-        """Deflection under the wheels; without what their forces do within elements if these are not given."""
-        nodal = (self.shares * moved[self.dofs]).sum(axis=1)
-        return np.asarray(nodal if force is None else nodal + self.yielding * force)
-
-    def press(self, force: Reals, size: int) -> Reals:
-        pressed = np.zeros(size)
-        np.add.at(pressed, self.dofs, self.shares * force[:, None])
-        return pressed
-
-    def weigh(self, flexibility: Reals, places: NDArray[np.int64]) -> Reals:
-        at = places[self.dofs]
-        block = flexibility[at[:, :, None, None], at[None, None]]
-        between = np.einsum("wi,wivj,vj->wv", self.shares, block, self.shares)
-        return np.asarray(between + np.diag(self.yielding))
-
-
 def _rest(
     line: Marched,
     cars: Marched,
-    rail: _Rail,
+    rail: Rail,
     law: _Contact,
     wheels: NDArray[np.int64],
     weight: Reals,

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from permway.challenge.beams import Complexes, Reals
@@ -14,6 +15,7 @@ from permway.challenge.errors_of_measurement import struck, wander
 from permway.challenge.irregularity import deviation, profile
 from permway.challenge.mesh import Mesh
 from permway.challenge.plan import FLOOR, Plan
+from permway.challenge.rolling import rolled
 from permway.challenge.track import Spot
 from permway.challenge.under_train import Ridden
 from permway.challenge.vehicle import wheel_load
@@ -143,19 +145,16 @@ def _run(
     frequency = np.asarray(np.fft.rfftfreq(samples, 1.0 / tests.sampling_Hz), dtype=np.float64)
     kept = (frequency >= SLOW_HZ[0]) & (frequency < FILTER_HZ[1])
     lines = frequency[kept]
-    met = profile(random, off_dB, samples=samples, sampling_Hz=tests.sampling_Hz, speed=speed)[kept]
+    met = profile(random, off_dB, samples=samples, sampling_Hz=tests.sampling_Hz, speed=speed)
+    met[~kept] = 0.0
     for shape in plan.shapes:
-        met = met * shape(lines, speed)
-    wheels = np.array(plan.layout.wheels_m(plan.values["vehicle"]))
-    late = np.exp(-2j * np.pi * lines[:, None] * (wheels[0] - wheels) / speed)
-    profiles = met[:, None] * late
-    for extra in plan.wheel_profiles:
-        profiles = profiles + np.fft.rfft(extra(times, speed), axis=1)[:, kept].T
-    under = CubicSpline(*_as_ridden(plan, under_wheels, lines, profiles, samples))
-    profiles = plan.vehicle.leaving(lines, under, profiles, samples=samples)
-    track = under(lines)
-    moved = plan.vehicle.respond(lines, track, profiles, bins=np.flatnonzero(kept), samples=samples)
-    rates = moved * (-((2.0 * np.pi * lines) ** 2) * _window(lines))[:, None]
+        met[kept] *= shape(lines, speed)
+    if plan.rolls:
+        rates = rolled(plan, met, speed, samples=samples, sampling_Hz=tests.sampling_Hz)[kept]
+        rates = rates * _window(lines)[:, None]
+    else:
+        moved = _stood(plan, met[kept], lines, np.flatnonzero(kept), times, speed, under_wheels)
+        rates = moved * (-((2.0 * np.pi * lines) ** 2) * _window(lines))[:, None]
     names = list(plan.vehicle.channels)
     spectrum = np.zeros((frequency.size, len(tests.channels)), dtype=np.complex128)
     for column, channel in enumerate(tests.channels):
@@ -171,6 +170,26 @@ def _run(
         for recorder in plan.recorders:
             values[:, column] = recorder(channel, values[:, column])
     return Run(written, tests.sampling_Hz, tests.channels, values)
+
+
+def _stood(
+    plan: Plan,
+    met: Complexes,
+    lines: Reals,
+    bins: NDArray[np.int64],
+    times: Reals,
+    speed: float,
+    under_wheels: tuple[Reals, Complexes],
+) -> Complexes:
+    """What channels move while the train stands and the profile moves, (L, channels)."""
+    wheels = np.array(plan.layout.wheels_m(plan.values["vehicle"]))
+    late = np.exp(-2j * np.pi * lines[:, None] * (wheels[0] - wheels) / speed)
+    profiles = met[:, None] * late
+    for extra in plan.wheel_profiles:
+        profiles = profiles + np.fft.rfft(extra(times, speed), axis=1)[:, bins].T
+    under = CubicSpline(*_as_ridden(plan, under_wheels, lines, profiles, times.size))
+    profiles = plan.vehicle.leaving(lines, under, profiles, samples=times.size)
+    return plan.vehicle.respond(lines, under(lines), profiles, bins=bins, samples=times.size)
 
 
 def _as_ridden(

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from permway.challenge.beams import Reals, element
-from permway.challenge.mesh import Mesh
+from permway.challenge.track import Link, Spot, Track
 from permway.challenge.vehicle import Vehicle
 
 GAMMA = 0.52
@@ -21,6 +23,25 @@ COLUMNS = 512
 
 Matrices = tuple[sparse.csc_array, sparse.csc_array, sparse.csc_array]
 """Mass, damping, stiffness."""
+
+
+class Meshed(Protocol):
+    """Nodes of a track: :class:`permway.challenge.mesh.Mesh`, :class:`permway.challenge.ring.Ring`."""
+
+    track: Track
+    size: int
+
+    def elements(self, body: str) -> list[tuple[NDArray[np.int64], float, float]]:
+        """Degrees of freedom of each element of a body, from where to where, m."""
+        ...
+
+    def tied(self, link: Link) -> list[int]:
+        """Degrees of freedom of a link's points."""
+        ...
+
+    def at(self, spot: Spot) -> int:
+        """The degree of freedom of a place's deflection."""
+        ...
 
 
 class Marched:
@@ -53,18 +74,14 @@ class Marched:
         lost = GAMMA / (BETA * h) * u + (GAMMA / BETA - 1.0) * v + 0.5 * h * (GAMMA / BETA - 2.0) * a
         return np.asarray(self._solve(force + self.mass @ inert + self.damping @ lost))
 
-    def gives(self, force: Reals) -> Reals:
-        """How much further forces at a step's end move it."""
-        return np.asarray(self._solve(force))
-
-    def flexibility(self, degrees: NDArray[np.int64]) -> Reals:
-        """How much forces along some degrees move these within a step, shape (n, n)."""
-        found = np.empty((degrees.size, degrees.size))
+    def gives(self, degrees: NDArray[np.int64]) -> Reals:
+        """How much a force of 1 N along each of some degrees moves all within a step, shape (degrees, n)."""
+        found = np.empty((degrees.size, self.mass.shape[0]))
         for first in range(0, degrees.size, COLUMNS):
-            columns = np.arange(first, min(first + COLUMNS, degrees.size))
-            forces = np.zeros((self.mass.shape[0], columns.size))
-            forces[degrees[columns], np.arange(columns.size)] = 1.0
-            found[:, columns] = self._solve(forces)[degrees]
+            rows = np.arange(first, min(first + COLUMNS, degrees.size))
+            forces = np.zeros((self.mass.shape[0], rows.size))
+            forces[degrees[rows], np.arange(rows.size)] = 1.0
+            found[rows] = self._solve(forces).T
         return found
 
     def go_on(self, moved: Reals) -> None:
@@ -75,8 +92,8 @@ class Marched:
         self.moved, self.hurried = moved, hurried
 
 
-def line_matrices(mesh: Mesh, *, viscous_at_Hz: float, temperature_C: float = 20.0) -> Matrices:
-    """A track's, with viscous losses that are the hysteretic ones at a frequency."""
+def line_matrices(mesh: Meshed, *, viscous_at_Hz: float, temperature_C: float = 20.0) -> Matrices:
+    """A track's, with viscous losses that are the hysteretic ones at a frequency; viscous ones are as they are."""
     omega = 2.0 * np.pi * viscous_at_Hz
     parts: dict[str, list[tuple[Reals, NDArray[np.int64]]]] = {"mass": [], "damping": [], "stiffness": []}
     for body, beam in mesh.track.beams.items():

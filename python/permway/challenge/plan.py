@@ -68,6 +68,8 @@ class Plan:
         Added to channels: of a channel's name and times, shape (N,), m/s2.
     supports : list of Support
         What the track's links are under a train, where that is not what they are under a hammer.
+    rolls : bool
+        Whether the train runs over the deck, again and again; else it stands while the profile moves.
     recorders : list of callable
         From what a channel reads to what is recorded of it: of the channel's name and values, shape (N,), m/s2.
     """
@@ -88,6 +90,7 @@ class Plan:
     supports: list[Support] = field(default_factory=list)
     recorders: list[Callable[[str, Reals], Reals]] = field(default_factory=list)
     speed_factor: list[float] = field(default_factory=list)
+    rolls: bool = False
 
     def gain_of(self, gains: list[Transfer], frequency_Hz: Reals) -> Complexes:
         """The product of some faults, (F,)."""

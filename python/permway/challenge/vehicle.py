@@ -94,7 +94,7 @@ class Vehicle:
         -------
         ndarray of complex128, shape (F, channels, 4)
         """
-        return np.asarray(self._rows(self.channels.values()) @ self._moved(frequency_Hz, track))
+        return np.asarray(self.rows(self.channels.values()) @ self._moved(frequency_Hz, track))
 
     def pressed(self, frequency_Hz: Reals, track: Complexes) -> Complexes:
         """Force of each linear contact per profile under each wheel, shape (F, wheels, wheels), N/m."""
@@ -141,13 +141,13 @@ class Vehicle:
         -------
         ndarray of complex128, shape (F, channels)
         """
-        read = self._rows(self.channels.values())
+        read = self.rows(self.channels.values())
         if self.slider is None:
-            arms = self._rows([force.arm for force in self.forces])
+            arms = self.rows([force.arm for force in self.forces])
             parts = read @ self._moved(frequency_Hz, track, arms)
             drives = [samples * force.spectrum(frequency_Hz) for force in self.forces]
             return np.asarray(np.einsum("fcw,fw->fc", parts, np.column_stack([profiles, *drives])))
-        along = self._rows([arm for arm, name in self.ties if name == self.slider.tie])
+        along = self.rows([arm for arm, name in self.ties if name == self.slider.tie])
         moved = self._moved(frequency_Hz, track, along)
         driven = np.einsum("fdw,fw->fd", moved[:, :, : len(self.wheels)], profiles)
         gives_way = moved[:, :, len(self.wheels) :]
@@ -161,7 +161,8 @@ class Vehicle:
         )
         return np.asarray((driven - np.einsum("fdt,ft->fd", gives_way, force)) @ read.T)
 
-    def _rows(self, arms: Iterable[Arm]) -> Reals:
+    def rows(self, arms: Iterable[Arm]) -> Reals:
+        """What reads arms off the degrees of freedom, shape (arms, degrees)."""
         arms = list(arms)
         rows = np.zeros((len(arms), len(self.masses)))
         for row, arm in zip(rows, arms, strict=True):

@@ -197,20 +197,14 @@ def _parameters(sheet: Sheet) -> list[dict[str, Any]]:
     parameters = []
     for group, table in sheet.tolerance_2sigma_relative.items():
         for key, tolerance in table.items():
-            if group == "vehicle":
-                if sheet.runs is None:
-                    continue
-                name, unit = VEHICLE_KEYS[key]
-                path = f"train.vehicle.{name}"
-            else:
-                name, unit = KEYS[key]
-                path = f"line.laws.{group}.{name}" if group in LAYERS else f"line.bodies.{group}.{name}"
-            nominal = float(getattr(getattr(sheet.values, group), key))
+            if group == "vehicle" and sheet.runs is None:
+                continue
+            paths, unit, nominal = _paths(sheet, group, key)
             parameters.append(
                 {
                     "name": f"{group}.{key}",
                     "unit": unit,
-                    "paths": [path],
+                    "paths": paths,
                     "acts": "scales",
                     "nominal": nominal,
                     "tolerance_2sigma": tolerance,
@@ -218,6 +212,23 @@ def _parameters(sheet: Sheet) -> list[dict[str, Any]]:
                 }
             )
     return parameters
+
+
+def _paths(sheet: Sheet, group: str, key: str) -> tuple[list[str], str, float]:
+    """Where a value stands in the model, its unit, and what the sheet says that it is."""
+    values = getattr(sheet.values, group)
+    nominal = float(getattr(values, key))
+    if group == "vehicle":
+        name, unit = VEHICLE_KEYS[key]
+        return [f"train.vehicle.{name}"], unit, nominal
+    name, unit = KEYS[key]
+    if group not in LAYERS:
+        return [f"line.bodies.{group}.{name}"], unit, nominal
+    law = f"line.laws.{group}"
+    if values.viscous_at_Hz is None:
+        return [f"{law}.{name}"], unit, nominal
+    # A loss factor scales the dashpot, and so does the stiffness that it is a share of.
+    return ([f"{law}.stiffness", f"{law}.damping"] if key == "k" else [f"{law}.damping"]), unit, nominal
 
 
 def _train_parameters(sheet: Sheet, runs: Sequence[str]) -> list[dict[str, Any]]:

@@ -56,10 +56,11 @@ class BeamValues(_Part):
 
 
 class LayerValues(_Part):
-    """A layer's stiffness, N/m, and loss factor."""
+    """A layer's stiffness, N/m, and loss factor; with `viscous_at_Hz` that there, and a dashpot's elsewhere."""
 
     k: PositiveFloat
     eta: Number = Field(ge=0.0)
+    viscous_at_Hz: PositiveFloat | None = None
 
 
 class VehicleValues(_Part):

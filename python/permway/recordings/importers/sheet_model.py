@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from permway.errors import InputError
-from permway.recordings.importers.sheet_form import BeamValues, Sheet
+from permway.recordings.importers.sheet_form import BeamValues, LayerValues, Sheet
 
 WHEEL_GRID_M = 0.16
 """Wheelsets stand at whole multiples of this, as the sheets' `position` says."""
@@ -58,14 +58,7 @@ def model_table(sheet: Sheet, title: str) -> dict[str, Any]:
                     "intervals_m": _row(layout.spans, layout.span_m),
                 },
             },
-            "laws": {
-                name: {
-                    "type": "hysteretic",
-                    "stiffness": getattr(values, name).k,
-                    "loss_factor": getattr(values, name).eta,
-                }
-                for name in _LAYERS
-            },
+            "laws": {name: _law(getattr(values, name)) for name in _LAYERS},
             "joints": [
                 {"between": ["rail", "slab"], "law": "pad", "at": deck},
                 *_approaches(sheet, length),
@@ -129,6 +122,18 @@ def _beam(values: BeamValues | Any) -> dict[str, float]:
         "area_m2": values.A,
         "loss_factor": values.eta,
     }
+
+
+def _law(layer: LayerValues) -> dict[str, Any]:
+    if layer.viscous_at_Hz is None:
+        return {"type": "hysteretic", "stiffness": layer.k, "loss_factor": layer.eta}
+    return {"type": "kelvin_voigt", "stiffness": layer.k, "damping": dashpot(layer)}
+
+
+def dashpot(layer: LayerValues) -> float:
+    """Of a layer that loses by viscosity, N s/m."""
+    assert layer.viscous_at_Hz is not None
+    return layer.k * layer.eta / (2.0 * np.pi * layer.viscous_at_Hz)
 
 
 def _row(count: int, length: float) -> list[list[float]]:
