@@ -99,7 +99,7 @@ def test_laps_must_be_whole() -> None:
     case = short_case()
     plan = replace(case, tests=replace(case.tests, speeds_kmh=(200.0, 300.0))).plan()
     plan.rolls = True
-    with pytest.raises(InputError, match="whole number of laps .got 55.*laps are 36.6 m long"):
+    with pytest.raises(InputError, match=r"whole number of laps \(got 55.*laps are 36.6 m long"):
         measure(plan, np.random.default_rng(3))
 
 

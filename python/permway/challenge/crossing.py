@@ -45,18 +45,22 @@ class Consist:
     car_m : float
         From one car's middle to the next.
     speed_m_per_s : float
+    wheels_m : tuple of float, optional
+        How far a car's four wheels are behind its first; by default as the sheet's wheelbase and bogies say.
     """
 
     values: Values
     cars: int
     car_m: float
     speed_m_per_s: float
+    wheels_m: tuple[float, ...] | None = None
 
     @property
     def behind_m(self) -> Reals:
         """How far each wheel is behind the first, shape (4 cars,)."""
         v = self.values["vehicle"]
-        one = np.array([0.0, v["lt"], v["lc"], v["lc"] + v["lt"]])
+        own = (0.0, v["lt"], v["lc"], v["lc"] + v["lt"])
+        one = np.array(own if self.wheels_m is None else self.wheels_m)
         return np.concatenate([one + car * self.car_m for car in range(self.cars)])
 
 

@@ -11,6 +11,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 from permway.arrays import Reals
 from permway.errors import InputError
 from permway.model.faults import fault
+from permway.model.line import Line
 from permway.records import FrozenModel, Number
 
 if TYPE_CHECKING:
@@ -142,6 +143,28 @@ class WheelLines(_Lines):
 
     order: float = Field(default=1.0, ge=0.5, le=500.0)
     wheel: int | None = Field(default=None, ge=1, strict=True)
+
+
+class Rolling(FrozenModel):
+    """Wheels roll over supports that repeat, where else they stand and the profile moves under them.
+
+    They pass stiffer and softer places of the rail: their weight shakes them at multiples of V / spacing, and what
+    the profile does to them at a frequency they do at others, too, that far away.
+
+    Parameters
+    ----------
+    spacing_m : float
+        Of the supports.
+    share : float
+        Of all that rolling changes: 1 as the line has it, 0 stands.
+    about : Line, optional
+        Whose supports wheels roll over; the change is carried over to the model's own line, which differs little.
+        By default that itself. Not in files.
+    """
+
+    spacing_m: float = Field(ge=0.1, le=10.0)
+    share: float = Field(default=1.0, ge=0.0, le=3.0)
+    about: Line | None = Field(default=None, exclude=True, repr=False)
 
 
 class Push(FrozenModel):

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, PositiveFloat, model_validator
 
 from permway.model.faults import fault
 from permway.model.irregularity_spectra import FASTEST_M_PER_S
-from permway.recordings.campaign_excitation import Dips, Push, RoughBand, TrackLines, WheelLines
+from permway.recordings.campaign_excitation import Dips, Push, Rolling, RoughBand, TrackLines, WheelLines
 from permway.records import FrozenModel, Number
 
 Statistic = Literal["frf", "csd", "psd", "bands", "decay", "transmissibility", "material"]
@@ -238,6 +238,8 @@ class IrregularityKnown(FrozenModel):
     wheel_radius_m : float
         Rolling radius, which sets where the lines of `wheels` lie.
     pushes : sequence of Push
+    rolling : Rolling, optional
+        By default trains stand.
     """
 
     knowledge: Literal["known", "within", "unknown"] = "known"
@@ -252,6 +254,7 @@ class IrregularityKnown(FrozenModel):
     wheels: tuple[WheelLines, ...] = ()
     wheel_radius_m: float = Field(default=0.43, gt=0.1, lt=1.5)
     pushes: tuple[Push, ...] = ()
+    rolling: Rolling | None = None
 
     @model_validator(mode="after")
     def _check(self) -> IrregularityKnown:

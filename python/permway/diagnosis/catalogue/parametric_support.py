@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from permway.diagnosis.catalogue._excite import rail_laws, stays
+import numpy as np
+
+from permway.diagnosis.catalogue._excite import rail_laws, stays, with_irregularity
 from permway.diagnosis.catalogue._interval import spacing_of
 from permway.diagnosis.catalogue._lines import FACTOR, coordinate, repeats
-from permway.diagnosis.catalogue._runs import combs, excesses
+from permway.diagnosis.catalogue._runs import Excess, combs, excesses
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, log_free
+from permway.errors import InputError, SolveError
+from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_excitation import Rolling
 
 ID = "parametric_support"
 DOMAIN: Domain = "irregularity"
 FAMILY = "tied to speed over length"
 SUMMARY = (
-    "Lines a n^-p at multiples n of V over the fasteners' spacing: the rail's deflection under a constant load as "
-    "the wheel passes over fasteners. How the stiffness itself varies under the wheel is left out."
+    "Wheels roll over fasteners: their weight shakes them at multiples n of V over the spacing; what a profile "
+    "does at one frequency it does so far away, too. By the model's own supports, with harmonics coupled; or as "
+    "lines a n^-p in the profile, which leave out how the stiffness itself varies under the wheel."
 )
 PARAMETERS = {
+    "share": "1, 0.13 to 7.6: of what rolling over the model's own supports changes; 1 is as the model has them",
     "amplitude_m": "m, 2.1e-8 to 1.2e-3: a, of the first line",
     "decay": "1, 1 to 5: p",
 }
@@ -28,8 +35,15 @@ CONFUSED_WITH = {
     "rail_corrugation": "its wavelength is the fasteners' spacing by chance only; a hump, no line",
     "wheel_polygon": "one wheelset, and another length",
 }
-SOURCE = "Nordborg, Wheel/rail noise generation due to nonlinear effects and parametric excitation (2002)"
+SOURCE = (
+    "Nordborg, Wheel/rail noise generation due to nonlinear effects and parametric excitation (2002); Sheng, "
+    "Jones and Thompson, Responses of infinite periodic structures to moving or stationary harmonic loads (2005)"
+)
 AMPLITUDE_M, HARMONICS = 5e-6, 4
+
+STANDS_OUT = 5.0
+"""Standard deviations by which a line at V over the spacing stands out of a run whose train is looked at rolling:
+that costs some seconds."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
@@ -52,3 +66,40 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             law=lambda v: f"{1e6 * v['amplitude_m']:.3g} um at V over the fasteners' spacing",
             size="amplitude_m",
         )
+        if _pass(runs, spacing) and situation.campaign.said.irregularity.rolling is None:
+            yield from _rolling(situation, law, spacing)
+
+
+def _pass(runs: list[Excess], spacing: float) -> bool:
+    """Whether supports are seen to pass in a run."""
+    scores = [float(run.score_at(np.array([run.speed / spacing]))[0]) for run in runs]
+    return any(score > STANDS_OUT for score in scores)
+
+
+def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothesis]:
+    """A train that rolls over the supports of the base; none if the line cannot be solved for that."""
+    about = situation.campaign.model.line
+
+    def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
+        rolling = Rolling(spacing_m=spacing, share=values["share"], about=about)
+        return with_irregularity(campaign, rolling=rolling)
+
+    try:
+        # Here, so that processes that share the screening do not each begin with it.
+        situation.fit.evidence.predicted(amend(situation.campaign, {"share": 1.0}))
+    except (InputError, SolveError):
+        return
+    yield Hypothesis(
+        entry=ID,
+        domain=DOMAIN,
+        family=FAMILY,
+        free=(log_free("share", "1", 1.0, 1.5),),
+        amend=amend,
+        locate=stays(law),
+        starts=((0.0,),),
+        law=lambda v: (
+            f"the train rolls over supports {spacing:g} m apart, {v['share']:.3g} of what the model's do"
+        ),
+        size="share",
+        variant="rolling",
+    )

@@ -16,6 +16,7 @@ from permway.recordings.campaign_load import Dataset
 from permway.recordings.campaign_parts import Condition
 from permway.recordings.predict import decay, hammer, material, run, shaker
 from permway.recordings.predict.grid import grid_of, halved
+from permway.recordings.predict.rolling import rolling_of
 from permway.recordings.predict.sliding import worked
 from permway.recordings.predict.sweeps import Answer, Need, State, Sweep, plan, solve
 
@@ -196,6 +197,8 @@ def _csd(
         lines_Hz, values = halved(lines_Hz, values, record.segment_s)
     grid = grid_of(lines_Hz, dataset.frequency_Hz, record.segment_s)
     work = worked(campaign.model, known, condition, grid, lines_Hz, values)
+    temperature = hammer.temperature(campaign, condition)
+    rolls = rolling_of(work.model, known.rolling, condition, lines_Hz, values, temperature)
     return run.expected_csd(
         work.model,
         known,
@@ -208,6 +211,7 @@ def _csd(
         interpolated=record.interpolated_Hz is not None,
         duration_s=dataset.data.attrs.get("duration_s"),
         left=work.left,
+        rolls=rolls,
         away=away,
     )
 

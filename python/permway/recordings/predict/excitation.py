@@ -31,12 +31,26 @@ def profile(model: Model, known: IrregularityKnown, condition: Condition, grid: 
     InputError
         If the model has no irregularity.
     """
+    values = broad(model, known, condition, grid.frequency_Hz)
+    speed = speed_of(condition)
+    for series in known.series:
+        values = values + lines(grid, speed / series.length_m, series)
+    return np.asarray(values)
+
+
+def broad(model: Model, known: IrregularityKnown, condition: Condition, frequency: Reals) -> Reals:
+    """The same without its lines, at any frequencies (N,) above zero.
+
+    Raises
+    ------
+    InputError
+        If the model has no irregularity.
+    """
     if model.irregularity is None:
         raise InputError(
             "the model has no irregularity", where="irregularity", remedy="name one in the model file"
         )
     speed = speed_of(condition)
-    frequency = grid.frequency_Hz
     values = _spectrum(model.irregularity, model.conversion, speed, frequency.tobytes())
     level = known.level_dB + known.level_by_condition_dB.get(condition.name, 0.0)
     if known.slope_dB_per_octave:
@@ -52,12 +66,10 @@ def profile(model: Model, known: IrregularityKnown, condition: Condition, grid: 
     if known.contact_patch_m:
         across = 2.0 * np.pi * frequency / speed * known.contact_patch_m
         values = values / (1.0 + 0.25 * np.pi * across**3)
-    for series in known.series:
-        values = values + lines(grid, speed / series.length_m, series)
     return np.asarray(values)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=48)
 def _spectrum(irregularity: AnyIrregularity, conversion: Conversion, speed: float, fine: bytes) -> Reals:
     with warnings.catch_warnings():
         # Said when the model is solved; a recalibration would say it a thousand times.

@@ -16,7 +16,9 @@ from permway.recordings.predict import excitation
 from permway.recordings.predict.excitation import speed_of
 from permway.recordings.predict.grid import Grid, grid_of, solved_lines
 from permway.recordings.predict.motion import influence, pushed, wheels_of
+from permway.recordings.predict.rolling import passing
 from permway.recordings.predict.sliding import shares
+from permway.response.rolling import Rolled
 from permway.response.sliding import Remainder
 
 __all__ = ["expected_csd", "influence", "solved_lines", "wheels_of"]
@@ -25,7 +27,7 @@ __all__ = ["expected_csd", "influence", "solved_lines", "wheels_of"]
 Reads = tuple[Quantity, Direction]
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=32)
 def _late(lines: bytes, lag: bytes) -> Complexes:
     """Phase by which what meets the leading wheel comes later to each wheel, shape (F, wheels)."""
     found = np.asarray(np.exp((-2j * np.pi * np.frombuffer(lines))[:, None] * np.frombuffer(lag)))
@@ -46,6 +48,7 @@ def expected_csd(
     interpolated: bool,
     duration_s: float | None = None,
     left: Sequence[Remainder] = (),
+    rolls: Rolled | None = None,
     away: bool = False,
 ) -> Complexes:
     """Expectation of Welch's cross-spectral matrix with Hann's window, and the noise of the channels.
@@ -67,6 +70,9 @@ def expected_csd(
         Of the run, over which clocks run apart.
     left : sequence of Remainder
         Forces of suspensions that slide, as :func:`permway.recordings.predict.sliding.worked` gives them.
+    rolls : Rolled, optional
+        Of a train that rolls, over the same lines; `per_profile` is then that of the standing train still, by
+        which a wheel's own roughness and forces act.
     away : bool
         Whether each part counts by how far it is from its line, in lines, and noise not at all: what an error
         acts on that grows from line to line.
@@ -86,7 +92,6 @@ def expected_csd(
     grid = grid.away if away else grid
     degrees = model.train.vehicle.degrees
     chosen = [degrees.index(str(sensor.degree)) for sensor in sensors]
-    mine = per_profile[:, chosen, :]
     fine_Hz = grid.frequency_Hz
     flat = all(sensor.chain.flat for sensor in sensors)
     chains = _chains(sensors, fine_Hz[:1] if flat else fine_Hz)
@@ -104,14 +109,30 @@ def expected_csd(
         """Of what a source is read as at the solved lines, but for chains."""
         return grid.expected(read(grid.spread(source, straight=interpolated)), density)
 
+    def met(part: Complexes, met_Hz: Reals, density: Reals) -> Complexes:
+        """Of the profile at some frequencies, by which the vehicle moves at the grid's."""
+        moved = grid.spread(part[:, chosen], _late(met_Hz.tobytes(), lag), straight=False)
+        moved *= _ideal(reads, grid)
+        return grid.expected(read(moved), density)
+
     power = excitation.profile(model, known, condition, grid)
-    if interpolated:
+    if rolls is not None:
+        parts = []
+        for order, part in zip(rolls.orders, rolls.per_profile, strict=True):
+            met_Hz = fine_Hz + order * rolls.passing_Hz
+            nearby = np.maximum(np.abs(met_Hz), fine_Hz[0])
+            density = excitation.broad(model, known, condition, nearby) if order else power
+            parts.append(met(part, met_Hz, density))
+        for line_Hz, amplitudes in passing(rolls):
+            density = excitation.deposit(grid, np.array([line_Hz]), np.ones(1), 0.0)
+            parts.append(expected(amplitudes[chosen] * _there(sensors, lines_Hz), density))
+        upper = np.asarray(np.sum(parts, axis=0))
+    elif interpolated:
+        mine = per_profile[:, chosen, :]
         moved = np.einsum("fsw,fw->fs", mine, _late(lines_Hz.tobytes(), lag))
         upper = expected(moved * _there(sensors, lines_Hz), power)
     else:
-        moved = grid.spread(mine, _late(fine_Hz.tobytes(), lag), straight=False)
-        moved *= _ideal(reads, grid)
-        upper = grid.expected(read(moved), power)
+        upper = met(per_profile, fine_Hz, power)
     for sources, density in _sources(model, known, condition, grid, lines_Hz, per_profile):
         for source in sources:
             upper += expected(source[:, chosen] * _there(sensors, lines_Hz), density)

@@ -1,0 +1,96 @@
+"""Runs of trains that roll over supports that repeat, by kernels that are kept."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Iterator
+
+import numpy as np
+
+from permway.arrays import Complexes, Reals
+from permway.model.file import Model
+from permway.model.line import Line
+from permway.recordings.campaign_excitation import Rolling
+from permway.recordings.campaign_parts import Condition
+from permway.recordings.predict.excitation import speed_of
+from permway.recordings.predict.motion import wheels_of
+from permway.response.rolling import Kernel, Rolled, kernel, rolled
+from permway.response.rolling.harmonics import REACH
+
+SPEED_STEP = 0.01
+"""Speeds nearer to each other than this, relative, share a kernel: waves arrive shifted by a thousandth of it."""
+
+KEPT = 8
+"""Kernels in memory, some megabytes each."""
+
+_KEPT: OrderedDict[tuple[object, ...], tuple[Line, Kernel]] = OrderedDict()
+
+
+def rolling_of(
+    model: Model,
+    rolling: Rolling | None,
+    condition: Condition,
+    lines_Hz: Reals,
+    track: Complexes,
+    temperature_C: float | None,
+) -> Rolled | None:
+    """What a train does that rolls; None for one that stands.
+
+    Parameters
+    ----------
+    model : Model
+    rolling : Rolling or None
+    condition : Condition
+        Of a train.
+    lines_Hz : ndarray, shape (L,)
+    track : ndarray of complex128, shape (L, wheels, wheels)
+        Receptance under the standing wheels, m/N.
+    temperature_C : float or None
+
+    Raises
+    ------
+    InputError, SolveError
+        As :func:`permway.response.rolling.kernel`.
+    """
+    if rolling is None or rolling.share == 0.0:
+        return None
+    train = model.train
+    assert train is not None
+    by = kernel_of(model, rolling, condition, float(lines_Hz[-1]), temperature_C)
+    contact = train.contact.receptance(train.vehicle.share)
+    speed = speed_of(condition)
+    return rolled(train.vehicle, contact, lines_Hz, track, by, speed_m_per_s=speed, share=rolling.share)
+
+
+def kernel_of(
+    model: Model, rolling: Rolling, condition: Condition, top_Hz: float, temperature_C: float | None
+) -> Kernel:
+    """The kernel of a run up to what is coupled with a frequency; the same line gives the same one again."""
+    assert model.train is not None
+    line = rolling.about or model.line
+    speed = float(np.exp(SPEED_STEP * np.round(np.log(speed_of(condition)) / SPEED_STEP)))
+    wheels = wheels_of(model, condition)
+    key = (id(line), wheels.tobytes(), speed, rolling.spacing_m, top_Hz, temperature_C, model.formulation)
+    if key not in _KEPT:
+        found = kernel(
+            line,
+            model.train.body,
+            wheels,
+            speed_m_per_s=speed,
+            spacing_m=rolling.spacing_m,
+            to_Hz=top_Hz + REACH * speed / rolling.spacing_m,
+            temperature_C=temperature_C,
+            formulation=model.formulation,
+        )
+        # The line is kept with it: another one might get its number else.
+        _KEPT[key] = line, found
+        while len(_KEPT) > KEPT:
+            _KEPT.popitem(last=False)
+    _KEPT.move_to_end(key)
+    return _KEPT[key][1]
+
+
+def passing(by: Rolled) -> Iterator[tuple[float, Complexes]]:
+    """Lines of the supports' passing: Hz, and root-mean-square amplitudes of the degrees, m."""
+    for number, amplitudes in enumerate(by.lines, start=1):
+        yield number * by.passing_Hz, amplitudes / np.sqrt(2.0)

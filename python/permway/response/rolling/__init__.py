@@ -1,0 +1,6 @@
+"""A train that rolls over supports that repeat: harmonics of their passing, coupled in frequency."""
+
+from permway.response.rolling.harmonics import Rolled as Rolled
+from permway.response.rolling.harmonics import rolled as rolled
+from permway.response.rolling.kernel import Kernel as Kernel
+from permway.response.rolling.kernel import kernel as kernel
