@@ -22,9 +22,9 @@ def weld(x: np.ndarray) -> np.ndarray:
 
 def compute() -> dict[str, np.ndarray]:
     """Two cars over five spans, by finite elements integrated in time; once with contacts that only press."""
-    line = Mesh(assemble(LINE, NOMINAL), middle)
     train = Consist(NOMINAL, cars=2, car_m=25.0, speed_m_per_s=SPEED_M_PER_S)
     middle = [("girder", LINE.station(30))]
+    line = Mesh(assemble(LINE, NOMINAL), middle)
     found = {}
     for name, leaves in (("free", True), ("held", False)):
         run = cross(line, train, from_m=5.0, to_m=72.0, leaves=leaves, profile=weld, sensors=middle)
