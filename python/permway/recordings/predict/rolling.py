@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Iterator
+from functools import lru_cache
 
 import numpy as np
 
 from permway.arrays import Complexes, Reals
 from permway.model.file import Model
 from permway.model.line import Line
+from permway.model.vehicle import Vehicle
 from permway.recordings.campaign_excitation import Rolling
 from permway.recordings.campaign_parts import Condition
 from permway.recordings.predict.excitation import speed_of
@@ -58,8 +60,17 @@ def rolling_of(
     assert train is not None
     by = kernel_of(model, rolling, condition, float(lines_Hz[-1]), temperature_C)
     contact = train.contact.receptance(train.vehicle.share)
-    speed = speed_of(condition)
-    return rolled(train.vehicle, contact, lines_Hz, track, by, speed_m_per_s=speed, share=rolling.share)
+    lines, standing = lines_Hz.tobytes(), np.ascontiguousarray(track).tobytes()
+    return _rolled(train.vehicle, contact, lines, standing, by, speed_of(condition), rolling.share)
+
+
+@lru_cache(maxsize=8)
+def _rolled(
+    vehicle: Vehicle, contact: float, lines: bytes, standing: bytes, by: Kernel, speed: float, share: float
+) -> Rolled:
+    lines_Hz, wheels = np.frombuffer(lines), len(vehicle.wheel_indices)
+    track = np.frombuffer(standing, dtype=np.complex128).reshape(lines_Hz.size, wheels, wheels)
+    return rolled(vehicle, contact, lines_Hz, track, by, speed_m_per_s=speed, share=share)
 
 
 def kernel_of(

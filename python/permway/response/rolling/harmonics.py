@@ -20,7 +20,7 @@ REACH = 3
 """Harmonics on either side of a line that are coupled with it."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rolled:
     """What a vehicle that rolls does.
 

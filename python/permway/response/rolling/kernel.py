@@ -45,7 +45,7 @@ FORWARD = 0.75
 answer."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Kernel:
     """Motion of the rail under wheels per force under wheels, all rolling.
 
