@@ -9,6 +9,7 @@ multiples of Omega alone.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from permway.response.rolling.kernel import HARMONICS, Kernel
 
 REACH = 3
 """Harmonics on either side of a line that are coupled with it."""
+
+LEAST_HZ = 0.05
+"""At rest a free vehicle has no receptance: nearer to it than this it is taken there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,94 +74,95 @@ def rolled(
         Of all that rolling changes: 0 stands.
     """
     passing = speed_m_per_s / by.spacing_m
-    orders = np.arange(-REACH, REACH + 1)
-    rail = _Rail(by, lines_Hz, track, share)
-    matrix, response = _coupled(vehicle, contact_m_per_N, rail, lines_Hz[:, None] + passing * orders)
-    middle, wheels = REACH, track.shape[1]
+    orders, wheels = tuple(range(-REACH, REACH + 1)), track.shape[1]
+    # What the track is beyond the kernel's, where it was solved; nothing further up.
+    beyond = lines_Hz, track - _between(by.frequency_Hz, by.standing, lines_Hz)
+    matrix, response = _coupled(vehicle, contact_m_per_N, by, lines_Hz.tobytes(), passing, orders, share)
+    flat = _with(matrix, beyond, lines_Hz[:, None] + passing * np.array(orders))
     # A line's own row of the inverse is all that is needed.
-    flat = matrix.reshape(lines_Hz.size, orders.size * wheels, -1)
     own = np.zeros((flat.shape[1], wheels))
-    own[middle * wheels : (middle + 1) * wheels] = np.eye(wheels)
+    own[REACH * wheels : (REACH + 1) * wheels] = np.eye(wheels)
     rows = np.linalg.solve(np.swapaxes(flat, 1, 2), np.broadcast_to(own, (lines_Hz.size, *own.shape)))
-    pressed = np.swapaxes(rows, 1, 2).reshape(lines_Hz.size, wheels, orders.size, wheels)
-    per_profile = np.einsum("fdw,fwkv->kfdv", response[:, middle], pressed)
-    return Rolled(orders, per_profile, passing, _lines(vehicle, contact_m_per_N, rail, passing, wheels))
+    pressed = np.swapaxes(rows, 1, 2).reshape(lines_Hz.size, wheels, len(orders), wheels)
+    per_profile = np.einsum("fdw,fwkv->kfdv", response[:, REACH], pressed)
+    by_load = _lines(vehicle, contact_m_per_N, by, beyond, passing, share)
+    return Rolled(np.array(orders), per_profile, passing, by_load)
 
 
-def _lines(vehicle: Vehicle, contact: float, rail: _Rail, passing: float, wheels: int) -> Complexes:
+Beyond = tuple[Reals, Complexes]
+"""Frequencies, and what a track's receptance there is beyond the kernel's."""
+
+
+def _lines(
+    vehicle: Vehicle, contact: float, by: Kernel, beyond: Beyond, passing: float, share: float
+) -> Complexes:
     """Amplitudes at the first multiples of the passing frequency."""
-    orders = np.concatenate([np.arange(-HARMONICS, 0), np.arange(1, HARMONICS + 1)])
-    at = passing * orders[None, :]
-    matrix, response = _coupled(vehicle, contact, rail, at)
+    orders = tuple(n for n in range(-HARMONICS, HARMONICS + 1) if n)
+    matrix, response = _coupled(vehicle, contact, by, np.zeros(1).tobytes(), passing, orders, share)
+    at = passing * np.array(orders, dtype=np.float64)
+    wheels = response.shape[-1]
     load = np.full(wheels, vehicle.share * 2.0 * vehicle.static_wheel_load_N)
-    yields = np.stack([rail.harmonic(int(n), at[:, k])[0] @ load for k, n in enumerate(orders)])
-    flat = matrix.reshape(orders.size * wheels, -1)
-    force = np.linalg.solve(flat, yields.ravel()).reshape(orders.size, wheels)
+    yields = [share * _harmonic(by, n, at[[k]])[0] @ load for k, n in enumerate(orders)]
+    force = np.linalg.solve(_with(matrix, beyond, at[None])[0], np.concatenate(yields)).reshape(-1, wheels)
     moved = np.einsum("kdw,kw->kd", response[0], force)
     # One of each pair of conjugates stands for both.
     return np.asarray(2.0 * moved[HARMONICS:])
 
 
-def _coupled(vehicle: Vehicle, contact: float, rail: _Rail, at_Hz: Reals) -> tuple[Complexes, Complexes]:
-    """Receptances between harmonics, (L, K, wheels, K, wheels), and the vehicle's degrees per force, (L, K, d, w).
+@lru_cache(maxsize=16)
+def _coupled(
+    vehicle: Vehicle,
+    contact: float,
+    by: Kernel,
+    lines: bytes,
+    passing: float,
+    orders: tuple[int, ...],
+    share: float,
+) -> tuple[Complexes, Complexes]:
+    """Receptances between harmonics on the kernel's own track, and the vehicle's degrees per force.
 
-    Frequencies (L, K) may be below zero; those of a row differ by multiples of the passing frequency.
+    Returns
+    -------
+    ndarray of complex128, shapes (L, K, wheels, K, wheels) and (L, K, degrees, wheels)
     """
-    size = np.maximum(np.abs(at_Hz), LEAST_HZ)
-    degrees, contacts = (_signed(values, at_Hz) for values in _per_force(vehicle, size))
+    at_Hz = np.frombuffer(lines)[:, None] + passing * np.array(orders, dtype=np.float64)
+    found = vehicle.per_wheel_force(np.maximum(np.abs(at_Hz), LEAST_HZ).ravel())
+    degrees, contacts = (_signed(values.reshape(*at_Hz.shape, *values.shape[1:]), at_Hz) for values in found)
     wheels = contacts.shape[-1]
-    matrix = np.zeros((*at_Hz.shape, wheels, at_Hz.shape[1], wheels), dtype=np.complex128)
-    apart = np.round((at_Hz - at_Hz[:, :1]) / _passing(at_Hz)).astype(np.int64)[0]
-    for j in range(at_Hz.shape[1]):
-        for k in range(at_Hz.shape[1]):
-            n = int(apart[j] - apart[k])
-            if abs(n) <= HARMONICS:
-                matrix[:, j, :, k, :] += rail.harmonic(n, at_Hz[:, j])
-        matrix[:, j, :, j, :] += contacts[:, j] + contact * np.eye(wheels)
+    matrix = np.zeros((*at_Hz.shape, wheels, len(orders), wheels), dtype=np.complex128)
+    for j, into in enumerate(orders):
+        for k, of in enumerate(orders):
+            if abs(into - of) <= HARMONICS:
+                matrix[:, j, :, k, :] = share * _harmonic(by, into - of, at_Hz[:, j])
+        standing = _signed(_between(by.frequency_Hz, by.standing, np.abs(at_Hz[:, j])), at_Hz[:, j])
+        matrix[:, j, :, j, :] += (1.0 - share) * standing + contacts[:, j] + contact * np.eye(wheels)
     return matrix, degrees
 
 
-LEAST_HZ = 0.05
-"""At rest a free vehicle has no receptance: nearer to it than this it is taken there."""
+def _with(matrix: Complexes, beyond: Beyond, at_Hz: Reals) -> Complexes:
+    """The matrix of a track that differs from the kernel's, (L, K wheels, K wheels), at frequencies (L, K)."""
+    known_Hz, values = beyond
+    whole = matrix.copy()
+    for k in range(at_Hz.shape[1]):
+        size = np.abs(at_Hz[:, k])
+        inside = (size >= known_Hz[0]) & (size <= known_Hz[-1])
+        whole[inside, k, :, k, :] += _signed(_between(known_Hz, values, size[inside]), at_Hz[inside, k])
+    size = matrix.shape[1] * matrix.shape[2]
+    return whole.reshape(-1, size, size)
 
 
-def _passing(at_Hz: Reals) -> float:
-    return float(np.min(np.diff(np.sort(at_Hz[0]))))
-
-
-def _per_force(vehicle: Vehicle, size_Hz: Reals) -> tuple[Complexes, Complexes]:
-    found = vehicle.per_wheel_force(size_Hz.ravel())
-    degrees, contacts = (values.reshape(*size_Hz.shape, *values.shape[1:]) for values in found)
-    return degrees, contacts
+def _harmonic(by: Kernel, n: int, at_Hz: Reals) -> Complexes:
+    """K_n at frequencies, (L, wheels, wheels); above the kernel's own the rail is taken to hold still."""
+    found = _between(by.frequency_Hz, by.harmonics[HARMONICS + n], np.abs(at_Hz))
+    if (at_Hz < 0.0).any():
+        other = _between(by.frequency_Hz, by.harmonics[HARMONICS - n], np.abs(at_Hz))
+        found = np.where((at_Hz < 0.0)[:, None, None], other.conj(), found)
+    return np.asarray(found)
 
 
 def _signed(values: Complexes, at_Hz: Reals) -> Complexes:
     """Of real systems: conjugate below zero."""
     return np.asarray(np.where((at_Hz < 0.0)[..., None, None], values.conj(), values))
-
-
-class _Rail:
-    """The rail's harmonics at any frequency, of a track that differs a little from the kernel's."""
-
-    def __init__(self, by: Kernel, lines_Hz: Reals, track: Complexes, share: float) -> None:
-        self._by, self._share = by, share
-        # What the track is beyond the kernel's, where it was solved; nothing further up.
-        self._lines = lines_Hz
-        self._beyond = track - _between(by.frequency_Hz, by.standing, lines_Hz)
-        middle = by.harmonics[HARMONICS]
-        self._mean = by.standing + share * (middle - by.standing)
-
-    def harmonic(self, n: int, at_Hz: Reals) -> Complexes:
-        """K_n at frequencies, (L, wheels, wheels); above the kernel's own the rail is taken to hold still."""
-        size = np.abs(at_Hz)
-        if n:
-            values = self._by.harmonics[HARMONICS + n], self._by.harmonics[HARMONICS - n]
-            positive, negative = (_between(self._by.frequency_Hz, one, size) for one in values)
-            return np.asarray(self._share * np.where((at_Hz < 0.0)[:, None, None], negative.conj(), positive))
-        found = _between(self._by.frequency_Hz, self._mean, size)
-        inside = (size >= self._lines[0]) & (size <= self._lines[-1])
-        found[inside] += _between(self._lines, self._beyond, size[inside])
-        return _signed(found, at_Hz)
 
 
 def _between(known_Hz: Reals, values: Complexes, at_Hz: Reals) -> Complexes:
