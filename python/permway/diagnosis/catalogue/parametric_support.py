@@ -41,6 +41,9 @@ SOURCE = (
 )
 AMPLITUDE_M, HARMONICS = 5e-6, 4
 
+RUNS = ("train.", "campaign.")
+"""Where parameters lead that runs alone tell of."""
+
 STANDS_OUT = 5.0
 """Standard deviations by which a line at V over the spacing stands out of a run whose train is looked at rolling:
 that costs some seconds."""
@@ -102,4 +105,15 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
         ),
         size="share",
         variant="rolling",
+        about=_as_the_owner_says(situation),
     )
+
+
+def _as_the_owner_says(situation: Situation) -> dict[str, float]:
+    """Parameters of train, speeds and irregularity: a base that stands bends them to what rolling does."""
+    known = situation.campaign.parameters.known
+    return {
+        free.name: 0.0
+        for free in situation.fit.free
+        if free.name in known and all(path.startswith(RUNS) for path in known[free.name].parameter.paths)
+    }
