@@ -18,7 +18,7 @@ from permway.errors import InputError
 from permway.model.file import Model
 from permway.recordings.importers.sheet import import_sheet
 from permway.recordings.predict.motion import influence
-from permway.response.rolling import Kernel, kernel, rolled
+from permway.response.rolling import Kernel, kernel, kernels, rolled
 
 LAYOUT = Layout(spans=3, bays=61, spacing_m=0.6, approach_bays=40)
 SECONDS, SAMPLING_HZ, LAPS = 2.0, 1024.0, 4
@@ -61,17 +61,21 @@ def under(model: Model, wheels: Reals, lines: Reals) -> Complexes:
     return np.asarray(data["receptance"].values)
 
 
-def test_wheels_that_hardly_move_find_the_rail_of_a_standing_train(model: Model, wheels: Reals) -> None:
+def test_wheels_that_hardly_move_find_the_rail_of_a_standing_train(
+    model: Model, wheels: Reals, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Place by place of a bay: the sum of all harmonics there, of which eight places tell seven apart."""
+    monkeypatch.setattr(kernels, "SHIFTS", (5,))
     found = of(model, wheels, 1e-3, to_Hz=300.0)
-    lines = found.frequency_Hz[np.array([10, 60, 200, 500])]
+    lines = np.array([5.0, 30.0, 100.0, 250.0])
+    rows = np.searchsorted(found.frequency_Hz, lines)
+    standing, shifted = under(model, wheels, lines), wheels + 5 * 0.6
+    assert np.allclose(found.standing[rows], standing, rtol=1e-9)
     for index in range(8):
-        moved = under(model, wheels + 0.075 * index, lines)
+        moved = under(model, shifted + 0.075 * index, lines) - under(model, shifted, lines) + standing
         turns = np.exp(2j * np.pi * np.arange(-3, 4) * index / 8.0)
-        summed = np.tensordot(turns, found.harmonics[:, np.searchsorted(found.frequency_Hz, lines)], axes=1)
+        summed = np.tensordot(turns, found.harmonics[:, rows], axes=1)
         assert np.abs(summed - moved).max() < 0.01 * np.abs(moved).max()
-    standing = found.standing[np.searchsorted(found.frequency_Hz, lines)]
-    assert np.allclose(standing, under(model, wheels, lines), rtol=1e-9)
 
 
 def test_a_train_that_rolls_not_at_all_stands(model: Model, wheels: Reals) -> None:
@@ -113,10 +117,10 @@ def test_rolling_agrees_with_an_integration_in_time(
             )
     # Spans come and go, too, and the solver has them stay.
     assert off["rolls", 10.0].max() < 0.15
-    assert off["rolls", 130.0].max() < 0.1
+    assert off["rolls", 130.0].max() < 0.06
     assert off["stands", 130.0].min() > 0.2
     assert (off["rolls", 130.0] < 0.5 * off["stands", 130.0]).all()
-    assert off["rolls", passing - 0.1].max() < 0.15
+    assert off["rolls", passing - 0.1].max() < 0.06
     assert off["stands", passing - 0.1].min() > 0.8
 
 

@@ -28,14 +28,17 @@ PHASES = 8
 HARMONICS = 3
 """Of the passing, on either side, which so many places tell apart."""
 
-STEP_HZ = 0.5
-"""Of the transform: what is left after 2 s wraps around."""
+STEP_HZ = 1.0
+"""Of the transform: what is left after 1 s wraps around."""
 
 PER_BAY = PHASES
 """Places to a bay where the rail is read, forces' own among them, for it has a kink there; between them cubics."""
 
-BEHIND_M, AHEAD_S = 3.0, 0.4
+BEHIND_M, AHEAD_S = 3.0, 0.25
 """The rail is read from so far behind the last wheel to where the first will be so much later."""
+
+SHIFTS = (-6, -2, 2, 6)
+"""Bays by which wheels are moved to places whose mean is taken: next to a slab's end supports are not as usual."""
 
 TAPER = 0.85
 """Share of the highest frequency from which the transform fades out."""
@@ -54,7 +57,7 @@ class Kernel:
     frequency_Hz : ndarray, shape (F,)
         From 0 Hz, equally spaced; of the motion.
     harmonics : ndarray of complex128, shape (2 M + 1, F, wheels, wheels)
-        K_n of n from -M to M, m/N.
+        K_n of n from -M to M, m/N: what rolling changes is the mean over some places, some bays apart.
     standing : ndarray of complex128, shape (F, wheels, wheels)
         Receptance while the wheels stand where they are at the time 0.
     spacing_m, speed_m_per_s : float
@@ -85,7 +88,7 @@ def kernel(
     ----------
     line : Line
     body : str
-        That the wheels roll on; it goes on without end, or for as far as they roll in 0.4 s.
+        That the wheels roll on; it goes on without end, or for as far as they roll in 0.25 s.
     wheels_m : ndarray, shape (wheels,)
         Where they are at the time 0, the leading one first, m; girders below are as they are there.
     speed_m_per_s : float
@@ -112,31 +115,40 @@ def kernel(
     reach = float(np.ptp(wheels)) + BEHIND_M, float(np.ptp(wheels)) + spacing_m + AHEAD_S * speed_m_per_s
     read = step * np.arange(-np.ceil(reach[0] / step), np.ceil(reach[1] / step) + 1.0)
     phases = spacing_m / PHASES * np.arange(PHASES)
-    points = [Place(body=body, x_m=float(x), name=f"wheel {i}") for i, x in enumerate(wheels)]
     kept = int(to_Hz / STEP_HZ) + 1
-    along = np.empty((PHASES, kept, wheels.size, wheels.size), dtype=np.complex128)
     standing = np.empty((kept, wheels.size, wheels.size), dtype=np.complex128)
-    for source, x in enumerate(wheels):
-        sensors = [Place(body=body, x_m=float(x + r), name=f"{i}") for i, r in enumerate(read)] + points
-        forces = [Place(body=body, x_m=float(x + p), name=f"{p:g}") for p in phases]
-        answer = between(
-            line,
-            solved,
-            forces=forces,
-            sensors=sensors,
-            temperature_C=temperature_C,
-            formulation=formulation,
-            threads=threads,
-        ).receptance
-        # At rest as at the lowest frequency, without what it loses.
-        answer = np.concatenate([answer[:1].real.astype(np.complex128), answer])
-        standing[:, :, source] = answer[:kept, read.size :, 0]
-        for index, p in enumerate(phases):
-            starts = wheels - x + p
-            along[index, :, :, source] = _along(answer[:, : read.size, index], read, starts, speed_m_per_s)[:kept]
+    harmonics = np.zeros((2 * HARMONICS + 1, *standing.shape), dtype=np.complex128)
     orders = np.arange(-HARMONICS, HARMONICS + 1)
     series = np.exp(-2j * np.pi * np.outer(orders, np.arange(PHASES)) / PHASES) / PHASES
-    harmonics = np.tensordot(series, along, axes=1)
+    for shift in (0, *SHIFTS):
+        at = wheels + shift * spacing_m
+        points = [Place(body=body, x_m=float(x), name=f"wheel {i}") for i, x in enumerate(at)]
+        for source, x in enumerate(at):
+            sensors = points + [Place(body=body, x_m=float(x + r), name=f"{i}") for i, r in enumerate(read)]
+            answer = between(
+                line,
+                solved,
+                forces=[Place(body=body, x_m=float(x + p), name=f"{p:g}") for p in phases],
+                sensors=sensors if shift else points,
+                temperature_C=temperature_C,
+                formulation=formulation,
+                threads=threads,
+            ).receptance
+            # At rest as at the lowest frequency, without what it loses.
+            answer = np.concatenate([answer[:1].real.astype(np.complex128), answer])
+            still = answer[:kept, : wheels.size, 0]
+            if shift == 0:
+                standing[:, :, source] = still
+                continue
+            seen = np.empty((PHASES, kept, wheels.size), dtype=np.complex128)
+            for index, p in enumerate(phases):
+                starts = at - x + p
+                seen[index] = _along(answer[:, wheels.size :, index], read, starts, speed_m_per_s)[:kept]
+            found = np.tensordot(series, seen, axes=1)
+            # Of the mean what rolling changes; girders stay as they are where the train stands.
+            found[HARMONICS] -= still
+            harmonics[:, :, :, source] += found / len(SHIFTS)
+    harmonics[HARMONICS] += standing
     return Kernel(STEP_HZ * np.arange(kept, dtype=np.float64), harmonics, standing, spacing_m, speed_m_per_s)
 
 
