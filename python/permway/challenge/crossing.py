@@ -151,7 +151,8 @@ def cross(
     rail_gives, wheels_give = below.gives(rail.degrees), cars.gives(wheels)
     read = [line.at(spot) for spot in sensors]
     rows, still = car.rows(arms), np.zeros(line.size)
-    steps = round((to_m - from_m) / train.speed_m_per_s / step_s)
+    # As many as fit, rounding forgiven.
+    steps = int((to_m - from_m) / train.speed_m_per_s / step_s + 1e-6)
     times: Reals = step_s * np.arange(steps + 1, dtype=np.float64)
     front: Reals = np.asarray(from_m + train.speed_m_per_s * times)
     forces, moved, hurried, felt = (

@@ -24,7 +24,7 @@ SUMMARY = (
     "lines a n^-p in the profile, which leave out how the stiffness itself varies under the wheel."
 )
 PARAMETERS = {
-    "share": "1, 0.13 to 7.6: of what rolling over the model's own supports changes; 1 is as the model has them",
+    "share": "1, 0.4 to 2.5: of what rolling over the model's own supports changes; 1 is as the model has them",
     "amplitude_m": "m, 2.1e-8 to 1.2e-3: a, of the first line",
     "decay": "1, 1 to 5: p",
 }
@@ -96,7 +96,7 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
         entry=ID,
         domain=DOMAIN,
         family=FAMILY,
-        free=(log_free("share", "1", 1.0, 1.5),),
+        free=(log_free("share", "1", 1.0, 1.2),),
         amend=amend,
         locate=stays(law),
         starts=((0.0,),),

@@ -127,13 +127,8 @@ def _beam(values: BeamValues | Any) -> dict[str, float]:
 def _law(layer: LayerValues) -> dict[str, Any]:
     if layer.viscous_at_Hz is None:
         return {"type": "hysteretic", "stiffness": layer.k, "loss_factor": layer.eta}
-    return {"type": "kelvin_voigt", "stiffness": layer.k, "damping": dashpot(layer)}
-
-
-def dashpot(layer: LayerValues) -> float:
-    """Of a layer that loses by viscosity, N s/m."""
-    assert layer.viscous_at_Hz is not None
-    return layer.k * layer.eta / (2.0 * np.pi * layer.viscous_at_Hz)
+    damping = layer.k * layer.eta / (2.0 * np.pi * layer.viscous_at_Hz)
+    return {"type": "kelvin_voigt", "stiffness": layer.k, "damping": damping}
 
 
 def _row(count: int, length: float) -> list[list[float]]:

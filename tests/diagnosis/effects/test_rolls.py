@@ -1,0 +1,75 @@
+"""A train that rolls over its supports: said in a campaign file, looked for where it shows, and measured."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from permway.diagnosis.catalogue import entries
+from permway.diagnosis.catalogue._excite import with_irregularity
+from permway.diagnosis.compete import Ring
+from permway.diagnosis.hypothesis import Hypothesis, Situation
+from permway.diagnosis.refit import relearnt
+from permway.laws.toml import to_toml
+from permway.recordings.campaign import Campaign, read_campaign
+from permway.recordings.campaign_excitation import Rolling
+from permway.recordings.predict import predict
+from trains import CAMPAIGN, blank, campaign_in, situation_of
+
+SPACING_M = 0.6
+
+
+def forms(situation: Situation) -> dict[str, Hypothesis]:
+    return {h.variant: h for h in entries()["parametric_support"].hypotheses(situation)}
+
+
+@pytest.fixture(scope="module")
+def owner(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
+    return campaign_in(tmp_path_factory.mktemp("rolls"))
+
+
+@pytest.fixture(scope="module")
+def rolls(owner: Campaign) -> Situation:
+    """What is measured when the train rolls, and the base does not."""
+    return situation_of(owner, 21, amend=lambda c: with_irregularity(c, rolling=Rolling(spacing_m=SPACING_M)))
+
+
+def test_a_campaign_file_lets_its_train_roll(owner: Campaign, tmp_path: Path) -> None:
+    """Lines of its weight at V over the spacing, and little else far below."""
+    table = {**CAMPAIGN, "irregularity": {**CAMPAIGN["irregularity"], "rolling": {"spacing_m": SPACING_M}}}
+    campaign_in(tmp_path)
+    (tmp_path / "campaign.toml").write_text(to_toml(table))
+    said = read_campaign(tmp_path / "campaign.toml")
+    assert said.said.irregularity.rolling == Rolling(spacing_m=SPACING_M)
+    runs = [one for one in blank(owner) if one.record.statistic == "csd"]
+    for dataset, still, rolling in zip(runs, predict(owner, runs), predict(said, runs), strict=True):
+        passing = dataset.condition.speed_m_per_s / SPACING_M  # type: ignore[operator]
+        louder = 10.0 * np.log10(rolling["psd"] / still["psd"]).sel(channel=["axle1", "axle2", "axle3"])
+        assert (louder.sel(frequency=passing, method="nearest") > 2.0).all()
+        assert np.abs(louder.idxmax("frequency") - passing).max() < 1.0
+        assert np.abs(louder.sel(frequency=slice(4.0, 20.0))).max() < 0.5
+        shared = rolling["csd"].values[:, :, 40]
+        assert np.allclose(shared, shared.conj().T)
+        assert np.linalg.eigvalsh(shared).min() > 0.0
+
+
+def test_it_is_looked_for_where_supports_are_seen_to_pass(owner: Campaign, rolls: Situation) -> None:
+    assert set(forms(situation_of(owner, 22))) == {""}
+    assert set(forms(rolls)) == {"", "rolling"}
+
+
+def test_its_share_is_measured_and_lines_alone_say_less(rolls: Situation) -> None:
+    ring, both = Ring(rolls.fit), forms(rolls)
+    lines, own = (ring.quick(both[form], after=ring.screen(both[form])) for form in ("", "rolling"))
+    assert own.gain > lines.gain
+    found = relearnt(ring.full(own, prefix="1."), rolls.fit.evidence)
+    assert found.values()["1.share"] == pytest.approx(1.0, abs=0.1)
+    assert found.heat < 1.2
+
+
+def test_every_share_of_its_range_can_be(rolls: Situation) -> None:
+    (free,) = forms(rolls)["rolling"].free
+    for z in free.limits:
+        amended = forms(rolls)["rolling"].amend(rolls.campaign, {"share": free.value(z)})
+        assert amended.said.irregularity.rolling is not None
