@@ -65,7 +65,7 @@ def test_wheels_that_hardly_move_find_the_rail_of_a_standing_train(
     model: Model, wheels: Reals, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Place by place of a bay: the sum of all harmonics there, of which eight places tell seven apart."""
-    monkeypatch.setattr(kernels, "SHIFTS", (5,))
+    monkeypatch.setattr(kernels, "_places", lambda *_: ((5,), False))
     found = of(model, wheels, 1e-3, to_Hz=300.0)
     lines = np.array([5.0, 30.0, 100.0, 250.0])
     rows = np.searchsorted(found.frequency_Hz, lines)
@@ -76,6 +76,26 @@ def test_wheels_that_hardly_move_find_the_rail_of_a_standing_train(
         turns = np.exp(2j * np.pi * np.arange(-3, 4) * index / 8.0)
         summed = np.tensordot(turns, found.harmonics[:, rows], axes=1)
         assert np.abs(summed - moved).max() < 0.01 * np.abs(moved).max()
+
+
+def test_a_train_that_passes_spans_does_so_wherever_it_is_taken_to_start(model: Model, wheels: Reals) -> None:
+    """Receptances under a standing train depend on where in a span it stands; their mean over one does not."""
+    here, there = (of(model, wheels + bays * 0.6, SPEED, to_Hz=60.0) for bays in (-3, 2))
+    band = slice(20, 50)
+    rolls, stands = (
+        np.linalg.norm((one - other)[band]) / np.linalg.norm(other[band])
+        for one, other in ((there.harmonics[3], here.harmonics[3]), (there.standing, here.standing))
+    )
+    assert rolls < 0.02
+    assert stands > 5.0 * rolls
+
+
+def test_spans_are_what_comes_back_where_a_line_has_them(model: Model, wheels: Reals) -> None:
+    shifts, over_all = kernels._places(model.line, wheels, 0.6)
+    assert over_all
+    assert list(shifts) == [-10, -8, -6, -4, -2, 0, 2, 4, 6, 8]
+    endless = model.line.model_copy(update={"bodies": {"rail": model.line.bodies["rail"]}})
+    assert kernels._places(endless, wheels, 0.6) == (kernels.NEAR, False)
 
 
 def test_a_train_that_rolls_not_at_all_stands(model: Model, wheels: Reals) -> None:
@@ -115,11 +135,9 @@ def test_rolling_agrees_with_an_integration_in_time(
             off[name, low] = np.linalg.norm((ours - channels)[band], axis=0) / np.linalg.norm(
                 channels[band], axis=0
             )
-    # Spans come and go, too, and the solver has them stay.
-    assert off["rolls", 10.0].max() < 0.15
-    assert off["rolls", 130.0].max() < 0.06
+    assert off["rolls", 10.0].max() < 0.09
+    assert off["rolls", 130.0].max() < 0.04
     assert off["stands", 130.0].min() > 0.2
-    assert (off["rolls", 130.0] < 0.5 * off["stands", 130.0]).all()
     assert off["rolls", passing - 0.1].max() < 0.06
     assert off["stands", passing - 0.1].min() > 0.8
 

@@ -6,7 +6,7 @@ fasteners, off one girder and onto the next. Losses are viscous, and are the hys
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,7 @@ from scipy.sparse.linalg import splu
 from permway.challenge.beams import Reals
 from permway.challenge.contact import Hertz
 from permway.challenge.layout import Values
-from permway.challenge.newmark import Marched, Meshed, line_matrices, train_matrices
+from permway.challenge.newmark import GAMMA, UNDAMPED, Marched, Meshed, line_matrices, train_matrices
 from permway.challenge.plan import CONTACT_N_PER_M
 from permway.challenge.track import Spot
 from permway.challenge.vehicle import GRAVITY, WHEELS, Arm, vehicle, wheel_load
@@ -102,6 +102,7 @@ def cross(
     arms: Sequence[Arm] = (),
     step_s: float = 2.5e-4,
     viscous_at_Hz: float = 20.0,
+    beams_at_Hz: Mapping[str, float] | None = None,
 ) -> Crossing:
     """Let a train run.
 
@@ -114,7 +115,8 @@ def cross(
     from_m, to_m : float
         Of the first wheel. The train is at rest on the line at `from_m`, and has its speed at once.
     leaves : bool
-        Hertz's contact, which wheels may leave; else a linear one, which holds them down.
+        Hertz's contact, which wheels may leave; else a linear one, which holds them down. Where nothing lands,
+        steps damp nothing either.
     profile : callable, optional
         Of x (m): how much lower the rail's surface is, m.
     sensors : sequence of Spot
@@ -124,6 +126,8 @@ def cross(
     step_s : float
     viscous_at_Hz : float
         Where viscous losses are the hysteretic ones.
+    beams_at_Hz : mapping of str to float, optional
+        The same of some bodies.
 
     Raises
     ------
@@ -142,8 +146,10 @@ def cross(
     surface = profile or np.zeros_like
     law = _Contact(Hertz(wheel_load(train.values), CONTACT_N_PER_M), leaves)
     car = vehicle(train.values, CONTACT_N_PER_M)
-    below = Marched(line_matrices(line, viscous_at_Hz=viscous_at_Hz), step_s)
-    cars = Marched(train_matrices(car, train.cars), step_s)
+    gamma = GAMMA if leaves else UNDAMPED
+    matrices = line_matrices(line, viscous_at_Hz=viscous_at_Hz, beams_at_Hz=beams_at_Hz)
+    below = Marched(matrices, step_s, gamma)
+    cars = Marched(train_matrices(car, train.cars), step_s, gamma)
     size = len(car.masses)
     wheels = np.array([size * number + wheel for number in range(train.cars) for wheel in WHEELS])
     weight = GRAVITY * cars.mass.diagonal()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Protocol
 
 import numpy as np
@@ -16,7 +17,8 @@ from permway.challenge.vehicle import Vehicle
 GAMMA = 0.52
 """A little above one half, so that what steps are too long for is damped: by 0.4 % at w dt = 0.4."""
 
-BETA = 0.25 * (GAMMA + 0.5) ** 2
+UNDAMPED = 0.5
+"""Where what steps are too long for cannot be struck; a rail's own loss is no more than what GAMMA adds."""
 
 COLUMNS = 512
 """Forces solved for at once."""
@@ -51,6 +53,8 @@ class Marched:
     ----------
     matrices : Matrices
     step_s : float
+    gamma : float
+        Newmark's; above one half it damps.
 
     Attributes
     ----------
@@ -58,11 +62,11 @@ class Marched:
         Displacement, velocity, acceleration.
     """
 
-    def __init__(self, matrices: Matrices, step_s: float) -> None:
+    def __init__(self, matrices: Matrices, step_s: float, gamma: float = GAMMA) -> None:
         self.mass, self.damping, self.stiffness = matrices
-        self.step_s = step_s
-        h = step_s
-        effective = self.stiffness + GAMMA / (BETA * h) * self.damping + 1.0 / (BETA * h**2) * self.mass
+        self.step_s, self._gamma, self._beta = step_s, gamma, 0.25 * (gamma + 0.5) ** 2
+        h, beta = step_s, self._beta
+        effective = self.stiffness + gamma / (beta * h) * self.damping + 1.0 / (beta * h**2) * self.mass
         self._solve = splu(sparse.csc_array(effective)).solve
         size = self.mass.shape[0]
         self.moved, self.speed, self.hurried = np.zeros(size), np.zeros(size), np.zeros(size)
@@ -70,8 +74,9 @@ class Marched:
     def free(self, force: Reals) -> Reals:
         """Where it would be a step later under forces at its end."""
         h, u, v, a = self.step_s, self.moved, self.speed, self.hurried
-        inert = u / (BETA * h**2) + v / (BETA * h) + (0.5 / BETA - 1.0) * a
-        lost = GAMMA / (BETA * h) * u + (GAMMA / BETA - 1.0) * v + 0.5 * h * (GAMMA / BETA - 2.0) * a
+        gamma, beta = self._gamma, self._beta
+        inert = u / (beta * h**2) + v / (beta * h) + (0.5 / beta - 1.0) * a
+        lost = gamma / (beta * h) * u + (gamma / beta - 1.0) * v + 0.5 * h * (gamma / beta - 2.0) * a
         return np.asarray(self._solve(force + self.mass @ inert + self.damping @ lost))
 
     def gives(self, degrees: NDArray[np.int64]) -> Reals:
@@ -86,23 +91,33 @@ class Marched:
 
     def go_on(self, moved: Reals) -> None:
         """Take a step to where it is."""
-        h, by = self.step_s, moved - self.moved
-        hurried = by / (BETA * h**2) - self.speed / (BETA * h) - (0.5 / BETA - 1.0) * self.hurried
-        self.speed = self.speed + h * ((1.0 - GAMMA) * self.hurried + GAMMA * hurried)
+        h, by, beta = self.step_s, moved - self.moved, self._beta
+        hurried = by / (beta * h**2) - self.speed / (beta * h) - (0.5 / beta - 1.0) * self.hurried
+        self.speed = self.speed + h * ((1.0 - self._gamma) * self.hurried + self._gamma * hurried)
         self.moved, self.hurried = moved, hurried
 
 
-def line_matrices(mesh: Meshed, *, viscous_at_Hz: float, temperature_C: float = 20.0) -> Matrices:
-    """A track's, with viscous losses that are the hysteretic ones at a frequency; viscous ones are as they are."""
+def line_matrices(
+    mesh: Meshed,
+    *,
+    viscous_at_Hz: float,
+    beams_at_Hz: Mapping[str, float] | None = None,
+    temperature_C: float = 20.0,
+) -> Matrices:
+    """A track's, with viscous losses that are the hysteretic ones at a frequency; viscous ones are as they are.
+
+    Each beam may have a frequency of its own, `beams_at_Hz`.
+    """
     omega = 2.0 * np.pi * viscous_at_Hz
     parts: dict[str, list[tuple[Reals, NDArray[np.int64]]]] = {"mass": [], "damping": [], "stiffness": []}
     for body, beam in mesh.track.beams.items():
+        turning = 2.0 * np.pi * (beams_at_Hz or {}).get(body, viscous_at_Hz)
         for dofs, left, right in mesh.elements(body):
             section = beam.part(left, right)
             stiffness, mass = element(section, right - left)
             parts["mass"].append((mass, dofs))
             parts["stiffness"].append((stiffness, dofs))
-            parts["damping"].append((section.loss / omega * stiffness, dofs))
+            parts["damping"].append((section.loss / turning * stiffness, dofs))
     at = np.array([viscous_at_Hz])
     laws = {name: law(at, temperature_C)[0] for name, law in mesh.track.laws.items()}
     for link in mesh.track.links:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from permway.arrays import Reals
@@ -44,7 +46,9 @@ def bases(evidence: Evidence, clock: Clock) -> tuple[Fit, Fit]:
         )
 
     searched = fitted(evidence.blunted(BLUNT), None, reweigh=True)
-    # What hides in noise, and what spectra weigh, is told by a prediction: by a better one each time.
+    # What hides in noise, and what spectra weigh, is told by a prediction: by a better one each time. What rolling
+    # changes is known about a line, too.
+    evidence = replace(evidence, campaign=evidence.campaign.rolling_about(searched.campaign))
     about = evidence.predicted(searched.campaign)
     sharp = evidence.reweighed(about)
     if searched.heat > NEARLY and sharp.missed(2.0 * BLUNT, about) < FEW:

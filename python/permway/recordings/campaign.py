@@ -14,6 +14,7 @@ from permway.model.faults import model_error, refuse_coercion
 from permway.model.file import Model, read_model
 from permway.reading import inside, read_toml
 from permway.recordings.campaign_checks import check_campaign
+from permway.recordings.campaign_excitation import About
 from permway.recordings.campaign_parts import Condition, HeldOut, IrregularityKnown, Record
 from permway.recordings.campaign_values import ParameterSet
 from permway.recordings.channel import Point, Sensor
@@ -132,6 +133,25 @@ class Campaign:
         """
         return Campaign(self.said, model, self.folder, self.parameters.on(model))
 
+    def rolling_about(self, other: Campaign) -> Campaign:
+        """The campaign whose trains roll over the supports of another's line, at its speeds; see :class:`About`.
+
+        One whose trains stand stays as it is.
+        """
+        known = self.said.irregularity
+        if known.rolling is None:
+            return self
+        warm = other.model.temperature_C
+        runs = {
+            c.name: (c.speed_m_per_s, warm if c.temperature_C is None else c.temperature_C)
+            for c in other.said.conditions
+            if c.speed_m_per_s
+        }
+        rolling = known.rolling.model_copy(update={"about": About(other.model.line, runs)})
+        irregularity = known.model_copy(update={"rolling": rolling})
+        said = self.said.model_copy(update={"irregularity": irregularity})
+        return Campaign(said, self.model, self.folder, self.parameters.saying(said))
+
     def with_records(self, records: Sequence[Record]) -> Campaign:
         """The campaign with some of its records, or of their channels, alone."""
         said = self.said.model_copy(update={"records": tuple(records)})
@@ -216,7 +236,8 @@ def campaign_from_dict(table: Mapping[str, Any], *, folder: Path, allow_outside:
                 raise InputError("there is no such file", where=where, value=name)
     check_campaign(said, model)
     raw = read_toml(model_path, "name a model file (TOML)")
-    return Campaign(said, model, folder, ParameterSet(said.parameters, model, raw, said, model_path.parent))
+    read = Campaign(said, model, folder, ParameterSet(said.parameters, model, raw, said, model_path.parent))
+    return read.rolling_about(read)
 
 
 def beside(name: str, folder: Path, where: str, *, outside: bool) -> Path:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
-from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
+from pydantic import Field, InstanceOf, NonNegativeFloat, PositiveFloat, model_validator
 
 from permway.arrays import Reals
 from permway.errors import InputError
@@ -145,6 +146,21 @@ class WheelLines(_Lines):
     wheel: int | None = Field(default=None, ge=1, strict=True)
 
 
+@dataclass(frozen=True, eq=False)
+class About:
+    """A line and the runs on it for which it is known what rolling changes.
+
+    Attributes
+    ----------
+    line : Line
+    runs : mapping of str to (float, float or None)
+        By condition: speed in m/s, temperature in degC.
+    """
+
+    line: Line
+    runs: Mapping[str, tuple[float, float | None]]
+
+
 class Rolling(FrozenModel):
     """Wheels roll over supports that repeat, where else they stand and the profile moves under them.
 
@@ -157,14 +173,14 @@ class Rolling(FrozenModel):
         Of the supports.
     share : float
         Of all that rolling changes: 1 as the line has it, 0 stands.
-    about : Line, optional
-        Whose supports wheels roll over; the change is carried over to the model's own line, which differs little.
-        By default that itself. Not in files.
+    about : About, optional
+        For what it is known what rolling changes: that is carried over to the model's own line and speeds, which
+        differ little. Of a campaign that is read, its model and its conditions. Not in files.
     """
 
     spacing_m: float = Field(ge=0.1, le=10.0)
     share: float = Field(default=1.0, ge=0.0, le=3.0)
-    about: Line | None = Field(default=None, exclude=True, repr=False)
+    about: InstanceOf[About] | None = Field(default=None, exclude=True, repr=False)
 
 
 class Push(FrozenModel):

@@ -131,6 +131,12 @@ class ParameterSet:
         other._table = {}
         return other
 
+    def saying(self, own: object) -> ParameterSet:
+        """The same parameters, acting on another record of the campaign file, alike where they act."""
+        other = copy.copy(self)
+        other._own = own
+        return other
+
     def touches(self, name: str) -> set[str]:
         """First two keys of the paths of a parameter, as "line.laws" or "train.vehicle" or "campaign.sensors"."""
         found = set()

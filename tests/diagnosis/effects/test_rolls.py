@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from permway.diagnosis.bases import bases
 from permway.diagnosis.catalogue import entries
-from permway.diagnosis.catalogue._excite import with_irregularity
+from permway.diagnosis.catalogue._excite import with_irregularity, with_speed
+from permway.diagnosis.clock import Clock
 from permway.diagnosis.compete import Ring
+from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.refit import relearnt
+from permway.errors import InputError
 from permway.laws.toml import to_toml
 from permway.recordings.campaign import Campaign, read_campaign
 from permway.recordings.campaign_excitation import Rolling
 from permway.recordings.predict import predict
-from trains import CAMPAIGN, blank, campaign_in, situation_of
+from permway.recordings.predict import rolling as rolling_predicted
+from trains import CAMPAIGN, blank, campaign_in, drawn, situation_of
 
 SPACING_M = 0.6
 
@@ -35,13 +41,21 @@ def rolls(owner: Campaign) -> Situation:
     return situation_of(owner, 21, amend=lambda c: with_irregularity(c, rolling=Rolling(spacing_m=SPACING_M)))
 
 
-def test_a_campaign_file_lets_its_train_roll(owner: Campaign, tmp_path: Path) -> None:
-    """Lines of its weight at V over the spacing, and little else far below."""
+@pytest.fixture(scope="module")
+def said(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
+    """A campaign whose file says that its train rolls."""
+    folder = tmp_path_factory.mktemp("said")
+    campaign_in(folder)
     table = {**CAMPAIGN, "irregularity": {**CAMPAIGN["irregularity"], "rolling": {"spacing_m": SPACING_M}}}
-    campaign_in(tmp_path)
-    (tmp_path / "campaign.toml").write_text(to_toml(table))
-    said = read_campaign(tmp_path / "campaign.toml")
-    assert said.said.irregularity.rolling == Rolling(spacing_m=SPACING_M)
+    (folder / "campaign.toml").write_text(to_toml(table))
+    return read_campaign(folder / "campaign.toml")
+
+
+def test_a_campaign_file_lets_its_train_roll(owner: Campaign, said: Campaign) -> None:
+    """Lines of its weight at V over the spacing, and little else far below."""
+    known = said.said.irregularity.rolling
+    assert known is not None
+    assert known.model_copy(update={"about": None}) == Rolling(spacing_m=SPACING_M)
     runs = [one for one in blank(owner) if one.record.statistic == "csd"]
     for dataset, still, rolling in zip(runs, predict(owner, runs), predict(said, runs), strict=True):
         passing = dataset.condition.speed_m_per_s / SPACING_M  # type: ignore[operator]
@@ -52,6 +66,50 @@ def test_a_campaign_file_lets_its_train_roll(owner: Campaign, tmp_path: Path) ->
         shared = rolling["csd"].values[:, :, 40]
         assert np.allclose(shared, shared.conj().T)
         assert np.linalg.eigvalsh(shared).min() > 0.0
+
+
+def test_a_train_that_is_said_to_roll_does_so_over_the_line_that_is_found(said: Campaign) -> None:
+    right = {"pad.k": 6.9e7, "pad.eta": 0.17, "level": 0.7}
+    truth = said.with_values(right)
+    evidence = gather(said, drawn(truth.rolling_about(truth), 24), threads=1)
+    base, _ = bases(evidence, Clock(None))
+    rolling = base.campaign.said.irregularity.rolling
+    assert rolling is not None
+    assert rolling.about is not None
+    assert rolling.about.line.laws["pad"].stiffness == pytest.approx(6.9e7, rel=0.02)  # type: ignore[union-attr]
+    assert base.heat < 1.1
+    values = base.values()
+    assert values["pad.k"] == pytest.approx(6.9e7, rel=0.01)
+    assert values["level"] == pytest.approx(0.7, abs=0.3)
+
+
+def test_speeds_and_temperatures_that_differ_little_ask_for_nothing_new(
+    said: Campaign, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    runs = [one for one in blank(said) if one.record.statistic == "csd"]
+    predict(said, runs)
+    made: list[float] = []
+    real = rolling_predicted.kernel
+
+    def counted(*args: Any, speed_m_per_s: float, **rest: Any) -> Any:
+        made.append(speed_m_per_s)
+        return real(*args, speed_m_per_s=speed_m_per_s, **rest)
+
+    monkeypatch.setattr(rolling_predicted, "kernel", counted)
+    predict(with_speed(said, 1.03), runs)
+    assert made == []
+    predict(with_speed(said, 1.08), runs)
+    assert made == pytest.approx([54.0, 76.68])
+
+
+def test_a_line_of_its_own_is_not_for_files(owner: Campaign, tmp_path: Path) -> None:
+    rolling = {"spacing_m": SPACING_M, "about": {"bodies": {}}}
+    campaign_in(tmp_path)
+    (tmp_path / "campaign.toml").write_text(
+        to_toml({**CAMPAIGN, "irregularity": {**CAMPAIGN["irregularity"], "rolling": rolling}})
+    )
+    with pytest.raises(InputError, match="about"):
+        read_campaign(tmp_path / "campaign.toml")
 
 
 def test_it_is_looked_for_where_supports_are_seen_to_pass(owner: Campaign, rolls: Situation) -> None:

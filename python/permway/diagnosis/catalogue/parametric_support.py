@@ -81,11 +81,11 @@ def _pass(runs: list[Excess], spacing: float) -> bool:
 
 def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothesis]:
     """A train that rolls over the supports of the base; none if the line cannot be solved for that."""
-    about = situation.campaign.model.line
+    rolls = with_irregularity(situation.campaign, rolling=Rolling(spacing_m=spacing))
+    known = dict(rolls.rolling_about(situation.campaign).said.irregularity.rolling or {})
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
-        rolling = Rolling(spacing_m=spacing, share=values["share"], about=about)
-        return with_irregularity(campaign, rolling=rolling)
+        return with_irregularity(campaign, rolling=Rolling(**{**known, "share": values["share"]}))
 
     try:
         # Here, so that processes that share the screening do not each begin with it.

@@ -19,8 +19,9 @@ from permway.recordings.predict.motion import wheels_of
 from permway.response.rolling import Kernel, Rolled, kernel, rolled
 from permway.response.rolling.harmonics import REACH
 
-SPEED_STEP = 0.01
-"""Speeds nearer to each other than this, relative, share a kernel: waves arrive shifted by a thousandth of it."""
+LIKE = 0.05
+"""Speeds as near as this, relative, to the one for which rolling is known share its kernel: they differ by as much
+of what Doppler's effect turns, 0.6 rad at 300 km/h and 300 Hz."""
 
 KEPT = 8
 """Kernels in memory, some megabytes each."""
@@ -78,9 +79,12 @@ def kernel_of(
 ) -> Kernel:
     """The kernel of a run up to what is coupled with a frequency; the same line gives the same one again."""
     assert model.train is not None
-    line = rolling.about or model.line
-    speed = float(np.exp(SPEED_STEP * np.round(np.log(speed_of(condition)) / SPEED_STEP)))
-    wheels = wheels_of(model, condition)
+    line, speed, wheels = model.line, speed_of(condition), wheels_of(model, condition)
+    if rolling.about is not None:
+        line = rolling.about.line
+        known, warm = rolling.about.runs.get(condition.name, (speed, temperature_C))
+        if abs(speed / known - 1.0) < LIKE:
+            speed, temperature_C = known, warm
     key = (id(line), wheels.tobytes(), speed, rolling.spacing_m, top_Hz, temperature_C, model.formulation)
     if key not in _KEPT:
         found = kernel(

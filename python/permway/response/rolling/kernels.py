@@ -12,12 +12,15 @@ wavenumbers). That the point has moved on when a wave arrives is Doppler's effec
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.fft import next_fast_len
 
 from permway.arrays import Complexes, Reals
 from permway.errors import InputError
+from permway.model.bodies import Beam
 from permway.model.line import Line
 from permway.response.core import Formulation
 from permway.response.receptance import Place, between
@@ -37,8 +40,11 @@ PER_BAY = PHASES
 BEHIND_M, AHEAD_S = 3.0, 0.25
 """The rail is read from so far behind the last wheel to where the first will be so much later."""
 
-SHIFTS = (-6, -2, 2, 6)
-"""Bays by which wheels are moved to places whose mean is taken: next to a slab's end supports are not as usual."""
+NEAR = (-6, -2, 2, 6)
+"""Bays by which wheels are moved to places whose mean is taken where nothing below comes in pieces of a length."""
+
+EVERY = 2
+"""Where something does, a mean over every second bay of a piece."""
 
 TAPER = 0.85
 """Share of the highest frequency from which the transform fades out."""
@@ -57,7 +63,7 @@ class Kernel:
     frequency_Hz : ndarray, shape (F,)
         From 0 Hz, equally spaced; of the motion.
     harmonics : ndarray of complex128, shape (2 M + 1, F, wheels, wheels)
-        K_n of n from -M to M, m/N: what rolling changes is the mean over some places, some bays apart.
+        K_n of n from -M to M, m/N, their mean over places some bays apart.
     standing : ndarray of complex128, shape (F, wheels, wheels)
         Receptance while the wheels stand where they are at the time 0.
     spacing_m, speed_m_per_s : float
@@ -90,7 +96,8 @@ def kernel(
     body : str
         That the wheels roll on; it goes on without end, or for as far as they roll in 0.25 s.
     wheels_m : ndarray, shape (wheels,)
-        Where they are at the time 0, the leading one first, m; girders below are as they are there.
+        Where they are at the time 0, the leading one first, m. Of the longest pieces of a length below, spans or
+        slabs, the mean is taken over one; without any over some places near, of what rolling changes there.
     speed_m_per_s : float
     spacing_m : float
         Of what repeats along the rail.
@@ -110,7 +117,7 @@ def kernel(
         if not (np.isfinite(value) and value > 0.0):
             raise InputError("must be above zero", where=where, value=value)
     wheels = np.asarray(wheels_m, dtype=np.float64)
-    solved = np.arange(1, int(np.ceil(to_Hz / TAPER / STEP_HZ)) + 1) * STEP_HZ
+    solved = np.arange(1, next_fast_len(int(np.ceil(to_Hz / TAPER / STEP_HZ)), real=True) + 1) * STEP_HZ
     step = spacing_m / PER_BAY
     reach = float(np.ptp(wheels)) + BEHIND_M, float(np.ptp(wheels)) + spacing_m + AHEAD_S * speed_m_per_s
     read = step * np.arange(-np.ceil(reach[0] / step), np.ceil(reach[1] / step) + 1.0)
@@ -120,8 +127,9 @@ def kernel(
     harmonics = np.zeros((2 * HARMONICS + 1, *standing.shape), dtype=np.complex128)
     orders = np.arange(-HARMONICS, HARMONICS + 1)
     series = np.exp(-2j * np.pi * np.outer(orders, np.arange(PHASES)) / PHASES) / PHASES
-    for shift in (0, *SHIFTS):
-        at = wheels + shift * spacing_m
+    shifts, over_all = _places(line, wheels, spacing_m)
+    for shift in (None, *shifts):
+        at = wheels if shift is None else wheels + shift * spacing_m
         points = [Place(body=body, x_m=float(x), name=f"wheel {i}") for i, x in enumerate(at)]
         for source, x in enumerate(at):
             sensors = points + [Place(body=body, x_m=float(x + r), name=f"{i}") for i, r in enumerate(read)]
@@ -129,7 +137,7 @@ def kernel(
                 line,
                 solved,
                 forces=[Place(body=body, x_m=float(x + p), name=f"{p:g}") for p in phases],
-                sensors=sensors if shift else points,
+                sensors=points if shift is None else sensors,
                 temperature_C=temperature_C,
                 formulation=formulation,
                 threads=threads,
@@ -137,7 +145,7 @@ def kernel(
             # At rest as at the lowest frequency, without what it loses.
             answer = np.concatenate([answer[:1].real.astype(np.complex128), answer])
             still = answer[:kept, : wheels.size, 0]
-            if shift == 0:
+            if shift is None:
                 standing[:, :, source] = still
                 continue
             seen = np.empty((PHASES, kept, wheels.size), dtype=np.complex128)
@@ -145,11 +153,28 @@ def kernel(
                 starts = at - x + p
                 seen[index] = _along(answer[:, wheels.size :, index], read, starts, speed_m_per_s)[:kept]
             found = np.tensordot(series, seen, axes=1)
-            # Of the mean what rolling changes; girders stay as they are where the train stands.
-            found[HARMONICS] -= still
-            harmonics[:, :, :, source] += found / len(SHIFTS)
-    harmonics[HARMONICS] += standing
+            if not over_all:
+                # What rolling changes; whatever is below stays as it is where the train stands.
+                found[HARMONICS] += standing[:, :, source] - still
+            harmonics[:, :, :, source] += found / len(shifts)
     return Kernel(STEP_HZ * np.arange(kept, dtype=np.float64), harmonics, standing, spacing_m, speed_m_per_s)
+
+
+def _places(line: Line, wheels: Reals, spacing: float) -> tuple[Sequence[int], bool]:
+    """Bays by which wheels are moved, and whether what is below comes back after them."""
+    middle = float(wheels.mean())
+    pieces = [
+        stop - start
+        for body in line.bodies.values()
+        if isinstance(body, Beam) and body.intervals_m is not None and len(body.intervals_m) > 1
+        for start, stop in body.intervals_m
+        if start <= middle <= stop
+    ]
+    if not pieces:
+        return NEAR, False
+    bays = max(1, round(max(pieces) / spacing))
+    count = -(-bays // EVERY)
+    return [round(bays * (i / count - 0.5)) for i in range(count)], True
 
 
 def _along(answer: Complexes, read: Reals, starts: Reals, speed: float) -> Complexes:
