@@ -46,6 +46,14 @@ OF_RIVALS = {
     "outdone": "the diagnosis foretells them better",
 }
 
+ALONE = {
+    "alone_quiet": "quiet where nothing is concealed",
+    "alone_placed": "place",
+    "alone_family": "family",
+    "alone_no_false_name": "no false name",
+    "outdone": "foretells better what was left out",
+}
+
 
 def page(suites: dict[str, dict[str, Any]]) -> str:
     """The page.
@@ -152,6 +160,25 @@ def _rivals(rows: list[dict[str, Any]]) -> list[str]:
     for row in rows:
         cells = [str(row.get(key, "")) for key in keys]
         lines.append(f"| {row['rival']} | {row['group']}, {row['cases']} | {' | '.join(cells)} |")
+    return [*lines, *_alone(rows)]
+
+
+def _alone(rows: list[dict[str, Any]]) -> list[str]:
+    """Campaign by campaign, against each rival."""
+    if not any(key in row for row in rows for key in ALONE if key != "outdone"):
+        return []
+    lines = [
+        "",
+        "Campaign by campaign: of those that one alone of the two has right, how many are the diagnosis':",
+        "",
+        f"| rival | {' | '.join(ALONE.values())} |",
+        f"|---|{'---|' * len(ALONE)}",
+    ]
+    for rival in dict.fromkeys(row["rival"] for row in rows if row["rival"] != "permway"):
+        found = {key: cell for row in rows if row["rival"] == rival for key, cell in row.items() if key in ALONE}
+        told = {row["tier"]: row.get("alone_no_false_name") for row in rows if row["rival"] == rival}
+        found["alone_no_false_name"] = "; ".join(f"{tier}: {cell}" for tier, cell in told.items() if cell)
+        lines.append(f"| {rival} | {' | '.join(found.get(key, '') for key in ALONE)} |")
     return lines
 
 

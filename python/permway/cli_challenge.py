@@ -241,7 +241,7 @@ def _rivals(folder: Path) -> list[dict[str, object]]:
 
     from permway.challenge.rivals import ANSWERS
     from permway.challenge.score import score
-    from permway.challenge.summary import foretold_better, summary
+    from permway.challenge.summary import foretold_better, right_alone, summary
     from permway.diagnosis.catalogue import entries
     from permway.diagnosis.rivals import RIVALS
 
@@ -255,7 +255,11 @@ def _rivals(folder: Path) -> list[dict[str, object]]:
             replace(one, tier="null" if one.found is None else "something concealed", deviance=None)
             for one in scored
         ):
-            alike = {one.name for one in scored if (one.found is None) == (row["tier"] == "null")}
-            better = foretold_better([one for one in own if one.name in alike], scored)
-            rows.append({"rival": name, **row, **({"outdone": better} if better and name != "permway" else {})})
+            against = {}
+            if name != "permway":
+                alike = [one for one in own if (one.found is None) == (row["tier"] == "null")]
+                against = right_alone(alike, scored)
+                if better := foretold_better(alike, scored):
+                    against["outdone"] = better
+            rows.append({"rival": name, **row, **against})
     return rows

@@ -217,6 +217,11 @@ def test_rivals_are_told_beside_the_diagnosis_on_the_campaigns_that_they_answere
     # The diagnosis gains 5 nats.
     assert str(rows["BIC, independent errors", "something concealed"]["outdone"]).startswith("1/1")
     assert str(rows["classifier", "something concealed"]["outdone"]).startswith("0/1")
+    # Which of the two is right where one alone is.
+    assert str(rows["BIC, independent errors", "something concealed"]["alone_placed"]).startswith("1/1")
+    assert str(rows["classifier", "null"]["alone_quiet"]).startswith("1/1")
+    assert "alone_placed" not in rows["classifier", "something concealed"]
+    assert "alone_quiet" not in rows["BIC, independent errors", "null"]
     # Where it says nothing, it foretells nothing that the base does not.
     assert "outdone" not in rows["classifier", "null"]
 

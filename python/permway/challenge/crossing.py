@@ -16,7 +16,7 @@ from scipy.sparse.linalg import splu
 from permway.challenge.beams import Reals
 from permway.challenge.contact import Hertz
 from permway.challenge.layout import Values
-from permway.challenge.newmark import GAMMA, UNDAMPED, Marched, Meshed, line_matrices, train_matrices
+from permway.challenge.newmark import GAMMA, Marched, Meshed, line_matrices, train_matrices
 from permway.challenge.plan import CONTACT_N_PER_M
 from permway.challenge.track import Spot
 from permway.challenge.vehicle import GRAVITY, WHEELS, Arm, vehicle, wheel_load
@@ -103,6 +103,7 @@ def cross(
     step_s: float = 2.5e-4,
     viscous_at_Hz: float = 20.0,
     beams_at_Hz: Mapping[str, float] | None = None,
+    gamma: float = GAMMA,
 ) -> Crossing:
     """Let a train run.
 
@@ -115,8 +116,7 @@ def cross(
     from_m, to_m : float
         Of the first wheel. The train is at rest on the line at `from_m`, and has its speed at once.
     leaves : bool
-        Hertz's contact, which wheels may leave; else a linear one, which holds them down. Where nothing lands,
-        steps damp nothing either.
+        Hertz's contact, which wheels may leave; else a linear one, which holds them down.
     profile : callable, optional
         Of x (m): how much lower the rail's surface is, m.
     sensors : sequence of Spot
@@ -128,6 +128,8 @@ def cross(
         Where viscous losses are the hysteretic ones.
     beams_at_Hz : mapping of str to float, optional
         The same of some bodies.
+    gamma : float
+        Of the steps, see :class:`permway.challenge.newmark.Marched`.
 
     Raises
     ------
@@ -146,7 +148,6 @@ def cross(
     surface = profile or np.zeros_like
     law = _Contact(Hertz(wheel_load(train.values), CONTACT_N_PER_M), leaves)
     car = vehicle(train.values, CONTACT_N_PER_M)
-    gamma = GAMMA if leaves else UNDAMPED
     matrices = line_matrices(line, viscous_at_Hz=viscous_at_Hz, beams_at_Hz=beams_at_Hz)
     below = Marched(matrices, step_s, gamma)
     cars = Marched(train_matrices(car, train.cars), step_s, gamma)

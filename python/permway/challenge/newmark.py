@@ -18,7 +18,7 @@ GAMMA = 0.52
 """A little above one half, so that what steps are too long for is damped: by 0.4 % at w dt = 0.4."""
 
 UNDAMPED = 0.5
-"""Where what steps are too long for cannot be struck; a rail's own loss is no more than what GAMMA adds."""
+"""Where nothing strikes what steps are too long for: a rail itself loses little more than GAMMA has it lose."""
 
 COLUMNS = 512
 """Forces solved for at once."""

@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 
 from permway.challenge.beams import Complexes
 from permway.challenge.crossing import Consist, cross
+from permway.challenge.newmark import UNDAMPED
 from permway.challenge.plan import Plan
 from permway.challenge.ring import Ring
 from permway.errors import InputError
@@ -82,5 +83,6 @@ def rolled(plan: Plan, met: Complexes, speed: float, *, samples: int, sampling_H
         step_s=step,
         viscous_at_Hz=LOSE_AT_HZ,
         beams_at_Hz=BEAMS_LOSE_AT_HZ,
+        gamma=UNDAMPED,
     )
     return np.asarray(np.fft.rfft(done.felt[start:], axis=0)[: samples // 2 + 1] / FINER)
