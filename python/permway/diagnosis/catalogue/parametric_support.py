@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
+from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue._excite import rail_laws, stays, with_irregularity
 from permway.diagnosis.catalogue._interval import spacing_of
 from permway.diagnosis.catalogue._lines import FACTOR, coordinate, repeats
 from permway.diagnosis.catalogue._runs import Excess, combs, excesses
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, log_free
+from permway.diagnosis.recalibrate import recalibrate
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_excitation import Rolling
@@ -19,9 +22,9 @@ ID = "parametric_support"
 DOMAIN: Domain = "irregularity"
 FAMILY = "tied to speed over length"
 SUMMARY = (
-    "Wheels roll over fasteners: their weight shakes them at multiples n of V over the spacing; what a profile "
-    "does at one frequency it does so far away, too. By the model's own supports, with harmonics coupled; or as "
-    "lines a n^-p in the profile, which leave out how the stiffness itself varies under the wheel."
+    "Wheels roll over fasteners, and from span to span: their weight shakes them at multiples n of V over the "
+    "spacing; what a profile does at one frequency it does so far away, too. By the model's own supports, with "
+    "harmonics coupled; or as lines a n^-p in the profile, which leave out how the stiffness itself varies."
 )
 PARAMETERS = {
     "share": "1, 0.4 to 2.5: of what rolling over the model's own supports changes; 1 is as the model has them",
@@ -81,8 +84,12 @@ def _pass(runs: list[Excess], spacing: float) -> bool:
 
 def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothesis]:
     """A train that rolls over the supports of the base; none if the line cannot be solved for that."""
+    try:
+        still, about = _known_at_rest(situation)
+    except (InputError, SolveError):
+        return
     rolls = with_irregularity(situation.campaign, rolling=Rolling(spacing_m=spacing))
-    known = dict(rolls.rolling_about(situation.campaign).said.irregularity.rolling or {})
+    known = dict(rolls.rolling_about(still).said.irregularity.rolling or {})
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         return with_irregularity(campaign, rolling=Rolling(**{**known, "share": values["share"]}))
@@ -105,15 +112,28 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
         ),
         size="share",
         variant="rolling",
-        about=_as_the_owner_says(situation),
+        about=about,
     )
 
 
-def _as_the_owner_says(situation: Situation) -> dict[str, float]:
-    """Parameters of train, speeds and irregularity: a base that stands bends them to what rolling does."""
-    known = situation.campaign.parameters.known
-    return {
-        free.name: 0.0
-        for free in situation.fit.free
-        if free.name in known and all(path.startswith(RUNS) for path in known[free.name].parameter.paths)
-    }
+def _known_at_rest(situation: Situation) -> tuple[Campaign, dict[str, float]]:
+    """The base without what runs bent it to, for they were told by a train that stands.
+
+    Of records that are no runs, where there are any: they know nothing of rolling. Without them the base, train
+    and speeds as the owner says.
+
+    Returns
+    -------
+    Campaign
+    dict
+        Parameters in standard deviations of their priors.
+    """
+    fit, known = situation.fit, situation.campaign.parameters.known
+    of_runs = {n for n, one in known.items() if all(path.startswith(RUNS) for path in one.parameter.paths)}
+    z = np.array([0.0 if free.name in of_runs else at for free, at in zip(fit.free, fit.z, strict=True)])
+    responses = tuple(block for block in fit.evidence.blocks if isinstance(block, FrfBlock))
+    if responses:
+        evidence = replace(fit.evidence, blocks=responses)
+        z = recalibrate(evidence, build=fit.build, free=fit.free, start=z, learn=False, reweigh=False).z
+    pairs = list(zip(fit.free, z.tolist(), strict=True))
+    return fit.build({free.name: free.value(at) for free, at in pairs}), {free.name: at for free, at in pairs}
