@@ -96,8 +96,8 @@ def kernel(
     body : str
         That the wheels roll on; it goes on without end, or for as far as they roll in 0.25 s.
     wheels_m : ndarray, shape (wheels,)
-        Where they are at the time 0, the leading one first, m. Of the longest pieces of a length below, spans or
-        slabs, the mean is taken over one; without any over some places near, of what rolling changes there.
+        Where they are at the time 0, the leading one first, m. Where something below comes in pieces, spans or
+        slabs, the mean is taken over the longest under the train; else over places near, of what rolling changes.
     speed_m_per_s : float
     spacing_m : float
         Of what repeats along the rail.
