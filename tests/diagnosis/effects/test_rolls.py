@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -97,6 +98,9 @@ def test_speeds_and_temperatures_that_differ_little_ask_for_nothing_new(
 
     monkeypatch.setattr(rolling_predicted, "kernel", counted)
     predict(with_speed(said, 1.03), runs)
+    assert made == []
+    warmer = tuple(c.model_copy(update={"temperature_C": 17.0}) for c in said.said.conditions)
+    predict(replace(said, said=said.said.model_copy(update={"conditions": warmer})), runs)
     assert made == []
     predict(with_speed(said, 1.08), runs)
     assert made == pytest.approx([54.0, 76.68])

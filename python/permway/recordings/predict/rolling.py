@@ -21,7 +21,7 @@ from permway.response.rolling.harmonics import REACH
 
 LIKE = 0.05
 """Speeds as near as this, relative, to the one for which rolling is known share its kernel: they differ by as much
-of what Doppler's effect turns, 0.6 rad at 300 km/h and 300 Hz."""
+of what Doppler's effect turns, 0.6 rad at 300 km/h and 300 Hz. So does any temperature."""
 
 KEPT = 8
 """Kernels in memory, some megabytes each."""
