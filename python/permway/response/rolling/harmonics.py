@@ -15,7 +15,8 @@ import numpy as np
 
 from permway.arrays import Complexes, Reals
 from permway.model.vehicle import Vehicle
-from permway.response.rolling.kernels import HARMONICS, Kernel
+from permway.response.rolling.kernels import Kernel
+from permway.response.rolling.passed import HARMONICS
 
 REACH = 3
 """Harmonics on either side of a line that are coupled with it."""

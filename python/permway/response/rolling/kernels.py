@@ -12,8 +12,8 @@ wavenumbers). That the point has moved on when a wave arrives is Doppler's effec
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.fft import next_fast_len
@@ -22,36 +22,20 @@ from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.model.bodies import Beam
 from permway.model.line import Line
+from permway.model.stations import TOUCH_M
 from permway.response.core import Formulation
 from permway.response.receptance import Place, between
-
-PHASES = 8
-"""Places of a bay from which forces start."""
-
-HARMONICS = 3
-"""Of the passing, on either side, which so many places tell apart."""
-
-STEP_HZ = 1.0
-"""Of the transform: what is left after 1 s wraps around."""
-
-PER_BAY = PHASES
-"""Places to a bay where the rail is read, forces' own among them, for it has a kink there; between them cubics."""
-
-BEHIND_M, AHEAD_S = 3.0, 0.25
-"""The rail is read from so far behind the last wheel to where the first will be so much later."""
+from permway.response.rolling.bays import bays
+from permway.response.rolling.passed import HARMONICS, STEP_HZ, TAPER, passed
 
 NEAR = (-6, -2, 2, 6)
 """Bays by which wheels are moved to places whose mean is taken where nothing below comes in pieces of a length."""
 
-EVERY = 2
-"""Where something does, a mean over every second bay of a piece."""
+MOST = 24
+"""Bays of a piece over which a mean is taken where something does: all, or as many as this, spread evenly."""
 
-TAPER = 0.85
-"""Share of the highest frequency from which the transform fades out."""
-
-FORWARD = 0.75
-"""Share of the transform's period that is time after the force; the rest is before it, where hysteretic laws
-answer."""
+TOGETHER = 4
+"""Bays that are solved at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,87 +101,76 @@ def kernel(
         if not (np.isfinite(value) and value > 0.0):
             raise InputError("must be above zero", where=where, value=value)
     wheels = np.asarray(wheels_m, dtype=np.float64)
-    solved = np.arange(1, next_fast_len(int(np.ceil(to_Hz / TAPER / STEP_HZ)), real=True) + 1) * STEP_HZ
-    step = spacing_m / PER_BAY
-    reach = float(np.ptp(wheels)) + BEHIND_M, float(np.ptp(wheels)) + spacing_m + AHEAD_S * speed_m_per_s
-    read = step * np.arange(-np.ceil(reach[0] / step), np.ceil(reach[1] / step) + 1.0)
-    phases = spacing_m / PHASES * np.arange(PHASES)
+    solved: Reals = STEP_HZ * np.arange(1.0, next_fast_len(int(np.ceil(to_Hz / TAPER / STEP_HZ)), real=True) + 1.0)
     kept = int(to_Hz / STEP_HZ) + 1
-    standing = np.empty((kept, wheels.size, wheels.size), dtype=np.complex128)
+    answer = partial(
+        _answer, line, body, solved, temperature_C=temperature_C, formulation=formulation, threads=threads
+    )
+    moved = partial(passed, answer, line, body, speed=speed_m_per_s, spacing=spacing_m, kept=kept)
+    standing = answer(wheels, wheels)[:kept]
+    ahead = wheels[:, None] - wheels
     harmonics = np.zeros((2 * HARMONICS + 1, *standing.shape), dtype=np.complex128)
     orders = np.arange(-HARMONICS, HARMONICS + 1)
-    series = np.exp(-2j * np.pi * np.outer(orders, np.arange(PHASES)) / PHASES) / PHASES
-    shifts, over_all = _places(line, wheels, spacing_m)
-    for shift in (None, *shifts):
-        at = wheels if shift is None else wheels + shift * spacing_m
-        points = [Place(body=body, x_m=float(x), name=f"wheel {i}") for i, x in enumerate(at)]
-        for source, x in enumerate(at):
-            sensors = points + [Place(body=body, x_m=float(x + r), name=f"{i}") for i, r in enumerate(read)]
-            answer = between(
-                line,
-                solved,
-                forces=[Place(body=body, x_m=float(x + p), name=f"{p:g}") for p in phases],
-                sensors=points if shift is None else sensors,
-                temperature_C=temperature_C,
-                formulation=formulation,
-                threads=threads,
-            ).receptance
-            # At rest as at the lowest frequency, without what it loses.
-            answer = np.concatenate([answer[:1].real.astype(np.complex128), answer])
-            still = answer[:kept, : wheels.size, 0]
-            if shift is None:
-                standing[:, :, source] = still
-                continue
-            seen = np.empty((PHASES, kept, wheels.size), dtype=np.complex128)
-            for index, p in enumerate(phases):
-                starts = at - x + p
-                seen[index] = _along(answer[:, wheels.size :, index], read, starts, speed_m_per_s)[:kept]
-            found = np.tensordot(series, seen, axes=1)
-            if not over_all:
-                # What rolling changes; whatever is below stays as it is where the train stands.
-                found[HARMONICS] += standing[:, :, source] - still
-            harmonics[:, :, :, source] += found / len(shifts)
+    starts = _starts(line, body, wheels)
+    if starts is None:
+        for shift in NEAR:
+            at = wheels + shift * spacing_m
+            found = np.stack(moved(at, ahead.T), axis=-1)
+            # What rolling changes; whatever is below stays as it is where the train stands.
+            found[HARMONICS] += standing - answer(at, at)[:kept]
+            harmonics += found / len(NEAR)
+    else:
+        apart, which = np.unique(ahead.round(9), return_inverse=True)
+        which = which.reshape(ahead.shape)
+        for first in range(0, starts.size, TOGETHER):
+            some = starts[first : first + TOGETHER]
+            for x, found in zip(some, moved(some, np.tile(apart, (some.size, 1))), strict=True):
+                turned = np.exp(-2j * np.pi * np.outer(orders, x - wheels) / spacing_m)
+                harmonics += found[:, :, which] * (turned / starts.size)[:, None, None, :]
     return Kernel(STEP_HZ * np.arange(kept, dtype=np.float64), harmonics, standing, spacing_m, speed_m_per_s)
 
 
-def _places(line: Line, wheels: Reals, spacing: float) -> tuple[Sequence[int], bool]:
-    """Bays by which wheels are moved, and whether what is below comes back after them."""
+def _starts(line: Line, body: str, wheels: Reals) -> Reals | None:
+    """Where bays begin of the longest piece under the train, over which a mean is taken; None without a piece."""
     middle = float(wheels.mean())
     pieces = [
-        stop - start
-        for body in line.bodies.values()
-        if isinstance(body, Beam) and body.intervals_m is not None and len(body.intervals_m) > 1
-        for start, stop in body.intervals_m
+        (start, stop)
+        for below in line.bodies.values()
+        if isinstance(below, Beam) and below.intervals_m is not None and len(below.intervals_m) > 1
+        for start, stop in below.intervals_m
         if start <= middle <= stop
     ]
     if not pieces:
-        return NEAR, False
-    bays = max(1, round(max(pieces) / spacing))
-    count = -(-bays // EVERY)
-    return [round(bays * (i / count - 0.5)) for i in range(count)], True
+        return None
+    start, stop = max(pieces, key=lambda piece: piece[1] - piece[0])
+    edges = bays(line, body, start, stop).edges_m
+    edges = edges[(edges >= start - TOUCH_M) & (edges < stop - TOUCH_M)]
+    return np.asarray(edges[np.unique(np.linspace(0, edges.size - 1, min(edges.size, MOST)).round().astype(int))])
 
 
-def _along(answer: Complexes, read: Reals, starts: Reals, speed: float) -> Complexes:
-    """Transform of what points see that move from `starts` on, (F, points); `answer` (F, places) of one force."""
-    lines = answer.shape[0]
-    edge = TAPER * (lines - 1)
-    fade = 0.5 * (1.0 + np.cos(np.pi * np.clip((np.arange(lines) - edge) / (lines - 1 - edge), 0.0, 1.0)))
-    history = np.fft.irfft(answer * fade[:, None], axis=0)
-    size = history.shape[0]
-    time = np.arange(size) / (size * STEP_HZ)
-    time = np.where(time > FORWARD / STEP_HZ, time - 1.0 / STEP_HZ, time)
-    step = read[1] - read[0]
-    place = (starts + speed * time[:, None] - read[0]) / step
-    near = np.clip(np.floor(place).astype(np.int64), 1, read.size - 3)
-    away = place - near
-    # Cubics through the four nearest; beyond what is read the force has been left behind.
-    weights = (
-        -away * (away - 1.0) * (away - 2.0) / 6.0,
-        (away + 1.0) * (away - 1.0) * (away - 2.0) / 2.0,
-        -(away + 1.0) * away * (away - 2.0) / 2.0,
-        (away + 1.0) * away * (away - 1.0) / 6.0,
+def _answer(
+    line: Line,
+    body: str,
+    lines_Hz: Reals,
+    forces_m: Reals,
+    sensors_m: Reals,
+    *,
+    temperature_C: float | None,
+    formulation: Formulation,
+    threads: int | None,
+) -> Complexes:
+    """Receptance at 0 Hz and lines, (1 + F, sensors, forces); at rest as at the lowest, without what it loses."""
+    forces, sensors = (
+        [Place(body=body, x_m=float(x), name=f"{i}") for i, x in enumerate(places)]
+        for places in (forces_m, sensors_m)
     )
-    rows = np.arange(size)[:, None]
-    seen = sum(weight * history[rows, near + k - 1] for k, weight in enumerate(weights))
-    inside = (place >= 0.0) & (place <= read.size - 1.0)
-    return np.asarray(np.fft.rfft(np.where(inside, seen, 0.0), axis=0))
+    found = between(
+        line,
+        lines_Hz,
+        forces=forces,
+        sensors=sensors,
+        temperature_C=temperature_C,
+        formulation=formulation,
+        threads=threads,
+    ).receptance
+    return np.concatenate([found[:1].real.astype(np.complex128), found])
