@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, PositiveFloat, model_validator
@@ -227,6 +228,8 @@ class IrregularityKnown(FrozenModel):
         Added to the model's density, 10 lg.
     slope_dB_per_octave : float
         Added per doubling of the wavenumber, about 1 rad/m.
+    shape_dB : sequence of (float, float)
+        Added at wavelengths, m, the shortest first: dB, straight between logarithms, and beyond as at the ends.
     level_by_condition_dB : dict of str to float
         Added to the density under some conditions, by name.
     contact_patch_m : float
@@ -246,6 +249,7 @@ class IrregularityKnown(FrozenModel):
     within_dB: PositiveFloat | None = None
     level_dB: Number = Field(default=0.0, ge=-60.0, le=60.0)
     slope_dB_per_octave: Number = Field(default=0.0, ge=-20.0, le=20.0)
+    shape_dB: tuple[tuple[PositiveFloat, Annotated[Number, Field(ge=-60.0, le=60.0)]], ...] = ()
     level_by_condition_dB: dict[str, Annotated[Number, Field(ge=-60.0, le=60.0)]] = Field(default_factory=dict)
     contact_patch_m: float = Field(default=0.0, ge=0.0, le=1.0)
     bands: tuple[RoughBand, ...] = ()
@@ -260,6 +264,9 @@ class IrregularityKnown(FrozenModel):
     def _check(self) -> IrregularityKnown:
         if (self.within_dB is not None) != (self.knowledge == "within"):
             raise fault('goes with knowledge = "within", which needs it', "within_dB")
+        for index, ((shorter, _), (longer, _)) in enumerate(pairwise(self.shape_dB), start=1):
+            if longer <= shorter:
+                raise fault("must be longer than the wavelength before", "shape_dB", index, 0, value=longer)
         return self
 
 

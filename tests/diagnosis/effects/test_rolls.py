@@ -131,7 +131,24 @@ def test_its_share_is_measured_and_lines_alone_say_less(rolls: Situation) -> Non
 
 
 def test_every_share_of_its_range_can_be(rolls: Situation) -> None:
-    (free,) = forms(rolls)["rolling"].free
-    for z in free.limits:
-        amended = forms(rolls)["rolling"].amend(rolls.campaign, {"share": free.value(z)})
-        assert amended.said.irregularity.rolling is not None
+    rolling = forms(rolls)["rolling"]
+    for free in rolling.free:
+        for z in free.limits:
+            amended = rolling.amend(rolls.campaign, {"share": 1.0, free.name: free.value(z)})
+            assert amended.said.irregularity.rolling is not None
+
+
+def test_a_profile_that_is_not_as_said_is_told_beside_it(owner: Campaign) -> None:
+    """Which shifts power between frequencies as it rolls: no other effect has to."""
+    shape = ((0.4, 1.0), (0.8, -1.0), (1.6, 1.0), (3.2, -1.0))
+
+    def amend(campaign: Campaign) -> Campaign:
+        return with_irregularity(campaign, rolling=Rolling(spacing_m=SPACING_M), shape_dB=shape)
+
+    situation = situation_of(owner, 23, amend=amend)
+    ring, rolling = Ring(situation.fit), forms(situation)["rolling"]
+    own = ring.quick(rolling, after=ring.screen(rolling))
+    found = relearnt(ring.full(own, prefix="1."), situation.fit.evidence).values()
+    assert found["1.share"] == pytest.approx(1.0, abs=0.1)
+    for wavelength, true in shape:
+        assert found[f"1.shape_{wavelength:g}_m_dB"] == pytest.approx(true, abs=0.7)

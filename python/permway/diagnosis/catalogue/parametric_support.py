@@ -12,7 +12,7 @@ from permway.diagnosis.catalogue._excite import rail_laws, stays, with_irregular
 from permway.diagnosis.catalogue._interval import spacing_of
 from permway.diagnosis.catalogue._lines import FACTOR, coordinate, repeats
 from permway.diagnosis.catalogue._runs import Excess, combs, excesses
-from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, log_free
+from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, linear_free, log_free
 from permway.diagnosis.recalibrate import recalibrate
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
@@ -26,8 +26,15 @@ SUMMARY = (
     "spacing; what a profile does at one frequency it does so far away, too. By the model's own supports, with "
     "harmonics coupled; or as lines a n^-p in the profile, which leave out how the stiffness itself varies."
 )
+SHAPE_M = tuple(0.2 * 2.0**octave for octave in range(7))
+"""Wavelengths at which the profile's spectrum may differ from its owner's where trains roll."""
+
 PARAMETERS = {
     "share": "1, 0.4 to 2.5: of what rolling over the model's own supports changes; 1 is as the model has them",
+    **{
+        f"shape_{x:g}_m_dB": f"dB, -5 to 5: the spectrum less its owner's at {x:g} m, with share"
+        for x in SHAPE_M
+    },
     "amplitude_m": "m, 2.1e-8 to 1.2e-3: a, of the first line",
     "decay": "1, 1 to 5: p",
 }
@@ -43,6 +50,9 @@ SOURCE = (
     "Jones and Thompson, Responses of infinite periodic structures to moving or stationary harmonic loads (2005)"
 )
 AMPLITUDE_M, HARMONICS = 5e-6, 4
+
+MOST_DB = 5.0
+"""By which it may."""
 
 RUNS = ("train.", "campaign.")
 """Where parameters lead that runs alone tell of."""
@@ -90,9 +100,13 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
         return
     rolls = with_irregularity(situation.campaign, rolling=Rolling(spacing_m=spacing))
     known = dict(rolls.rolling_about(still).said.irregularity.rolling or {})
+    shapes = {x: f"shape_{x:g}_m_dB" for x in SHAPE_M}
+    sigma = 0.5 * (situation.campaign.said.irregularity.within_dB or 2.0)
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
-        return with_irregularity(campaign, rolling=Rolling(**{**known, "share": values["share"]}))
+        shape = tuple((x, values.get(name, 0.0)) for x, name in shapes.items())
+        rolling = Rolling(**{**known, "share": values["share"]})
+        return with_irregularity(campaign, rolling=rolling, shape_dB=shape)
 
     try:
         # Here, so that processes that share the screening do not each begin with it.
@@ -103,10 +117,13 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
         entry=ID,
         domain=DOMAIN,
         family=FAMILY,
-        free=(log_free("share", "1", 1.0, 1.2),),
+        free=(
+            log_free("share", "1", 1.0, 1.2),
+            *(linear_free(name, "dB", 0.0, sigma, -MOST_DB, MOST_DB) for name in shapes.values()),
+        ),
         amend=amend,
         locate=stays(law),
-        starts=((0.0,),),
+        starts=((0.0,) * (1 + len(shapes)),),
         law=lambda v: (
             f"the train rolls over supports {spacing:g} m apart, {v['share']:.3g} of what the model's do"
         ),

@@ -58,6 +58,9 @@ def broad(model: Model, known: IrregularityKnown, condition: Condition, frequenc
         values = values * 10.0 ** (0.1 * (level + known.slope_dB_per_octave * octaves))
     else:
         values = values * 10.0 ** (0.1 * level)
+    if known.shape_dB:
+        at_m, added = np.array(known.shape_dB).T
+        values = values * 10.0 ** (0.1 * np.interp(np.log(speed / frequency), np.log(at_m), added))
     for band in known.bands:
         x = np.log2(speed / frequency / band.wavelength_m) / band.octaves
         values = values * (1.0 + (10.0 ** (0.1 * band.gain_dB) - 1.0) * np.exp(-0.5 * x**2))
