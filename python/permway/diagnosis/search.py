@@ -176,26 +176,29 @@ def search(
     least = threshold(ring, screened)
     rivals = finalists_of(followed, ring, least)
     fitted: list[tuple[Quick, Fit]] = []
-    close = CLOSE
     in_full = partial(_in_full, ring, fitted, prefix, progress)
     # What cannot be solved all around is no finalist.
     waiting = rivals
     while waiting and not fitted:
         in_full(waiting[:1])
         waiting = waiting[1:]
+    close, spared = CLOSE, []
     if fit.heat > FITS and fitted and fitted[0][1].heat < FITS:
         # The first explains all there was: only a rival that did nearly as well may do so, too.
         close = CLOSE_TO_FITTING
-        waiting = [one for one in waiting if one.gain >= close * fitted[0][0].gain]
+        least_gain = close * fitted[0][0].gain
+        spared = [one for one in waiting if one.gain < least_gain]
+        waiting = [one for one in waiting if one.gain >= least_gain]
     in_full(waiting)
     in_full(elsewhere(fitted, followed))
-    near = [
-        (one, rough)
-        for one, rough in fitted
-        if not fit.objective - rough.objective < close * (fit.objective - fitted[0][1].objective)
-    ]
+    learnt = _learnt(ring, _near(fit, fitted, close), learnt_base, prefix, progress)
+    if spared and not any(amended.heat < FITS for _, _, amended in learnt):
+        # Of blunted responses it did, and of responses as they are does not.
+        in_full(spared)
+        in_full(elsewhere(fitted, followed))
+        learnt = _learnt(ring, _near(fit, fitted, CLOSE), learnt_base, prefix, progress)
     finalists = []
-    for one, rough, amended in _learnt(ring, near, learnt_base, prefix, progress):
+    for one, rough, amended in learnt:
         gain = gained(learnt_base, amended)
         # A fault of a sensor may show in phases, or in noise, alone.
         domain = one.hypothesis.domain
@@ -222,6 +225,14 @@ def _in_full(
         ring, quicks, prefix=prefix, told=lambda begun: progress("fit", total - len(quicks) + begun, total)
     )
     fitted.sort(key=lambda pair: pair[1].objective + penalty(pair[0], ring))
+
+
+def _near(fit: Fit, fitted: Sequence[tuple[Quick, Fit]], close: float) -> list[tuple[Quick, Fit]]:
+    """Those that gain nearly what the first does."""
+    if not fitted:
+        return []
+    best = fit.objective - fitted[0][1].objective
+    return [pair for pair in fitted if not fit.objective - pair[1].objective < close * best]
 
 
 def _learnt(

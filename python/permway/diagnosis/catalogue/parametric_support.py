@@ -31,10 +31,7 @@ SHAPE_M = tuple(0.2 * 2.0**octave for octave in range(7))
 
 PARAMETERS = {
     "share": "1, 0.4 to 2.5: of what rolling over the model's own supports changes; 1 is as the model has them",
-    **{
-        f"shape_{x:g}_m_dB": f"dB, -5 to 5: the spectrum less its owner's at {x:g} m, with share"
-        for x in SHAPE_M
-    },
+    **{f"shape_{x:g}_m_dB": f"dB, -5 to 5: the spectrum less its owner's at {x:g} m, with share" for x in SHAPE_M},
     "amplitude_m": "m, 2.1e-8 to 1.2e-3: a, of the first line",
     "decay": "1, 1 to 5: p",
 }
