@@ -102,6 +102,26 @@ def test_slabs_between_joints_are_alike_and_none_is_a_stub(length: float, offset
     assert max(pieces[0], pieces[-1]) <= (1.0 + slab_joints.SHORT) * length * (1.0 + 1e-9)
 
 
+@settings(max_examples=100, deadline=None)
+@given(
+    length=st.floats(1.5, 12.0),
+    offset=st.floats(-0.5, 0.5),
+    start=st.floats(5.0, 60.0),
+    extent=st.floats(10.0, 40.0),
+)
+def test_joints_by_one_measure_go_on_from_slab_to_slab(
+    length: float, offset: float, start: float, extent: float
+) -> None:
+    """Counted from elsewhere each is a whole number of lengths away, and none is left out but next to ends."""
+    slab = Segment("slab", "slab", start, start + extent)
+    places = np.array(slab_joints._joints(slab, {"length_m": length, "offset": offset}, 0.0))
+    counts = places / length - offset
+    assert counts == pytest.approx(counts.round(), abs=1e-9)
+    assert np.diff(places) == pytest.approx(length)
+    ends = np.array([places[0] - start, start + extent - places[-1]]) if places.size else np.array([0.0])
+    assert ends.max() <= (1.0 + slab_joints.SHORT) * length * (1.0 + 1e-9)
+
+
 def sized(none: float, *, size: str = "size") -> Hypothesis:
     return Hypothesis(
         entry="rail_absorber",

@@ -77,6 +77,10 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             starts = [*_usual(longest), *(start for x in above for start in _between(x, longest))]
             yield _cut(name, segments, starts)
             yield _bending(name, segments, starts)
+            if len(segments) > 1:
+                begun = min(segments, key=lambda s: s.start)
+                starts = [*_usual(begun), *(start for x in above for start in _between(x, begun))]
+                yield _cut(name, segments, starts, through=True)
             for x in above:
                 first = float(x[x > longest.start - TOUCHING_M].min())
                 for length in _whole_bays(spacing(x), longest):
@@ -109,20 +113,24 @@ def _whole_bays(bay: float, slab: Segment) -> Iterator[float]:
             yield round(count * bay, 9)
 
 
-def _joints(segment: Segment, values: Mapping[str, float]) -> list[float]:
-    """Where the joints of a slab are, m: a piece that would be short belongs to its neighbour."""
+def _joints(segment: Segment, values: Mapping[str, float], begin_m: float | None = None) -> list[float]:
+    """Where the joints of a slab are, m: a piece that would be short belongs to its neighbour.
+
+    Counted from its start, or from another place.
+    """
     length = values["length_m"]
     if np.isinf(length):
         return []
-    first = segment.start + length * values["offset"]
-    places = first + length * np.arange(np.ceil((segment.stop - first) / length))
+    first = (segment.start if begin_m is None else begin_m) + length * values["offset"]
+    counts = np.arange(np.ceil((segment.start - first) / length), np.ceil((segment.stop - first) / length))
+    places = first + length * counts
     least = max(SHORT * length, JOINT_M)
     return [float(x) for x in places[(places > segment.start + least) & (places < segment.stop - least)]]
 
 
-def _at(name: str, segments: list[Segment], values: Mapping[str, float]) -> Where:
+def _at(name: str, segments: list[Segment], values: Mapping[str, float], begin_m: float | None = None) -> Where:
     """From the first joint to the last."""
-    x = [joint for segment in segments for joint in _joints(segment, values)]
+    x = [joint for segment in segments for joint in _joints(segment, values, begin_m)]
     return Where(name, (min(x), max(x))) if x else Where(name)
 
 
@@ -134,11 +142,16 @@ def _free() -> tuple[Free, Free]:
     return log_free("length_m", "m", CENTRE_M, FACTOR), linear_free("offset", "1", 0.0, OFFSET, -0.5, 0.5)
 
 
-def _cut(name: str, segments: list[Segment], tried: list[tuple[float, float]]) -> Hypothesis:
+def _cut(
+    name: str, segments: list[Segment], tried: list[tuple[float, float]], *, through: bool = False
+) -> Hypothesis:
+    """Each slab by itself, from its start; or all by one measure, as where they are cut after they are laid."""
+    begin_m = min(segment.start for segment in segments) if through else None
+
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         pieces: list[tuple[float, float]] = []
         for segment in segments:
-            ends = [segment.start, *_joints(segment, values), segment.stop]
+            ends = [segment.start, *_joints(segment, values, begin_m), segment.stop]
             pieces += pairwise(ends)
         return with_fields(campaign, name, intervals_m=tuple(pieces), modes=None)
 
@@ -148,11 +161,12 @@ def _cut(name: str, segments: list[Segment], tried: list[tuple[float, float]]) -
         family=FAMILY,
         free=_free(),
         amend=amend,
-        locate=partial(_at, name, segments),
+        locate=partial(_at, name, segments, begin_m=begin_m),
         starts=tuple(_start(*one) for one in tried),
-        law=lambda v: f"cut through every {v['length_m']:.3g} m",
+        law=lambda v: f"cut through every {v['length_m']:.3g} m" + (", from slab to slab" if through else ""),
         size="length_m",
         none=np.inf,
+        variant="through" if through else "",
     )
 
 
