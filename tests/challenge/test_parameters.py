@@ -21,6 +21,15 @@ def test_every_translation_is_of_an_effect_that_is_drawn_and_names_what_the_cata
         assert set(in_catalogue(kind, some)) <= set(known) | {"x_m"}, kind
 
 
+def test_effects_are_of_the_domain_that_the_catalogue_has_them_in() -> None:
+    """Else a verdict that names one rightly would be at another place."""
+    known = entries()
+    mine = {kind.KIND: kind for kind in KINDS.values() if kind.ID in known}
+    assert {name: kind.DOMAIN for name, kind in mine.items()} == {
+        name: known[str(kind.ID)].DOMAIN for name, kind in mine.items()
+    }
+
+
 def test_a_wheelset_in_two_parts_is_a_mode_of_one() -> None:
     """Boxes on a spring to the wheels, their motion split into that of the whole and of the mode."""
     whole, share, spring = 1000.0, 0.3, 4e8

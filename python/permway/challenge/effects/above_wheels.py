@@ -115,7 +115,7 @@ class SecondSource(Effect):
     KIND = "second_source"
     ID = "second_source"
     FAMILY = "noise"
-    DOMAIN = "vehicle"
+    DOMAIN = "measurement"
     FADES = (("rms_N", 0.0),)
 
     channel: str
