@@ -114,6 +114,7 @@ FAULTS: list[tuple[Callable[[Table], None], str, str]] = [
     (_set("conditions", 1, "name", to="still"), "conditions[1].name", "twice"),
     (_set("irregularity", "knowledge", to="guessed"), "irregularity.knowledge", "known"),
     (_drop("irregularity", "within_dB"), "irregularity.within_dB", "needs it"),
+    (_set("irregularity", "shape_dB", to=[[2.0, 0.5], [1.0, 0.0]]), "irregularity.shape_dB[1][0]", "longer than"),
     (_set("records", 0, "file", to="none.csv"), "records[0].file", "no such file"),
     (_set("records", 0, "file", to="../frf.csv"), "records[0].file", "outside the campaign's folder"),
     (_set("records", 0, "file", to="a\0b"), "records[0].file", "name of a file"),

@@ -191,12 +191,15 @@ def search(
         waiting = [one for one in waiting if one.gain >= least_gain]
     in_full(waiting)
     in_full(elsewhere(fitted, followed))
-    learnt = _learnt(ring, _near(fit, fitted, close), learnt_base, prefix, progress)
+    near = _near(fit, fitted, close)
+    learnt = _learnt(ring, near, learnt_base, prefix, progress)
     if spared and not any(amended.heat < FITS for _, _, amended in learnt):
         # Of blunted responses it did, and of responses as they are does not.
         in_full(spared)
         in_full(elsewhere(fitted, followed))
-        learnt = _learnt(ring, _near(fit, fitted, CLOSE), learnt_base, prefix, progress)
+        seen = {id(rough) for _, rough in near}
+        further = [pair for pair in _near(fit, fitted, CLOSE) if id(pair[1]) not in seen]
+        learnt += _learnt(ring, further, learnt_base, prefix, progress)
     finalists = []
     for one, rough, amended in learnt:
         gain = gained(learnt_base, amended)

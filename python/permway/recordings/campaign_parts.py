@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Field, PositiveFloat, model_validator
 
+from permway.arrays import Reals
 from permway.model.faults import fault
 from permway.model.irregularity_spectra import FASTEST_M_PER_S
 from permway.recordings.campaign_excitation import Dips, Push, Rolling, RoughBand, TrackLines, WheelLines
@@ -268,6 +270,13 @@ class IrregularityKnown(FrozenModel):
             if longer <= shorter:
                 raise fault("must be longer than the wavelength before", "shape_dB", index, 0, value=longer)
         return self
+
+    def shape_at(self, wavelength_m: Reals) -> Reals:
+        """What `shape_dB` adds at wavelengths, dB."""
+        if not self.shape_dB:
+            return np.zeros(np.shape(wavelength_m))
+        at_m, added = np.array(self.shape_dB).T
+        return np.asarray(np.interp(np.log(wavelength_m), np.log(at_m), added))
 
 
 class HeldOut(FrozenModel):

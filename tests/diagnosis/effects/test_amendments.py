@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from permway.diagnosis.catalogue import slab_joints, support_gradient
+from permway.diagnosis.catalogue import support_gradient
 from permway.diagnosis.catalogue._pads import STIFFNESS, factors, keys_of
 from permway.diagnosis.catalogue._relaxing import REFERENCE_HZ, relaxing, relaxing_once
 from permway.diagnosis.hypothesis import Hypothesis, Where, between_free, log_free
 from permway.diagnosis.quick import weaker
 from permway.laws import Hysteretic, Scaled
 from permway.laws.checks import check_law
-from permway.model.segments import Segment
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_factors import model_under
 from simulated import simulate
@@ -88,38 +87,6 @@ def test_a_law_of_two_parts_scales_with_both(campaign: Campaign) -> None:
     inner = before.law.complex(at) - 0.5 * constant(campaign).stiffness
     expected = 0.5 * constant(campaign).stiffness + 0.5 * inner
     assert law.complex(at) == pytest.approx(1.3 * (1.0 + 0.5j * before.eta) * expected)
-
-
-@settings(max_examples=100, deadline=None)
-@given(length=st.floats(1.5, 26.0), offset=st.floats(-0.5, 0.5), stop=st.floats(10.0, 120.0))
-def test_slabs_between_joints_are_alike_and_none_is_a_stub(length: float, offset: float, stop: float) -> None:
-    places = slab_joints._joints(Segment("slab", "slab", 0.0, stop), {"length_m": length, "offset": offset})
-    if not places:
-        return
-    pieces = np.diff([0.0, *places, stop])
-    assert pieces[1:-1] == pytest.approx(length)
-    assert min(pieces[0], pieces[-1]) > slab_joints.SHORT * length * (1.0 - 1e-9)
-    assert max(pieces[0], pieces[-1]) <= (1.0 + slab_joints.SHORT) * length * (1.0 + 1e-9)
-
-
-@settings(max_examples=100, deadline=None)
-@given(
-    length=st.floats(1.5, 12.0),
-    offset=st.floats(-0.5, 0.5),
-    start=st.floats(5.0, 60.0),
-    extent=st.floats(10.0, 40.0),
-)
-def test_joints_by_one_measure_go_on_from_slab_to_slab(
-    length: float, offset: float, start: float, extent: float
-) -> None:
-    """Counted from elsewhere each is a whole number of lengths away, and none is left out but next to ends."""
-    slab = Segment("slab", "slab", start, start + extent)
-    places = np.array(slab_joints._joints(slab, {"length_m": length, "offset": offset}, 0.0))
-    counts = places / length - offset
-    assert counts == pytest.approx(counts.round(), abs=1e-9)
-    assert np.diff(places) == pytest.approx(length)
-    ends = np.array([places[0] - start, start + extent - places[-1]]) if places.size else np.array([0.0])
-    assert ends.max() <= (1.0 + slab_joints.SHORT) * length * (1.0 + 1e-9)
 
 
 def sized(none: float, *, size: str = "size") -> Hypothesis:

@@ -152,3 +152,23 @@ def test_a_profile_that_is_not_as_said_is_told_beside_it(owner: Campaign) -> Non
     assert found["1.share"] == pytest.approx(1.0, abs=0.1)
     for wavelength, true in shape:
         assert found[f"1.shape_{wavelength:g}_m_dB"] == pytest.approx(true, abs=0.7)
+
+
+def test_what_its_owner_says_of_a_profile_stays(rolls: Situation, owner: Campaign) -> None:
+    """A shape is added to his own, and differs from a spectrum that he knows by next to nothing."""
+    rolling = forms(rolls)["rolling"]
+    his = with_irregularity(owner, shape_dB=((0.3, 2.0), (0.5, -1.0)))
+    shaped = rolling.amend(his, {"share": 1.0, "shape_0.4_m_dB": 0.5}).said.irregularity
+    at_m = np.array([0.1, 0.3, 0.4, 0.5, 0.8, 20.0])
+    between = np.interp(np.log(0.4), np.log([0.3, 0.5]), [2.0, -1.0])
+    own = 0.5 * np.interp(np.log(at_m), np.log([0.2, 0.4, 0.8]), [0.0, 1.0, 0.0])
+    assert shaped.shape_at(at_m) == pytest.approx(own + np.array([2.0, 2.0, between, -1.0, -1.0, -1.0]))
+    sizes = {}
+    for knowledge in ("known", "within", "unknown"):
+        within = 2.0 if knowledge == "within" else None
+        said = with_irregularity(rolls.campaign, knowledge=knowledge, within_dB=within)
+        free = forms(replace(rolls, fit=replace(rolls.fit, campaign=said)))["rolling"].free[1]
+        sizes[knowledge] = free.value(1.0) - free.value(0.0)
+    assert sizes["known"] < 0.05
+    assert sizes["within"] == pytest.approx(1.0, abs=1e-3)
+    assert sizes["unknown"] > 4.0

@@ -20,7 +20,7 @@ from permway.diagnosis.locate import scan
 from permway.diagnosis.recalibrate import recalibrate
 from permway.recordings.campaign import Campaign
 from permway.recordings.predict import predict
-from simulated_track import SPAN_M, ballasted, campaign, embedded, viaduct
+from simulated_track import ballasted, campaign, embedded, viaduct
 from simulated_train import blank, measured, written
 
 LINES: dict[str, Callable[[], dict[str, Any]]] = {
@@ -276,27 +276,6 @@ def test_slabs_cut_at_fasteners_are_told_by_their_length(
         assert best.values.keys() == values.keys()
         assert best.values["length_m"] == pytest.approx(lengths[index])
         assert best.values["dowels_N_per_m"] < 1e8
-
-
-def test_joints_that_go_on_from_slab_to_slab_are_no_pattern_of_each(tmp_path: Path) -> None:
-    """Of two slabs cut every 4.8 m: 5.1 m from the start of the first, and 3 m from that of the second."""
-
-    def forms(situation: Situation) -> dict[str, Hypothesis]:
-        offered = list(entries()["slab_joints"].hypotheses(situation))
-        return {h.variant: h for h in offered if {f.name for f in h.free} == {"length_m", "offset"}}
-
-    model = viaduct(2)
-    model["line"]["bodies"]["slab"]["intervals_m"] = [[0.0, 11.7], [11.7, 2 * SPAN_M]]
-    table = campaign(model)
-    for one in table["sensors"]:
-        one["body"] = one["body"].replace("slab[1]", "slab")
-    owner = written(tmp_path / "c", table, model)
-    inject = forms(of(owner, 3)[1])["through"].amend
-    fit, situation = of(owner, 3, partial(_put, inject, {"length_m": 4.8, "offset": 0.0625}))
-    ring = Ring(fit)
-    by = {form: ring.quick(one) for form, one in forms(situation).items()}
-    assert by["through"].gain > by[""].gain + 20.0
-    assert by["through"].values["length_m"] == pytest.approx(4.8, abs=0.05)
 
 
 def test_no_stiffness_is_lost_or_won_where_a_fastener_holds_two_ends(

@@ -12,11 +12,14 @@ from permway.diagnosis.catalogue._excite import rail_laws, stays, with_irregular
 from permway.diagnosis.catalogue._interval import spacing_of
 from permway.diagnosis.catalogue._lines import FACTOR, coordinate, repeats
 from permway.diagnosis.catalogue._runs import Excess, combs, excesses
+from permway.diagnosis.gather import first_size
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, linear_free, log_free
 from permway.diagnosis.recalibrate import recalibrate
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_excitation import Rolling
+from permway.recordings.campaign_parts import IrregularityKnown
+from permway.recordings.compare import POWER_DB
 
 ID = "parametric_support"
 DOMAIN: Domain = "irregularity"
@@ -29,9 +32,15 @@ SUMMARY = (
 SHAPE_M = tuple(0.2 * 2.0**octave for octave in range(7))
 """Wavelengths at which the profile's spectrum may differ from its owner's where trains roll."""
 
+MOST_DB = 20.0
+"""By which it may, whatever its owner says."""
+
 PARAMETERS = {
     "share": "1, 0.4 to 2.5: of what rolling over the model's own supports changes; 1 is as the model has them",
-    **{f"shape_{x:g}_m_dB": f"dB, -5 to 5: the spectrum less its owner's at {x:g} m, with share" for x in SHAPE_M},
+    **{
+        f"shape_{x:g}_m_dB": f"dB, -20 to 20: the spectrum less its owner's at {x:g} m, with share"
+        for x in SHAPE_M
+    },
     "amplitude_m": "m, 2.1e-8 to 1.2e-3: a, of the first line",
     "decay": "1, 1 to 5: p",
 }
@@ -47,9 +56,6 @@ SOURCE = (
     "Jones and Thompson, Responses of infinite periodic structures to moving or stationary harmonic loads (2005)"
 )
 AMPLITUDE_M, HARMONICS = 5e-6, 4
-
-MOST_DB = 5.0
-"""By which it may."""
 
 RUNS = ("train.", "campaign.")
 """Where parameters lead that runs alone tell of."""
@@ -98,12 +104,15 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
     rolls = with_irregularity(situation.campaign, rolling=Rolling(spacing_m=spacing))
     known = dict(rolls.rolling_about(still).said.irregularity.rolling or {})
     shapes = {x: f"shape_{x:g}_m_dB" for x in SHAPE_M}
-    sigma = 0.5 * (situation.campaign.said.irregularity.within_dB or 2.0)
+    sigma = float(POWER_DB) * first_size(situation.campaign, "irregularity")
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
-        shape = tuple((x, values.get(name, 0.0)) for x, name in shapes.items())
+        own = campaign.said.irregularity
+        further = IrregularityKnown(shape_dB=tuple((x, values.get(name, 0.0)) for x, name in shapes.items()))
+        at_m = np.array(sorted({*shapes, *(x for x, _ in own.shape_dB)}))
+        shape = zip(at_m.tolist(), (own.shape_at(at_m) + further.shape_at(at_m)).tolist(), strict=True)
         rolling = Rolling(**{**known, "share": values["share"]})
-        return with_irregularity(campaign, rolling=rolling, shape_dB=shape)
+        return with_irregularity(campaign, rolling=rolling, shape_dB=tuple(shape))
 
     try:
         # Here, so that processes that share the screening do not each begin with it.

@@ -59,8 +59,7 @@ def broad(model: Model, known: IrregularityKnown, condition: Condition, frequenc
     else:
         values = values * 10.0 ** (0.1 * level)
     if known.shape_dB:
-        at_m, added = np.array(known.shape_dB).T
-        values = values * 10.0 ** (0.1 * np.interp(np.log(speed / frequency), np.log(at_m), added))
+        values = values * 10.0 ** (0.1 * known.shape_at(speed / frequency))
     for band in known.bands:
         x = np.log2(speed / frequency / band.wavelength_m) / band.octaves
         values = values * (1.0 + (10.0 ** (0.1 * band.gain_dB) - 1.0) * np.exp(-0.5 * x**2))

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from permway.arrays import Complexes, Reals
+from permway.errors import InputError
 from permway.model.bodies import Beam
 from permway.model.line import Line
 from permway.model.stations import TOUCH_M
@@ -132,15 +133,23 @@ class Bays:
 def bays(line: Line, body: str, from_m: float, to_m: float) -> Bays:
     """The pieces of a beam between two places, which are within the first and the last.
 
+    Stiffness and mass are those of the uniform beam; where a section changes, pieces end.
+
     Parameters
     ----------
     line : Line
     body : str
         A beam that goes on without end, or beyond both places.
     from_m, to_m : float
+
+    Raises
+    ------
+    InputError
+        If the body is no beam.
     """
-    beam = line.bodies[body]
-    assert isinstance(beam, Beam)
+    beam = line.bodies.get(body)
+    if not isinstance(beam, Beam):
+        raise InputError("wheels roll on beams", where="body", value=body, remedy="name a beam of the line")
     table, mine = line.joint_table(), [i for i, s in enumerate(line.segments()) if s.body == body]
     held = table.x[np.isin(table.upper, mine) | np.isin(table.lower, mine)]
     changes = [x for change in beam.changes for x in (change.from_m, change.to_m)]

@@ -47,7 +47,7 @@ class Kernel:
     frequency_Hz : ndarray, shape (F,)
         From 0 Hz, equally spaced; of the motion.
     harmonics : ndarray of complex128, shape (2 M + 1, F, wheels, wheels)
-        K_n of n from -M to M, m/N, their mean over places some bays apart.
+        K_n of n from -M to M, m/N, their mean over the bays of a piece, or over places some bays apart.
     standing : ndarray of complex128, shape (F, wheels, wheels)
         Receptance while the wheels stand where they are at the time 0.
     spacing_m, speed_m_per_s : float
@@ -93,7 +93,8 @@ def kernel(
     Raises
     ------
     InputError
-        For a speed, a spacing or a frequency that is not above zero, and places that the line does not have.
+        For a speed, a spacing or a frequency that is not above zero, places that the line does not have, and a
+        body that is no beam.
     SolveError
         If the line cannot be solved.
     """

@@ -42,7 +42,22 @@ def passed(
     spacing: float,
     kept: int,
 ) -> list[Complexes]:
-    """What points see, `ahead` (places, points) of forces that pass the bays in which `places` are.
+    """What points see that roll on, ahead of forces that pass the bays in which places are.
+
+    Parameters
+    ----------
+    answer : callable
+        From places of forces and of sensors, m, to receptances (F, sensors, forces), every `STEP_HZ` from 0 Hz.
+    line : Line
+    body : str
+    places : ndarray, shape (places,)
+        m.
+    ahead : ndarray, shape (places, points)
+        How far points are ahead of each force, m.
+    speed, spacing : float
+        m/s; of bays, m.
+    kept : int
+        Lines that are wanted.
 
     Returns
     -------

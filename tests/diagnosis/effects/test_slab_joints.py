@@ -1,0 +1,79 @@
+"""Where slabs are cut: each by itself, or all by one measure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from permway.diagnosis.catalogue import entries, slab_joints
+from permway.diagnosis.compete import Ring
+from permway.diagnosis.gather import gather
+from permway.diagnosis.hypothesis import Hypothesis, Situation
+from permway.diagnosis.locate import scan
+from permway.diagnosis.recalibrate import recalibrate
+from permway.model.segments import Segment
+from permway.recordings.campaign import Campaign
+from simulated_track import SPAN_M, campaign, viaduct
+from simulated_train import measured, written
+
+
+@settings(max_examples=100, deadline=None)
+@given(length=st.floats(1.5, 26.0), offset=st.floats(-0.5, 0.5), stop=st.floats(10.0, 120.0))
+def test_slabs_between_joints_are_alike_and_none_is_a_stub(length: float, offset: float, stop: float) -> None:
+    places = slab_joints._joints(Segment("slab", "slab", 0.0, stop), {"length_m": length, "offset": offset})
+    if not places:
+        return
+    pieces = np.diff([0.0, *places, stop])
+    assert pieces[1:-1] == pytest.approx(length)
+    assert min(pieces[0], pieces[-1]) > slab_joints.SHORT * length * (1.0 - 1e-9)
+    assert max(pieces[0], pieces[-1]) <= (1.0 + slab_joints.SHORT) * length * (1.0 + 1e-9)
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    length=st.floats(1.5, 12.0),
+    offset=st.floats(-0.5, 0.5),
+    start=st.floats(5.0, 60.0),
+    extent=st.floats(10.0, 40.0),
+)
+def test_joints_by_one_measure_go_on_from_slab_to_slab(
+    length: float, offset: float, start: float, extent: float
+) -> None:
+    """Counted from elsewhere each is a whole number of lengths away, and none is left out but next to ends."""
+    slab = Segment("slab", "slab", start, start + extent)
+    places = np.array(slab_joints._joints(slab, {"length_m": length, "offset": offset}, 0.0))
+    counts = places / length - offset
+    assert counts == pytest.approx(counts.round(), abs=1e-9)
+    assert np.diff(places) == pytest.approx(length)
+    ends = np.array([places[0] - start, start + extent - places[-1]]) if places.size else np.array([0.0])
+    assert ends.max() <= (1.0 + slab_joints.SHORT) * length * (1.0 + 1e-9)
+
+
+def situation_of(owner: Campaign, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign) -> Situation:
+    fit = recalibrate(gather(owner, measured(owner, 3, amend), threads=1), learn=False)
+    return Situation(fit, tuple(scan(fit)))
+
+
+def test_joints_that_go_on_from_slab_to_slab_are_no_pattern_of_each(tmp_path: Path) -> None:
+    """Of two slabs cut every 4.8 m: 5.1 m from the start of the first, and 3 m from that of the second."""
+
+    def forms(situation: Situation) -> dict[str, Hypothesis]:
+        offered = list(entries()["slab_joints"].hypotheses(situation))
+        return {h.variant: h for h in offered if {f.name for f in h.free} == {"length_m", "offset"}}
+
+    model = viaduct(2)
+    model["line"]["bodies"]["slab"]["intervals_m"] = [[0.0, 11.7], [11.7, 2 * SPAN_M]]
+    table = campaign(model)
+    for one in table["sensors"]:
+        one["body"] = one["body"].replace("slab[1]", "slab")
+    owner = written(tmp_path / "c", table, model)
+    inject = forms(situation_of(owner))["through"].amend
+    situation = situation_of(owner, lambda c: inject(c, {"length_m": 4.8, "offset": 0.0625}))
+    ring = Ring(situation.fit)
+    by = {form: ring.quick(one) for form, one in forms(situation).items()}
+    assert by["through"].gain > by[""].gain + 20.0
+    assert by["through"].values["length_m"] == pytest.approx(4.8, abs=0.05)
