@@ -14,7 +14,7 @@ from permway.diagnosis.catalogue._change import fixed_mass, hung_mass, with_join
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.diagnose import diagnose
-from permway.diagnosis.elements import ELEMENTS, Element
+from permway.diagnosis.elements import ELEMENTS, LEAST, PART, Element, coordinate_of
 from permway.diagnosis.gather import gather
 from permway.diagnosis.grammar import alike, hypotheses
 from permway.diagnosis.grammar_places import bodies, joints
@@ -105,6 +105,22 @@ def test_pads_that_keep_a_part_lose_as_much_of_their_damping(tmp_path: Path) -> 
     assert best.values["share"] == pytest.approx(-0.8, abs=0.05)
     assert best.hypothesis.locate(best.values).x_m == pytest.approx((6.6, 7.2))
     assert "a spring of -0.8" in best.hypothesis.law(best.values)
+
+
+def test_pads_that_hardly_hold_are_told_by_how_little_is_left(tmp_path: Path) -> None:
+    """Where the scan of a bent base leads to rods in their place, which leave a misfit of 2.8."""
+    case = simulate(tmp_path / "c", 8, amend=lambda campaign: weakened(campaign, "pad", 7.5, 1.8, 0.003))
+    best = described(case.campaign)
+    assert best.hypothesis.family == "part beside each joint of a stretch"
+    assert 1.0 + best.values["share"] == pytest.approx(0.003, rel=0.15)
+    assert best.hypothesis.locate(best.values).x_m == pytest.approx((6.6, 8.4))
+
+
+def test_a_part_is_counted_by_the_logarithm_of_what_is_there() -> None:
+    (share,) = PART.free(1.0, 1.0)
+    assert [share.value(z) for z in (0.0, -1.0, 1.0)] == pytest.approx([0.0, -0.5, 1.0])
+    assert share.value(coordinate_of(-0.99)) == pytest.approx(-0.99)
+    assert share.value(share.limits[0]) == pytest.approx(LEAST - 1.0)
 
 
 def test_a_bearing_that_keeps_a_part_is_told_by_that_alone(tmp_path: Path) -> None:
@@ -212,14 +228,16 @@ def test_bodies_that_tell_as_much_are_all_looked_at() -> None:
 
 
 @pytest.mark.parametrize(
-    ("misfit", "gain", "described"), [(1.2, 8e3, False), (30.0, 8e3, True), (30.0, 80.0, True)]
+    ("misfit", "gain", "described"),
+    [(1.04, 8e3, False), (1.16, 8e3, True), (30.0, 8e3, True), (30.0, 80.0, True)],
 )
 def test_a_fault_of_the_measurement_that_leaves_a_misfit_may_have_been_something_else(
     misfit: float, gain: float, described: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Resonators of a name that was ruled out were taken for a sensor's delay, at a misfit of 511.
 
-    However little the scan of a base that is missed by far tells.
+    However little the scan of a base that is missed by far tells. A pad's dashpot was taken for absorbers on two
+    axle boxes, at a misfit of 1.16.
     """
 
     def fit(heat: float, objective: float) -> Any:

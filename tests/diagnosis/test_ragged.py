@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -12,7 +14,7 @@ from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.ragged import STEADY, explains_elsewhere, raggedness, unexplained_lines, unsteady_misfit
 from permway.diagnosis.recalibrate import recalibrate
-from permway.diagnosis.speak import _unsteady
+from permway.diagnosis.speak import Proof, _told, _unsteady
 from simulated_train import measured, tables, written
 
 
@@ -82,3 +84,12 @@ def test_what_is_not_steady_is_said_before_that_records_do_not_tell(steady: Fit,
     assert not _unsteady(steady, steady)
     # A misfit that is no scatter of lines is none of these.
     assert not _unsteady(replace(steady, heat=3.0), replace(steady, heat=3.0))
+
+
+def test_lines_are_as_steady_as_the_amended_model_weighs_them(steady: Fit, struck: Fit) -> None:
+    """A bogie frame's resonance left lines that scattered 3.1 times by the weights of a rigid one."""
+    accepted, proof = cast(Any, [SimpleNamespace(fit=struck)]), cast(Proof, SimpleNamespace(weighed=steady))
+    assert _told(struck, accepted, proof) is steady
+    assert _told(steady, accepted, None) is struck
+    assert _told(steady, [], None) is steady
+    assert not _unsteady(struck, _told(struck, accepted, proof))

@@ -14,20 +14,15 @@ from permway.diagnosis.compete import Ring
 from permway.diagnosis.crossed import Loss
 from permway.diagnosis.ends import SPACING_M
 from permway.diagnosis.fit import Fit
-from permway.diagnosis.hypothesis import Hypothesis, Situation, Where
+from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.plausible import beyond_belief
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.recovered import same_place
 from permway.diagnosis.search import Finalist, Round, search, standing
 from permway.diagnosis.spot import Found, Spot
+from permway.diagnosis.twice import SPREAD, twice_of
 from permway.model.bodies import Beam
-
-RESONANCE, MASSES = ("frequency_Hz", "loss_factor"), ("mass_kg", "mass_share")
-"""What a mass on a spring is known by."""
-
-ONE_PLACE_M = 0.5
-"""Between two effects that are at one place."""
 
 FOLLOWED = 16
 """Elements that are followed after screening: one step tells little of a law's frequency."""
@@ -40,6 +35,10 @@ OPEN = 0.05
 
 WAVES = 1.05
 """Mean square of the deviations from which joints that are named as lost may be such that waves have to cross."""
+
+LEAVES = 1.05
+"""The same of names of other domains, from which elements of the path are tried in their place: two absorbers on
+axle boxes left 1.16 where pads lost by a dashpot."""
 
 TELLS = 45.0
 """Surplus of a free stiffness at one place from which elements of few constants are tried, which ask for less of
@@ -62,6 +61,7 @@ class Description:
         self.searched, self.base, self.found, self.clock = searched, base, found, clock
         self._plain: Round | None = None
         self._rods: tuple[list[Loss], Round | None] = [], None
+        self._lumped: tuple[Finalist, Round] | None = None
         self._left: dict[int, tuple[Fit, tuple[Found, ...]]] = {}
 
     def left(self, fit: Fit) -> tuple[Found, ...]:
@@ -130,7 +130,7 @@ class Description:
         rounds : sequence of Round
         accepted : sequence of Finalist
         """
-        least, twice, explained, strange, blind = rounds[0].threshold, _twice(accepted), 0.0, False, False
+        least, twice, explained, strange, blind = rounds[0].threshold, twice_of(accepted), 0.0, False, False
         if accepted:
             best = accepted[-1].fit
             explained = decide.explained(self.base, best, self.left(best))
@@ -139,10 +139,10 @@ class Description:
             strange, blind = beyond_belief(accepted[0]), self._blind(best)
             if accepted[0].hypothesis.domain != "path":
                 # What is missing in the path may have been taken for a fault of a sensor, or of the vehicle.
-                if best.heat < UNFIT:
+                if best.heat < LEAVES:
                     return None
             elif not (left or strange or blind or twice is not None):
-                return None
+                return self._hung(accepted, least)
         else:
             best = self.base
             # Of a base that is missed by far the scan is of blunted records, and tells little.
@@ -162,6 +162,33 @@ class Description:
         elif explained > decide.EXPLAINED and not strange and not self._closes(result, best):
             return None
         return result if better > 0.0 else None
+
+    def _hung(self, accepted: Sequence[Finalist], least: float) -> Round | None:
+        """One mass on a spring, or some over a stretch, where one effect is such a mass all along a body.
+
+        To the few sensors that a body has both may look alike, in all that a free stiffness closes.
+        """
+        first = accepted[0]
+        at = first.hypothesis.locate(first.values)
+        if len(accepted) > 1 or at.x_m is not None or first.values.keys() != SPREAD:
+            return None
+        if self._lumped is None or self._lumped[0] is not first:
+            situation = Situation(self.searched, self.found)
+            offered = tuple(grammar.hung(situation, at.what, self._each_metre(at.what, first)))
+            self._lumped = first, self._held(self.searched, offered, least)
+        result = self._lumped[1]
+        if not result.finalists:
+            return None
+        result = replace(result, finalists=_simplest(result.finalists, result.ring))
+        one = result.finalists[0]
+        better = first.fit.objective - one.fit.objective - penalty(one.quick, result.ring)
+        return result if better + _asked(accepted, result.ring) > least else None
+
+    def _each_metre(self, name: str, one: Finalist) -> dict[str, float]:
+        """What hangs all along a body, by what does on a metre."""
+        body = self.base.campaign.model.line.bodies[name]
+        assert isinstance(body, Beam)
+        return {**one.values, "mass_kg": one.values["mass_share"] * body.mass_kg_per_m * SPACING_M}
 
     def _tells(self, least: float) -> bool:
         """Whether a free stiffness at one place tells so much that small elements may explain it."""
@@ -201,9 +228,7 @@ class Description:
         if twice is not None:
             at, like = twice.hypothesis.locate(twice.values), twice.values
             if at.x_m is None:
-                body = self.base.campaign.model.line.bodies[at.what]
-                assert isinstance(body, Beam)
-                like = {**like, "mass_kg": like["mass_share"] * body.mass_kg_per_m * SPACING_M}
+                like = self._each_metre(at.what, twice)
             else:
                 there = at.x_m[0]
                 found = tuple(sorted(found, key=lambda f: abs(f.spot.x_m[0] - there)))
@@ -255,18 +280,6 @@ def _asked(accepted: Sequence[Finalist], ring: Ring) -> float:
     return sum(penalty(one.quick, ring) for one in accepted)
 
 
-def _twice(accepted: Sequence[Finalist]) -> Finalist | None:
-    """The heavier of two masses on springs that hang at one place, or all along one body."""
-    for index, one in enumerate(accepted):
-        for other in accepted[:index]:
-            places = [f.hypothesis.locate(f.values) for f in (other, one)]
-            alike = other.hypothesis.entry == one.hypothesis.entry and places[0].what == places[1].what
-            for mass in MASSES:
-                if alike and {mass, *RESONANCE} <= other.values.keys() and _at_one_place(places[0], places[1]):
-                    return max(other, one, key=lambda f: f.values[mass])
-    return None
-
-
 def _loss(one: Finalist) -> Loss | None:
     """The stretch of joints that a name says has lost stiffness; None if it says something else."""
     values = one.values
@@ -274,9 +287,3 @@ def _loss(one: Finalist) -> Loss | None:
         return None
     where = one.hypothesis.locate(values)
     return Loss(where.what, values["centre_m"], values["length_m"], values["factor"])
-
-
-def _at_one_place(first: Where, second: Where) -> bool:
-    if first.x_m is None or second.x_m is None:
-        return first.x_m is second.x_m
-    return abs(first.x_m[0] - second.x_m[0]) < ONE_PLACE_M

@@ -19,6 +19,9 @@ ROD_MODES = 4
 AT_HZ = 100.0
 """Where the stiffness of a springpot is counted."""
 
+DOUBLED, LEAST = float(np.log(2.0)), 5e-4
+"""Logarithm of a law's factor that is one standard deviation, and the smallest factor."""
+
 Values = Mapping[str, float]
 
 
@@ -100,9 +103,19 @@ def _hung(k: float, f: float) -> tuple[Free, ...]:
     )
 
 
+def share_of(z: float) -> float:
+    """More of a law, or less, by the logarithm of what is there then: of lost joints, how little is left."""
+    return float(np.expm1(DOUBLED * z))
+
+
+def coordinate_of(share: float) -> float:
+    """The other way round."""
+    return float(np.log1p(share) / DOUBLED)
+
+
 PART = Element(
     "part",
-    lambda *_: (linear_free("share", "1", 0.0, 0.5, -0.999, 4.0),),
+    lambda *_: (Free("share", "1", share_of, (coordinate_of(LEAST - 1.0), coordinate_of(4.0))),),
     lambda v: Hysteretic(stiffness=v["share"]),
     lambda v: f"a spring of {v['share']:.3g} times the joint's own, as much of its loss with it",
 )

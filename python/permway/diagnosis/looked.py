@@ -16,6 +16,7 @@ from permway.diagnosis.compete import Ring
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.resonances import retuned
+from permway.diagnosis.restarted import restarted
 from permway.diagnosis.side_by_side import SMALL, each
 from permway.errors import InputError, SolveError
 
@@ -58,8 +59,13 @@ def looked(
     best = max((q.gain for q in followed), default=0.0)
     near = [one for one in followed if one.gain > RIVAL * best]
     far = [one for one in followed if one.gain <= RIVAL * best]
+
+    def begun_elsewhere(one: Quick) -> dict[str, Any]:
+        # What asks for more than it gains is none in any valley.
+        return retuned(ring, restarted(ring, one) if one.gain > penalty(one, ring) else one).numbers
+
     numbers = each(
-        lambda one: retuned(ring, one).numbers,
+        begun_elsewhere,
         near,
         threads=threads,
         told=lambda _: progress("follow", len(chosen), len(chosen)),

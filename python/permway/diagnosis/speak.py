@@ -100,8 +100,9 @@ def verdict_of(
     recalibrated = Recalibrated(before=recalibrated_of(base))
     status: Status
     effects: tuple[Effect, ...]
-    if _unsteady(base, accepted[-1].fit if accepted else base):
-        effects = (unexplained_lines(accepted[-1].fit if accepted else base),)
+    told = _told(base, accepted, proof)
+    if _unsteady(base, told):
+        effects = (unexplained_lines(told),)
         return Verdict(
             status="located", effects=effects, evidence=weight(), recalibrated=recalibrated, detectable=sizes
         )
@@ -164,6 +165,13 @@ def _explains_little(before: float, after: float) -> bool:
     if after > max(UNFIT, decide.HALF * before):
         return True
     return after > LEFT and before - after < LITTLE * (before - 1.0)
+
+
+def _told(base: Fit, accepted: Sequence[Finalist], proof: Proof | None) -> Fit:
+    """Which model says how steady lines are: by weights of a base that lacks a resonance those near it are not."""
+    if proof is not None:
+        return proof.weighed
+    return accepted[-1].fit if accepted else base
 
 
 def _unsteady(base: Fit, amended: Fit) -> bool:

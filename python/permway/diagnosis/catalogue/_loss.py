@@ -15,6 +15,7 @@ from permway.diagnosis.fit import Free
 from permway.diagnosis.glance import Glance
 from permway.diagnosis.hypothesis import Hypothesis, Situation, Where, between_free, linear_free
 from permway.diagnosis.recalibrate import UNFIT
+from permway.diagnosis.spot import Found
 from permway.recordings.campaign import Campaign
 
 LONGEST = 12.0
@@ -60,21 +61,47 @@ def local_loss(
         Where to look if the scan names no joint of the law, m.
     """
     x = stations_of(situation.campaign.model.line, law)
-    step = spacing(x)
+    taken, looked = first_look(situation, law, places)
+    for found in looked:
+        yield _hypothesis(law, x, found[0], found, entry, family)
+    telling = _telling(situation, situation.joints(law, most=1))
+    for centre in [] if telling and looked else taken[:most]:
+        yield _hypothesis(law, x, centre, None, entry, family)
+
+
+def first_look(
+    situation: Situation, law: str, places: Sequence[float] = ()
+) -> tuple[list[float], list[tuple[float, float, float]]]:
+    """Telling places of a law that are not neighbours, m, and the stretches whose loss explains most.
+
+    Parameters
+    ----------
+    situation : Situation
+    law : str
+    places : sequence of float
+        Where to look if the scan names no joint of the law, m.
+
+    Returns
+    -------
+    list of float, list of (float, float, float)
+        Places, and of each stretch its first and last joint, m, and what is left of the stiffness; no stretch if
+        the law tells little, or no loss explains anything.
+    """
+    step = spacing(stations_of(situation.campaign.model.line, law))
     told = situation.joints(law, most=40)
     taken: list[float] = []
     for centre in [f.spot.x_m[0] for f in told] or places:
         if all(abs(centre - other) >= 4.0 * step for other in taken):
             taken.append(centre)
-    telling = bool(told) and told[0].surplus > max(TELLING * situation.found[0].surplus, SURPLUS)
+    telling = _telling(situation, told)
     # About a base that does not fit the scan of slopes may tell of what bent it.
     bent = bool(situation.found) and situation.fit.heat > UNFIT
     centres = taken[:CENTRES] if telling else []
-    looked = _looked(situation, law, centres, everywhere=bent) if telling or bent else []
-    for found in looked:
-        yield _hypothesis(law, x, found[0], found, entry, family)
-    for centre in [] if telling and looked else taken[:most]:
-        yield _hypothesis(law, x, centre, None, entry, family)
+    return taken, _looked(situation, law, centres, everywhere=bent) if telling or bent else []
+
+
+def _telling(situation: Situation, told: Sequence[Found]) -> bool:
+    return bool(told) and told[0].surplus > max(TELLING * situation.found[0].surplus, SURPLUS)
 
 
 def _hypothesis(
