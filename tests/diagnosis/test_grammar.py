@@ -10,18 +10,20 @@ import numpy as np
 import pytest
 from permway.diagnosis import describe
 from permway.diagnosis.bases import bases
-from permway.diagnosis.catalogue._change import fixed_mass, hung_mass, with_joints
+from permway.diagnosis.catalogue._change import fixed_mass, hung_mass, with_joints, with_law
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.diagnose import diagnose
-from permway.diagnosis.elements import ELEMENTS, LEAST, PART, Element, coordinate_of
+from permway.diagnosis.elements import AT_HZ, ELEMENTS, LEAST, PART, Element, coordinate_of
 from permway.diagnosis.gather import gather
 from permway.diagnosis.grammar import alike, hypotheses
+from permway.diagnosis.grammar_parts import partly_springpot
 from permway.diagnosis.grammar_places import bodies, joints
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.search import Finalist, search
 from permway.diagnosis.spot import Found, Spot
+from permway.laws import Hysteretic
 from permway.model.joints import Joints
 from permway.model.presets import slab_track_viaduct_32m
 from permway.recordings.campaign import Campaign
@@ -121,6 +123,25 @@ def test_a_part_is_counted_by_the_logarithm_of_what_is_there() -> None:
     assert [share.value(z) for z in (0.0, -1.0, 1.0)] == pytest.approx([0.0, -0.5, 1.0])
     assert share.value(coordinate_of(-0.99)) == pytest.approx(-0.99)
     assert share.value(share.limits[0]) == pytest.approx(LEAST - 1.0)
+
+
+def test_pads_of_which_a_part_relaxes_are_told_by_share_and_order(tmp_path: Path) -> None:
+    """Their owner knows how stiff they are; a springpot beside them would have that be half as much."""
+
+    def relaxing(campaign: Campaign) -> Campaign:
+        return with_law(campaign, "pad", partly_springpot(campaign.model.line.laws["pad"], 0.5, 0.4))
+
+    best = described(simulate(tmp_path / "c", 8, amend=relaxing).campaign)
+    assert best.hypothesis.family == "springpot in place of a part of every joint of the layer"
+    assert best.hypothesis.locate(best.values).what == "pad"
+    assert best.values == pytest.approx({"share": 0.5, "order": 0.4}, rel=0.05)
+    assert "springpot" in best.hypothesis.law(best.values)
+
+
+def test_a_springpot_in_place_of_a_part_leaves_the_modulus_where_it_is_counted() -> None:
+    law, at = Hysteretic(stiffness=6e7, loss_factor=0.0), np.array([AT_HZ])
+    assert partly_springpot(law, 1.0, 0.3).complex(at) == pytest.approx(6e7 * np.exp(0.15j * np.pi))
+    np.testing.assert_allclose(partly_springpot(law, 0.0, 0.3).complex(at), law.complex(at))
 
 
 def test_a_bearing_that_keeps_a_part_is_told_by_that_alone(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ from permway.diagnosis.elements import ELEMENTS, Element, Values
 from permway.diagnosis.ends import SPACING_M
 from permway.diagnosis.fit import Free
 from permway.diagnosis.grammar_made import STRETCHES, hypothesis_of, over_joints, over_stretch, typical
-from permway.diagnosis.grammar_parts import part, part_of_one, parts_lost
+from permway.diagnosis.grammar_parts import part, part_of_one, parts_lost, springpot_instead
 from permway.diagnosis.hypothesis import Hypothesis, Situation, Where, linear_free, log_free
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL
@@ -52,6 +52,7 @@ def hypotheses(situation: Situation, like: Values | None = None) -> Iterator[Hyp
     if like is None:
         for layer in _layers(situation):
             yield from parts_lost(situation, layer)
+            yield springpot_instead(layer)
 
 
 def _elements(situation: Situation, like: Values | None) -> Iterator[Hypothesis]:

@@ -1,20 +1,34 @@
-"""More or less of what joints have: of one, of those of a stretch, or of those that a first look says are lost."""
+"""Parts of what joints have: more or less of one, of a stretch, of those that a first look says are lost.
+
+Or another law in place of a part of it, in a whole layer.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
 
+import numpy as np
+
+from permway.diagnosis.catalogue._change import with_law
 from permway.diagnosis.catalogue._interval import spacing_of, weakened
 from permway.diagnosis.catalogue._loss import first_look
-from permway.diagnosis.elements import PART, Values, coordinate_of
+from permway.diagnosis.elements import AT_HZ, PART, Values, coordinate_of
 from permway.diagnosis.grammar_made import STRETCHES, hypothesis_of, over_joints
-from permway.diagnosis.hypothesis import Hypothesis, Situation, Where
+from permway.diagnosis.hypothesis import Hypothesis, Situation, Where, between_free
 from permway.diagnosis.spot import Found
+from permway.diagnosis.verdict import NOVEL
+from permway.laws import Parallel, Scaled, Springpot
+from permway.laws.base import Law
 from permway.recordings.campaign import Campaign
 
 SHARES = (0.25, -0.25, -0.75)
 """That a part of one joint's law is looked for with."""
+
+ORDERS = ((0.0, -1.5), (0.0, -0.5), (1.0, -1.0), (-1.0, 0.0))
+"""Coordinates of share and order that a springpot in place of a part is looked for with: half by 0.08, say."""
+
+ROOM_C = 20.0
 
 
 def part_of_one(found: Found) -> Hypothesis:
@@ -51,3 +65,38 @@ def parts_lost(situation: Situation, found: Found) -> Iterator[Hypothesis]:
         one = part(situation, about)
         share, length = coordinate_of(left - 1.0), (last - first) / step / STRETCHES[0] - 1.0
         yield replace(one, starts=((share, 0.0, length), (0.5 * share, 0.0, length)))
+
+
+def springpot_instead(found: Found) -> Hypothesis:
+    """A springpot in place of a share of what every joint of a layer has, as stiff at 100 Hz.
+
+    Beside it, as elements are, it would ask its owner's stiffness to be as much less.
+    """
+    name = found.spot.name
+
+    def amend(campaign: Campaign, values: Values) -> Campaign:
+        law = campaign.model.line.laws[name]
+        return with_law(campaign, name, partly_springpot(law, values["share"], values["order"]))
+
+    return Hypothesis(
+        entry=NOVEL,
+        domain="path",
+        family="springpot in place of a part of every joint of the layer",
+        free=(between_free("share", "1", 0.0, 1.0), between_free("order", "1", 0.02, 0.98)),
+        amend=amend,
+        locate=lambda _: Where(name),
+        starts=ORDERS,
+        law=lambda v: (
+            f"a springpot of order {v['order']:.2g} in place of {v['share']:.2g} of what every joint of "
+            f"the layer, as stiff at {AT_HZ:g} Hz"
+        ),
+        size="share",
+        none=0.0,
+    )
+
+
+def partly_springpot(law: Law, share: float, order: float) -> Law:
+    """A law of which a springpot has taken a share, of the same modulus at 100 Hz."""
+    modulus = share * float(np.abs(law.complex(AT_HZ, ROOM_C)))
+    springpot = Springpot(coefficient=modulus / float((2.0 * np.pi * AT_HZ) ** order), order=order)
+    return Parallel(first=Scaled(law=law, factor=1.0 - share), second=springpot)
