@@ -88,7 +88,7 @@ def springpot_instead(found: Found) -> Hypothesis:
         starts=ORDERS,
         law=lambda v: (
             f"a springpot of order {v['order']:.2g} in place of {v['share']:.2g} of what every joint of "
-            f"the layer, as stiff at {AT_HZ:g} Hz"
+            f"the layer has, as stiff at {AT_HZ:g} Hz"
         ),
         size="share",
         none=0.0,
