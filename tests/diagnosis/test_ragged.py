@@ -90,6 +90,9 @@ def test_lines_are_as_steady_as_the_amended_model_weighs_them(steady: Fit, struc
     """A bogie frame's resonance left lines that scattered 3.1 times by the weights of a rigid one."""
     accepted, proof = cast(Any, [SimpleNamespace(fit=struck)]), cast(Proof, SimpleNamespace(weighed=steady))
     assert _told(struck, accepted, proof) is steady
+    # Noise that was found where wheels had left welds explained half of it, and made lines less coherent.
+    far = cast(Proof, SimpleNamespace(weighed=replace(steady, heat=1.3)))
+    assert _told(struck, accepted, far) is struck
     assert _told(steady, accepted, None) is struck
     assert _told(steady, [], None) is steady
     assert not _unsteady(struck, _told(struck, accepted, proof))

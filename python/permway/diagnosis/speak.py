@@ -45,6 +45,9 @@ LEFT, LITTLE = 1.3, 0.1
 """Mean square of the deviations from which something is left, and the share of what is too much that an effect has
 to explain then."""
 
+RIGHT = 1.05
+"""The same, up to which an amended model weighs records rightly."""
+
 CREDITED = 1.1
 """Mean square of the deviations up to which names are true as often as they say: see docs/diagnosis.md."""
 
@@ -168,8 +171,11 @@ def _explains_little(before: float, after: float) -> bool:
 
 
 def _told(base: Fit, accepted: Sequence[Finalist], proof: Proof | None) -> Fit:
-    """Which model says how steady lines are: by weights of a base that lacks a resonance those near it are not."""
-    if proof is not None:
+    """Which model says how steady lines are: by weights of a base that lacks a resonance those near it are not.
+
+    What does not fit, as noise that stands for impacts, makes lines less coherent, and so hides that they scatter.
+    """
+    if proof is not None and proof.weighed.heat < RIGHT:
         return proof.weighed
     return accepted[-1].fit if accepted else base
 
