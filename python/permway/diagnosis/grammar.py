@@ -115,11 +115,12 @@ def hung(situation: Situation, body: str, like: Values) -> Iterator[Hypothesis]:
         if all(abs(one.spot.x_m[0] - other.spot.x_m[0]) >= 2.0 * places.BESIDE_M for other in taken):
             taken.append(one)
     heavier = {**like, "mass_kg": LUMPED * like["mass_kg"]}
-    for element in (element for element in ELEMENTS if element.name == "resonator"):
-        for one in taken[:HUNG]:
-            yield replace(on := _on_body(element, one, heavier), starts=((0.0,) * len(on.free),))
-        for one in taken[:1]:
-            yield _over_body(situation, element, one, like)
+    resonator = next(element for element in ELEMENTS if element.name == "resonator")
+    for one in taken[:HUNG]:
+        on = _on_body(resonator, one, heavier)
+        yield replace(on, starts=((0.0,) * len(on.free),))
+    for one in taken[:1]:
+        yield _over_body(situation, resonator, one, like)
 
 
 def _layers(situation: Situation) -> list[Found]:

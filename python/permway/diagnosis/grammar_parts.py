@@ -13,6 +13,7 @@ import numpy as np
 from permway.diagnosis.catalogue._change import with_law
 from permway.diagnosis.catalogue._interval import spacing_of, weakened
 from permway.diagnosis.catalogue._loss import first_look
+from permway.diagnosis.catalogue._roles import ROOM_C
 from permway.diagnosis.elements import AT_HZ, PART, Values, coordinate_of
 from permway.diagnosis.grammar_made import STRETCHES, hypothesis_of, over_joints
 from permway.diagnosis.hypothesis import Hypothesis, Situation, Where, between_free
@@ -27,8 +28,6 @@ SHARES = (0.25, -0.25, -0.75)
 
 ORDERS = ((0.0, -1.5), (0.0, -0.5), (1.0, -1.0), (-1.0, 0.0))
 """Coordinates of share and order that a springpot in place of a part is looked for with: half by 0.08, say."""
-
-ROOM_C = 20.0
 
 
 def part_of_one(found: Found) -> Hypothesis:
@@ -96,7 +95,7 @@ def springpot_instead(found: Found) -> Hypothesis:
 
 
 def partly_springpot(law: Law, share: float, order: float) -> Law:
-    """A law of which a springpot has taken a share, of the same modulus at 100 Hz."""
+    """A law of which a springpot has taken a share, of the same modulus at 100 Hz and 20 °C."""
     modulus = share * float(np.abs(law.complex(AT_HZ, ROOM_C)))
     springpot = Springpot(coefficient=modulus / float((2.0 * np.pi * AT_HZ) ** order), order=order)
     return Parallel(first=Scaled(law=law, factor=1.0 - share), second=springpot)

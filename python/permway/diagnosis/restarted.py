@@ -28,12 +28,10 @@ def restarted(ring: Ring, found: Quick) -> Quick:
     hypothesis = found.hypothesis
     if hypothesis.domain == "path" or hypothesis.about or len(hypothesis.starts) < 2 or not found.gain > 0.0:
         return found
-    stepped = []
-    for start in hypothesis.starts:
-        one = ring.screen(replace(hypothesis, starts=(start,)))
-        apart = found.start is None or one.start is None or not np.array_equal(one.start, found.start)
-        if apart and one.gain > NEAR * found.gain:
-            stepped.append(one)
-    stepped = sorted(stepped, key=lambda q: -q.gain)[:MOST]
+    others = [
+        start for start in hypothesis.starts if found.start is None or not np.array_equal(start, found.start)
+    ]
+    stepped = [ring.screen(replace(hypothesis, starts=(start,))) for start in others]
+    stepped = sorted((q for q in stepped if q.gain > NEAR * found.gain), key=lambda q: -q.gain)[:MOST]
     best = max([found, *(ring.quick(q.hypothesis, after=q) for q in stepped)], key=lambda q: q.gain)
     return found if best is found else replace(best, hypothesis=hypothesis)

@@ -38,7 +38,8 @@ a rival may then be the better one."""
 
 EXPLAINS = 1.05
 """Mean square of the deviations of responses as they are from which those that were spared are tried after all: a
-rod in place of some pads left 1.07 where a part of the pads' own stiffness leaves 1.00."""
+rod in place of some pads left 1.07; a part of their own stiffness, which is there, does as well by two constants
+less."""
 
 Threshold = Callable[[Ring, Sequence[Quick]], float]
 
