@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from permway.errors import InputError
+from permway.files import check_folder
 from permway.reading import inside
 from permway.recordings.campaign import Campaign
 from permway.recordings.importers.sheet_form import Sheet, Spot, read_sheet
 from permway.recordings.importers.sheet_model import model_table
 from permway.recordings.importers.sheet_runs import UNITS, read_runs
-from permway.recordings.importers.writing import write_campaign
+from permway.recordings.importers.writing import Draft, write_campaigns
 from permway.recordings.readers import read_frf
 
 KEYS = {
@@ -67,6 +68,7 @@ def import_sheet(folder: Path, output: Path, *, copy: bool = True) -> Campaign:
     InputError
         For a sheet or a record that cannot be read, or does not hold what the sheet says.
     """
+    check_folder(output)
     sheet = read_sheet(folder)
     unit = _unit(sheet.hammer.quantity)
     title = f"{folder.resolve().name}: {sheet.layout.spans} span(s) of {sheet.layout.span_m:g} m"
@@ -96,7 +98,8 @@ def import_sheet(folder: Path, output: Path, *, copy: bool = True) -> Campaign:
         "records": records,
         "held_out": _held_out(sheet),
     }
-    return write_campaign(output, campaign=campaign, model=model_table(sheet, title), sources=sources, copy=copy)
+    draft = Draft(campaign, model_table(sheet, title), sources)
+    return write_campaigns(output, [draft], copy=copy)[0]
 
 
 def _find(folder: Path, name: str) -> Path:
