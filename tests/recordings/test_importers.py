@@ -141,6 +141,9 @@ SHEET_FAULTS: list[tuple[Callable[[Any], None], str, str]] = [
     (_set("runs", "channels", to=["bogie2"]), "", "bogie2"),
     (_set("runs", "speeds_kmh", to=[300.0]), "", "no file run_300kmh"),
     (_set("runs", "sampling_Hz", to=512), "sampling_Hz", "1024"),
+    (_set("runs", "position", to=16.0), "runs.position", "must be words, or a list"),
+    (_set("runs", "position", to=["16"]), "runs.position", "must be words, or a list"),
+    (_set("runs", "position", to="in the middle"), "runs.position", "where do the wheelsets stand?"),
 ]
 
 
