@@ -36,7 +36,7 @@ def import_pad_materials(
         For a folder without materials, or files that cannot be read.
     """
     check_folder(output)
-    materials = sorted(path.parent for path in folder.glob(f"*/{STORAGE}"))
+    materials = sorted({path.parent for name in (STORAGE, LOSS) for path in folder.glob(f"*/{name}")})
     if not materials:
         raise InputError("holds no material", where=str(folder), remedy=f"it needs */{STORAGE} and */{LOSS}")
     return write_campaigns(output, [_material(path, law) for path in materials], copy=copy)
