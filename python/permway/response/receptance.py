@@ -44,8 +44,8 @@ class Place(FrozenModel):
 
     @property
     def label(self) -> str:
-        """The name, or body and place."""
-        return self.name or f"{self.body}@{self.x_m:g}"
+        """The name, or body and place, which differs where places do."""
+        return self.name or f"{self.body}@{self.x_m:.12g}"
 
 
 def receptance(
@@ -182,8 +182,9 @@ def check_places(line: Line, places: Sequence[Place], where: str) -> dict[str, n
     labels = [p.label for p in places]
     if len(set(labels)) < len(labels):
         index = next(i for i, label in enumerate(labels) if label in labels[:i])
+        named = places[index].name is not None
         raise InputError(
-            "the name stands twice",
+            "the name stands twice" if named else "has no name, and the one made of its place stands twice",
             where=f"{where}[{index}]",
             value=labels[index],
             remedy="give each its own name",
