@@ -22,11 +22,11 @@ SUMMARY = DOCS / "challenge.json"
 GROUPS = {
     "null": "nothing missing",
     "single": "one effect",
-    "twin": "one effect, with a near twin",
-    "multiple": "two or three effects",
-    "outside": "an effect outside the catalogue",
-    "nonlinear": "nonlinear or changing",
-    "graded": "one effect, faded",
+    "twin": "near twin",
+    "multiple": "several",
+    "outside": "outside",
+    "nonlinear": "nonlinear",
+    "graded": "faded",
 }
 """What a tier of the challenge conceals, in the order of the table."""
 
@@ -36,7 +36,6 @@ COLUMNS = {
     "family": "family",
     "in_class": "in the class",
     "false_name": "false name",
-    "harmed": "predicts worse",
 }
 """Figures of the table."""
 
@@ -55,7 +54,7 @@ AT_MOST = {
     "twin, easy": {"false_name": 0.05},
     "outside, easy": {"false_name": 0.05},
 }
-"""Bars, as shares of the cases; amended models predict worse in at most `MOST_HARMED` of any group."""
+"""Bars of the table, as shares of the cases."""
 
 MOST_HARMED = 0.01
 ALL_FOUND = 0.75
@@ -78,11 +77,12 @@ Each cell is a count of cases. In brackets stands the bar that was set for it. *
 """
 
 LEGEND = """
+- *Near twin*: one effect that looks much like another. *Several*: two or three effects. *Outside*: mechanics that
+  the catalogue does not have. *Nonlinear*: friction, or wheels that leave the rail. *Faded*: one weak effect.
 - *Reported*: the verdict says that something is missing or wrong.
 - *Place*: the stated place is right.
 - *Family*: the name, or a name of the same family, is right. Outside the catalogue: the mechanics is right.
 - *In the class*: the true effect (of several, the strongest) is among the names that the verdict leaves open.
-- *Predicts worse*: the amended model predicts records that were left out of the fit worse than the nominal one.
 """
 
 
@@ -98,7 +98,18 @@ def condense(scores: dict[str, Any]) -> dict[str, Any]:
     parameters = scores["parameters"]
     if isinstance(parameters, list):
         parameters = {key: sum(row[key] for row in parameters) for key in ("campaigns", "inside")}
-    columns = {"rival", "tier", "group", "cases", "seconds", "covered", "all_found", "mechanics", *COLUMNS}
+    columns = {
+        "rival",
+        "tier",
+        "group",
+        "cases",
+        "seconds",
+        "covered",
+        "harmed",
+        "all_found",
+        "mechanics",
+        *COLUMNS,
+    }
     found = {key: scores.get(key, []) for key in kept}
     for part in ("tiers", "rivals"):
         found[part] = [{key: cell for key, cell in row.items() if key in columns} for row in scores[part]]
@@ -123,8 +134,8 @@ def page(summary: dict[str, Any]) -> str:
     titles = " | ".join(COLUMNS.values())
     lines = [
         HEAD,
-        f"| concealed | cases | {titles} | median time, s |",
-        f"|---|---:|{'---:|' * len(COLUMNS)}---:|",
+        f"| concealed | | cases | {titles} | median time, s |",
+        f"|---|---|---:|{'---:|' * len(COLUMNS)}---:|",
     ]
     order = list(GROUPS)
     for row in sorted(summary["tiers"], key=lambda r: order.index(r["tier"])):
@@ -160,17 +171,14 @@ def _rows(row: dict[str, Any]) -> list[str]:
         shown = row.get(key)
         if key == "family" and "mechanics" in row:
             shown, least = row["mechanics"], AT_LEAST.get(group, {}).get("mechanics")
-        if key == "harmed":
-            most = MOST_HARMED
         if key == "false_name" and row["tier"] == "null":
             shown = None  # The same count as "reported".
         cells.append("" if shown is None else _cell(count(shown), least=least, most=most))
-    name = GROUPS[row["tier"]] + (f", {ease}" if ease else "")
-    lines = [f"| {name} | {row['cases']} | {' | '.join(cells)} | {row['seconds']:.0f} |"]
+    lines = [f"| {GROUPS[row['tier']]} | {ease} | {row['cases']} | {' | '.join(cells)} | {row['seconds']:.0f} |"]
     if "all_found" in row:
         found = count(row["all_found"])
         filler = " |" * (len(COLUMNS) - 1)
-        lines.append(f"| ... all of them found | {found[1]} | {_cell(found, least=ALL_FOUND)} |{filler} |")
+        lines.append(f"| ... all of them | {ease} | {found[1]} | {_cell(found, least=ALL_FOUND)} |{filler} |")
     return lines
 
 
@@ -180,18 +188,18 @@ def _cell(found: tuple[int, int], *, least: float | None = None, most: float | N
     missed = (least is not None and share < least) or (most is not None and share > most)
     text = f"**{number}**" if missed else f"{number}"
     if least is not None:
-        text += f" (≥ {_percent(least)})"
-    if most is not None and (most != MOST_HARMED or missed):
-        text += f" (≤ {_percent(most)})"
+        text += f" (≥\u00a0{_percent(least)})"
+    if most is not None:
+        text += f" (≤\u00a0{_percent(most)})"
     return text
 
 
 def _percent(share: float) -> str:
-    return f"{100.0 * share:g} %"
+    return f"{100.0 * share:g}\u00a0%"
 
 
-def _rounded(number: int, of: int) -> str:
-    return f"{100 * number / of:.0f} %"
+def _rounded(number: int, of: int, digits: int = 0) -> str:
+    return f"{100 * number / of:.{digits}f} %"
 
 
 def _sentences(summary: dict[str, Any]) -> list[str]:
@@ -202,11 +210,16 @@ def _sentences(summary: dict[str, Any]) -> list[str]:
     inside, of = (sum(row[i] for row in covered) for i in (0, 1))
     low, high = COVERED
     owners = summary["parameters"]
+    harmed, cases = (sum(count(row["harmed"])[i] for row in summary["tiers"]) for i in (0, 1))
     return [
+        "All campaigns together:",
+        "",
         f"- Of {sure['claims']} names stated with a probability of 0.9 or more, {sure['true']['count']} are true "
         f"({_rounded(sure['true']['count'], sure['claims'])}; bar {_percent(STATED_TRUE)}).",
         f"- Of {of} 90 % intervals of an effect's parameters, {inside} hold the truth ({_rounded(inside, of)}; "
         f"bar {100 * low:g} to {_percent(high)}).",
+        f"- In {harmed} of {cases} campaigns the amended model predicts records that were left out of the fit "
+        f"worse than the nominal one ({_rounded(harmed, cases, 1)}; bar {_percent(MOST_HARMED)}).",
         f"- Of {owners['campaigns']} 90 % intervals of nominal parameters, {owners['inside']} hold the truth "
         f"({_rounded(owners['inside'], owners['campaigns'])}).",
     ]

@@ -78,4 +78,4 @@ def test_the_readme_and_the_page_of_results_say_the_same() -> None:
     rows = [line for line in (ROOT / "README.md").read_text("utf-8").splitlines() if line.startswith("| ")]
     for what, (count, of) in shares.items():
         (row,) = [line for line in rows if what in line]
-        assert f"{count} of {of}" in row
+        assert f"{count}/{of}" in row
