@@ -22,7 +22,7 @@ SUMMARY = DOCS / "challenge.json"
 GROUPS = {
     "null": "nothing missing",
     "single": "one effect",
-    "twin": "near twin",
+    "twin": "near-degenerate",
     "multiple": "several",
     "outside": "outside",
     "nonlinear": "nonlinear",
@@ -77,8 +77,9 @@ Each cell is a count of cases. In brackets stands the bar that was set for it. *
 """
 
 LEGEND = """
-- *Near twin*: one effect that looks much like another. *Several*: two or three effects. *Outside*: mechanics that
-  the catalogue does not have. *Nonlinear*: friction, or wheels that leave the rail. *Faded*: one weak effect.
+- *Near-degenerate*: one effect that looks much like another. *Several*: two or three effects. *Outside*:
+  mechanics that the catalogue does not have. *Nonlinear*: friction, or wheels that leave the rail. *Faded*: one
+  weak effect.
 - *Reported*: the verdict says that something is missing or wrong.
 - *Place*: the stated place is right.
 - *Family*: the name, or a name of the same family, is right. Outside the catalogue: the mechanics is right.
