@@ -79,7 +79,7 @@ def page() -> str:
         "",
         "Written by `python docs/make_performance.py` from the results in `benches/*.json`. Times are of a",
         "machine that others used at the same time, so they are upper bounds. How each was measured, and what",
-        "limits it, is told in `benches/README.md`.",
+        "limits it, is described in `benches/README.md`.",
         "",
         "## Against peers",
         peers.replace("\n#### ", "\n### "),
