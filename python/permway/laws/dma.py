@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from permway.arrays import Complexes, Reals
+from permway.arrays import Complexes, Reals, real_numbers
 from permway.errors import InputError
 from permway.laws.columns import recognise
 from permway.laws.columns_read import loss_of, read_column, refuse_kelvin, refuse_missing, two_columns, unit_scale
@@ -51,7 +51,7 @@ class DmaTable:
             column = getattr(self, name)
             if column is None:
                 continue
-            fixed = np.array(column, dtype=np.float64)
+            fixed = real_numbers(column, name).copy()
             if fixed.shape != (rows,) or not np.isfinite(fixed).all():
                 raise InputError(
                     "a column of a DMA table is finite and as long as frequency_Hz",

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from permway.arrays import ABSOLUTE_ZERO_C, Reals
+from permway.arrays import ABSOLUTE_ZERO_C, Reals, is_real
 from permway.errors import InputError
 from permway.laws.base import Law
 from permway.laws.dma import DmaTable
@@ -134,7 +134,7 @@ def _pose(
 ) -> Problem:
     if vertical not in ("none", "paper"):
         raise InputError("not a vertical factor", where="vertical", value=vertical, remedy='use "none" or "paper"')
-    if not (len(weights) == 2 and all(np.isfinite(w) and w > 0.0 for w in weights)):
+    if not (len(weights) == 2 and all(is_real(w) and np.isfinite(w) and w > 0.0 for w in weights)):
         raise InputError("two finite weights above zero are needed", where="weights", value=weights)
     if shift != "none" and reference_C is None:
         raise InputError(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import model_validator
 
-from permway.arrays import Complexes, Reals
+from permway.arrays import Complexes, Reals, real_numbers
 from permway.errors import InputError
 from permway.laws import AnyLaw, Hysteretic
 from permway.model.beam_columns import beam_columns
@@ -126,7 +126,7 @@ class Line(FrozenModel):
             From a law, for a frequency or a temperature outside what it knows; for a stiffness that is not
             finite, or that creates energy.
         """
-        frequency = np.atleast_1d(np.asarray(frequency_Hz, dtype=np.float64))
+        frequency = np.atleast_1d(real_numbers(frequency_Hz, "frequency_Hz"))
         columns = []
         for name, law in self.laws.items():
             try:

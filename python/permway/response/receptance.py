@@ -11,7 +11,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from permway import _core
-from permway.arrays import Reals
+from permway.arrays import Reals, real_numbers
 from permway.errors import InputError
 from permway.model.bodies import Metres
 from permway.model.joint_table import JointTable
@@ -209,10 +209,7 @@ def check_sweep(frequency_Hz: ArrayLike) -> Reals:
     InputError
         Naming the first frequency at fault.
     """
-    try:
-        frequency = np.atleast_1d(np.asarray(frequency_Hz, dtype=np.float64))
-    except (TypeError, ValueError) as error:
-        raise InputError("frequencies must be numbers", where="frequency_Hz", value=frequency_Hz) from error
+    frequency = np.atleast_1d(real_numbers(frequency_Hz, "frequency_Hz"))
     if frequency.ndim != 1:
         raise InputError("frequencies must be a list", where="frequency_Hz", value=frequency.shape)
     bad = np.flatnonzero(~(np.isfinite(frequency) & (frequency > 0.0)))
