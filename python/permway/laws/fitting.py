@@ -30,6 +30,10 @@ def fit_table(
     vertical: str = "none",
     seed: int = 0,
     pictures: str | Path | None = None,
+    frequency_Hz: float | None = None,
+    temperature_C: float | None = None,
+    decimal: str | None = None,
+    shape_factor_m: float | None = None,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
     """Read a DMA table, identify a law and its shift, and write LAW.toml.
@@ -48,6 +52,8 @@ def fit_table(
         As for :func:`permway.laws.identify.identify`.
     pictures : path, optional
         Folder for master_curve.png, shift.png, surfaces.png and residuals.png; made if it does not exist.
+    frequency_Hz, temperature_C, decimal, shape_factor_m
+        As for :func:`permway.laws.dma.read_dma`.
     progress : callable, optional
         Called with the steps done and the steps in all.
 
@@ -61,7 +67,13 @@ def fit_table(
     InputError
         For a table, a law or a path that cannot be used; nothing is written then.
     """
-    table = read_dma(dma)
+    table = read_dma(
+        dma,
+        frequency_Hz=frequency_Hz,
+        temperature_C=temperature_C,
+        decimal=decimal,
+        shape_factor_m=shape_factor_m,
+    )
     if pictures is not None:
         prepare_folder(Path(pictures))
     notes: tuple[str, ...] = ()
@@ -136,6 +148,7 @@ def _answer(
     answer: dict[str, Any] = {
         "law_file": str(output),
         "law": found.family,
+        "quantity": "stiffness of the part, N/m" if found.table.quantity == "stiffness" else "modulus, Pa",
         "shift": found.shift,
         "reference_temperature_C": found.reference_temperature_C,
         "rows": found.n_rows,
