@@ -115,8 +115,20 @@ def fit_pad(
     dma: Annotated[Path, typer.Argument(help="DMA table (text: CSV, TSV).")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Law to write (TOML).")] = Path("law.toml"),
     law: Annotated[str, typer.Option(help="Form of the law; 'compare' tries several.")] = "compare",
-    shift: Annotated[str, typer.Option(help="Shift over temperature: wlf, arrhenius, free, none.")] = "wlf",
-    reference: Annotated[float, typer.Option(help="Reference temperature, degrees Celsius.")] = 20.0,
+    shift: Annotated[
+        str,
+        typer.Option(
+            help="Shift over temperature: wlf, arrhenius, wlf_arrhenius (Arrhenius in the glass), free, none; "
+            "'compare' tries the first three."
+        ),
+    ] = "wlf",
+    reference: Annotated[
+        float | None,
+        typer.Option(
+            help="Temperature for which the law's parameters are written, degrees Celsius; by default 20, or the "
+            "table's nearest. What the law says at any temperature does not depend on it."
+        ),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the genetic algorithm.")] = 0,
     plot: Annotated[Path | None, typer.Option(help="Folder for pictures (PNG).")] = None,
     frequency: Annotated[
