@@ -112,6 +112,7 @@ def sensitivity(
             "sensors": sensor_port,
             "forces": force_port,
             "own": places,
+            "by_law": name == "law",
         },
     )
     data = xr.Dataset(
