@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from permway.arrays import Reals
 from permway.laws.toml import to_toml
 from permway.recordings.campaign import Campaign, read_campaign
 from permway.recordings.predict import predict
@@ -110,6 +111,9 @@ def simulate(
     noise: float = 0.05,
     smooth: float = 0.02,
     amend: Callable[[Campaign], Campaign] = lambda campaign: campaign,
+    model: dict[str, Any] = MODEL,
+    campaign: dict[str, Any] = CAMPAIGN,
+    frequency_Hz: Reals = FREQUENCY,
 ) -> Simulated:
     """Write a campaign whose truth is drawn from its priors.
 
@@ -123,33 +127,39 @@ def simulate(
         Standard deviation of sensors' and points' smooth errors, neper and rad, at each octave.
     amend : callable
         What is concealed in the records.
+    model, campaign : dict
+        Tables of the two files; the first record is a frequency response, and the only one.
+    frequency_Hz : ndarray, shape (F,)
+        Lines of it.
     """
     random = np.random.default_rng(seed)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "model.toml").write_text(to_toml(MODEL))
+    (folder / "model.toml").write_text(to_toml(model))
     path = folder / "campaign.toml"
-    path.write_text(to_toml(CAMPAIGN))
-    shape = (FREQUENCY.size, 2, 3)
-    names = {"sensor": np.array(["r", "d"]), "hammer": np.array(["a", "b", "c"])}
+    path.write_text(to_toml(campaign))
+    record = campaign["records"][0]
+    columns, rows = list(record["references"]), list(record["responses"])
+    shape = (frequency_Hz.size, len(rows), len(columns))
+    names = {"sensor": np.array(rows), "hammer": np.array(columns)}
     save = folder / "frf.npz"
-    np.savez(save, f=FREQUENCY, frf=np.ones(shape, complex), coh=np.full(shape, 0.9), **names)
-    campaign = read_campaign(path)
-    truth = {k.name: k.value(float(random.standard_normal())) for k in campaign.parameters.known.values()}
-    (right,) = predict(amend(campaign.with_values(truth)), campaign.load(), threads=1)
-    gains = [np.exp(_smooth(random, count, smooth)) for count in (2, 3)]
+    np.savez(save, f=frequency_Hz, frf=np.ones(shape, complex), coh=np.full(shape, 0.9), **names)
+    read = read_campaign(path)
+    truth = {k.name: k.value(float(random.standard_normal())) for k in read.parameters.known.values()}
+    (right,) = predict(amend(read.with_values(truth)), read.load(), threads=1)
+    gains = [np.exp(_smooth(random, frequency_Hz, count, smooth)) for count in shape[1:]]
     values = np.moveaxis(right["frf"].values, -1, 0) * gains[0][:, :, None] * gains[1][:, None, :]
     size = noise * np.median(np.abs(values), axis=0)
     blows = (BLOWS, *shape)
-    read = values + size * (random.standard_normal(blows) + 1j * random.standard_normal(blows))
-    estimate = read.mean(axis=0)
-    coherence = np.abs(estimate) ** 2 / (np.abs(read) ** 2).mean(axis=0)
-    np.savez(save, f=FREQUENCY, frf=estimate, coh=coherence, **names)
-    return Simulated(path, campaign, truth, size / np.sqrt(BLOWS))
+    each = values + size * (random.standard_normal(blows) + 1j * random.standard_normal(blows))
+    estimate = each.mean(axis=0)
+    coherence = np.abs(estimate) ** 2 / (np.abs(each) ** 2).mean(axis=0)
+    np.savez(save, f=frequency_Hz, frf=estimate, coh=coherence, **names)
+    return Simulated(path, read, truth, size / np.sqrt(BLOWS))
 
 
-def _smooth(random: np.random.Generator, count: int, size: float) -> np.ndarray:
+def _smooth(random: np.random.Generator, frequency_Hz: Reals, count: int, size: float) -> np.ndarray:
     """Straight over the logarithm of frequency from octave to octave, (F, count)."""
-    octaves = np.log2(FREQUENCY / FREQUENCY[0])
+    octaves = np.log2(frequency_Hz / frequency_Hz[0])
     knots = np.linspace(0.0, octaves[-1], round(octaves[-1]) + 1)
     draw = random.standard_normal((2, count, knots.size)) * size
     found = np.array(

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 from lines import hysteretic, supported, uic60
 from permway.diagnosis.compare import assemble
-from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Where
 from permway.diagnosis.locate import scan
 from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.result import Candidate, Diagnosis
 from permway.diagnosis.verdict import (
     ClassMember,
@@ -24,7 +24,6 @@ from permway.diagnosis.verdict import (
     Estimate,
     HeldOutGain,
     Mechanics,
-    Moved,
     NextMeasurement,
     Place,
     Recalibrated,
@@ -66,12 +65,6 @@ def lost(campaign: Campaign) -> Campaign:
     return campaign.with_model(campaign.model.model_copy(update={"line": line}))
 
 
-def moved(campaign: Campaign, fit: Fit) -> dict[str, Moved]:
-    z = dict(zip((f.name for f in fit.free), fit.z.tolist(), strict=True))
-    known = campaign.parameters.known.values()
-    return {k.name: Moved(value=fit.values()[k.name], prior=k.nominal, z=z[k.name]) for k in known}
-
-
 @pytest.fixture(scope="module")
 def diagnosis(tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
     """Two fasteners lost, found and put into the model."""
@@ -102,7 +95,7 @@ def diagnosis(tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
         },
         placebo={"place": HeldOutGain(gain_nats=-3.0, standard_error=2.5)},
         explained_gap=0.93,
-        recalibrated=Recalibrated(before=moved(campaign, base), after=moved(campaign, amended)),
+        recalibrated=Recalibrated(before=recalibrated_of(base), after=recalibrated_of(amended)),
         next=(
             NextMeasurement(
                 measurement="a blow on the deck at 7.5 m",

@@ -81,13 +81,12 @@ def separation(item: Item, right: Fit, other: Fit) -> float:
         return evidence.deviations(evidence.predicted(rival).datasets) - nothing
 
     plain = deviations(other.z)
-    columns = []
+    jacobian = np.zeros((plain.size, other.z.size))
     for i, f in enumerate(other.free):
         moved = other.z.copy()
         step = STEP if moved[i] + STEP <= f.limits[1] else -STEP
         moved[i] += step
-        columns.append((deviations(moved) - plain) / step)
-    jacobian = np.column_stack(columns)
+        jacobian[:, i] = (deviations(moved) - plain) / step
     whitener = evidence.whitener
     reduced, left = whitener.reduce(jacobian), whitener.reduce(plain)
     curvature = jacobian.T @ jacobian - reduced.T @ reduced

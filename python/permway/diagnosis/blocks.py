@@ -85,12 +85,15 @@ class Basis:
     knots: Reals = field(init=False)
 
     def __post_init__(self) -> None:
-        octaves = max(np.log2(self.high / self.low), 1e-6)
-        count = max(2, round(octaves * self.per_octave) + 1)
+        # At a single frequency all smooth functions are one constant.
+        octaves = float(np.log2(self.high / self.low))
+        count = max(2, round(octaves * self.per_octave) + 1) if octaves > 0.0 else 1
         self.knots = np.linspace(np.log(self.low), np.log(self.high), count)
 
     def values(self, frequency_Hz: Reals) -> Reals:
         """Shape (F, knots)."""
+        if self.knots.size == 1:
+            return np.ones((np.size(frequency_Hz), 1))
         x = np.clip(np.log(frequency_Hz), self.knots[0], self.knots[-1])
         step, count = self.knots[1] - self.knots[0], self.knots.size
         away = np.abs((x[:, None] - self.knots[0]) / step - np.arange(-1.0, count + 1.0)[None, :])

@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from permway.diagnosis.choose import penalty
-from permway.diagnosis.hypothesis import Hypothesis
+from permway.diagnosis.hypothesis import Hypothesis, Where
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.result import Candidate, Stage
 from permway.diagnosis.search import Round
+from permway.diagnosis.verdict_parts import Effect
 
 
-def candidates(found: Round) -> list[Candidate]:
-    """Everything that was tried, the most telling first, each as far as it was followed."""
+def candidates(found: Round, spoken: Mapping[int, Effect] | None = None) -> list[Candidate]:
+    """Everything that was tried, the most telling first, each as far as it was followed.
+
+    Parameters
+    ----------
+    found : Round
+    spoken : mapping of int to Effect, optional
+        What the verdict says of hypotheses, by their `id`: it was fitted last, with all other effects, and what
+        is known of it by then is not known of its rivals.
+    """
     seen: set[int] = set()
     rows = []
     for finalist in found.finalists:
@@ -20,7 +30,8 @@ def candidates(found: Round) -> list[Candidate]:
         of_all = finalist.fit.intervals()
         spans = {f.name: of_all[finalist.prefix + f.name] for f in finalist.hypothesis.free}
         row = _row(finalist.hypothesis, finalist.values, spans, finalist.gain, finalist.log_evidence, "full")
-        rows.append(row)
+        effect = (spoken or {}).get(id(finalist.hypothesis))
+        rows.append(row if effect is None or not effect.parameters else _as_spoken(row, effect))
     stages: dict[Stage, tuple[Quick, ...]] = {"quick": found.followed, "screened": found.screened}
     for stage, quicks in stages.items():
         for quick in quicks:
@@ -30,6 +41,26 @@ def candidates(found: Round) -> list[Candidate]:
             log_evidence = 0.5 * (quick.gain - penalty(quick, found.ring))
             rows.append(_row(quick.hypothesis, quick.values, {}, quick.gain, log_evidence, stage))
     return rows
+
+
+def _as_spoken(row: Candidate, effect: Effect) -> Candidate:
+    """A row with place, law and numbers of the verdict."""
+    unknown = float("nan")
+    place = effect.place
+    return replace(
+        row,
+        place=Where(place.body or place.joint or "", place.x, place.channels),
+        law=effect.law.words,
+        parameters={
+            name: (
+                one.value,
+                unknown if one.low is None else one.low,
+                unknown if one.high is None else one.high,
+                one.unit,
+            )
+            for name, one in effect.parameters.items()
+        },
+    )
 
 
 def _row(

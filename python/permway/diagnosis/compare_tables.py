@@ -9,7 +9,8 @@ import xarray as xr
 
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.evidence import Evidence
-from permway.diagnosis.fit import Fit
+from permway.diagnosis.fit import WIDTH, Fit
+from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.recordings.campaign import Campaign
 from permway.recordings.compare import NEPER_DB, POWER_DB, POWERS, VARIABLE
 
@@ -30,16 +31,16 @@ def parameters_of(campaign: Campaign, fit: Fit | None) -> xr.Dataset:
         "high_2sigma": np.array([k.value(2.0) for k in known]),
     }
     if fit is not None:
-        values, intervals = fit.values(), fit.intervals()
-        sigma = dict(zip((f.name for f in fit.free), np.sqrt(np.diag(fit.covariance)), strict=True))
-        z = dict(zip((f.name for f in fit.free), fit.z, strict=True))
-        names = [k.name for k in known]
+        moved = recalibrated_of(fit)
+        found = [moved[k.name] for k in known]
+        low, high = (np.array([getattr(one, end) for one in found]) for end in ("low", "high"))
+        reach = [abs(k.z(b) - k.z(a)) for k, a, b in zip(known, low, high, strict=True)]
         columns |= {
-            "value": np.array([values[n] for n in names]),
-            "low": np.array([intervals[n][0] for n in names]),
-            "high": np.array([intervals[n][1] for n in names]),
-            "z": np.array([z[n] for n in names]),
-            "sigma_over_prior": np.array([sigma[n] for n in names]),
+            "value": np.array([one.value for one in found]),
+            "low": low,
+            "high": high,
+            "z": np.array([one.z for one in found]),
+            "sigma_over_prior": 0.5 * np.array(reach) / WIDTH,
         }
         columns["left"] = np.abs(columns["z"]) > LEFT
         columns["not_informed"] = columns["sigma_over_prior"] > SAYS_NOTHING

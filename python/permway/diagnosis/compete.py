@@ -12,7 +12,7 @@ from permway.arrays import Reals
 from permway.diagnosis.bounded import bounded_step
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.felt import changed
-from permway.diagnosis.fit import Fit
+from permway.diagnosis.fit import Fit, limits_of
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.quick import Quick, stacked, weaker
 from permway.diagnosis.recalibrate import recalibrate
@@ -145,7 +145,7 @@ class Ring:
             found = other.screen(replace(hypothesis, about={}), least=least)
             return self._seen_from(other, replace(found, hypothesis=hypothesis))
         best: tuple[tuple[float, float], Quick, _Seen] | None = None
-        low, high = np.array([f.limits for f in hypothesis.free]).T
+        low, high = limits_of(hypothesis.free)
         tried = [np.clip(np.array(start, dtype=np.float64), low, high) for start in hypothesis.starts]
         for index, z in enumerate(tried):
             seen = self._amended(hypothesis, z)
@@ -186,7 +186,7 @@ class Ring:
 
     def effect(self, hypothesis: Hypothesis) -> tuple[Reals, Reals, Reals] | None:
         """The first start that can be solved: its coordinates, its change of the deviations, the slopes there."""
-        low, high = np.array([f.limits for f in hypothesis.free]).T
+        low, high = limits_of(hypothesis.free)
         plain = self.evidence.deviations(self._solved.datasets)
         for start in hypothesis.starts:
             z = np.clip(np.array(start, dtype=np.float64), low, high)
@@ -218,7 +218,7 @@ class Ring:
     def _descend(self, found: Quick, seen: _Seen, steps: int) -> Quick:
         hypothesis, z, objective = found.hypothesis, found.z, self.start - found.gain
         move, columns = found.base_z - self.fit.z, found.columns
-        low, high = np.array([f.limits for f in hypothesis.free]).T
+        low, high = limits_of(hypothesis.free)
         damping = 1e-2
         for _ in range(steps):
             slopes = self._columns(hypothesis, z, seen, high)

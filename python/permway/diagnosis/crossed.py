@@ -70,7 +70,10 @@ def over_stretch(situation: Situation, losses: Sequence[Loss]) -> Iterator[Hypot
     for loss in (one for one in losses if _known(situation.campaign, one.law)):
         step = spacing_of(situation.campaign.model.line, loss.law)
         lefts = (max(loss.left, 1e-4), 3.0 * max(loss.left, 1e-4))
-        yield _stretch(situation.campaign, loss.law, loss.centre_m, lefts, (loss.length_m / step,))
+        if _has_stretches(situation.campaign, loss.law):
+            yield _stretch(situation.campaign, loss.law, loss.centre_m, lefts, (loss.length_m / step,))
+        else:
+            yield _layer(situation.campaign, loss.law)
 
 
 def at_joint(situation: Situation, law: str, x_m: float) -> Iterator[Hypothesis]:
@@ -84,7 +87,8 @@ def at_joint(situation: Situation, law: str, x_m: float) -> Iterator[Hypothesis]
     x_m : float
     """
     if _known(situation.campaign, law):
-        yield _stretch(situation.campaign, law, x_m, LEFT, BAYS)
+        if _has_stretches(situation.campaign, law):
+            yield _stretch(situation.campaign, law, x_m, LEFT, BAYS)
         yield _layer(situation.campaign, law)
 
 
@@ -192,6 +196,11 @@ def _made(
         law=lambda v: f"{_words(v)}, in place of {place}",
         size="delay_s",
     )
+
+
+def _has_stretches(campaign: Campaign, law: str) -> bool:
+    """Whether a stretch of a law's joints can be other than the whole layer, which one joint is."""
+    return bool(stations_of(campaign.model.line, law).size > 1)
 
 
 def _stretch(

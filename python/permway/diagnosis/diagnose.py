@@ -104,18 +104,22 @@ def diagnose(
         advice = _advice(base, rounds, accepted, proof, clock)
     left = description.left(accepted[-1].fit) if accepted else ()
     clock("compare")
-    law, remaining = _law(base, accepted, found, left)
     inconstant = tuple(constancy(Ring(base))[:SHOWN_INCONSTANT])
     said = (
         verdict_of(base, rounds, accepted, found, left, proof, advice) if mixed is None else mixed_up(base, mixed)
     )
+    if not said.amended:
+        # What explains too little to be spoken of is in no file.
+        accepted, amended, left = [], None, ()
+    law, remaining = _law(base, accepted, found, left)
+    spoken = {id(one.hypothesis): effect for one, effect in zip(accepted, said.effects, strict=False)}
     return Diagnosis(
         verdict=with_spoilt(said, spoilt).model_copy(update={"ruled_out": ruled_out}),
         base=base,
         amended=amended,
         found=found,
         left=left,
-        candidates=tuple(candidates(rounds[0])) if rounds else (),
+        candidates=tuple(candidates(rounds[0], spoken)) if rounds else (),
         comparison=assemble(base.evidence, base, left_out=left_out),
         after=None if amended is None else assemble(amended.evidence, amended, left_out=left_out),
         law_dZ=law,

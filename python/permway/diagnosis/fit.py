@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -38,6 +39,12 @@ class Free:
     unit: str
     value: Callable[[float], float]
     limits: tuple[float, float] = (-Z_LIMIT, Z_LIMIT)
+
+
+def limits_of(free: Sequence[Free]) -> tuple[Reals, Reals]:
+    """Lowest and highest z of each, shapes (p,); p may be 0."""
+    low, high = np.array([f.limits for f in free], dtype=np.float64).reshape(len(free), 2).T
+    return low, high
 
 
 @dataclass(frozen=True)
@@ -99,6 +106,14 @@ class Fit:
         """Laplace's approximation of the marginal likelihood, up to a constant of the records."""
         sign, value = np.linalg.slogdet(self.covariance)
         return -0.5 * self.objective + 0.5 * float(value if sign > 0 else -np.inf)
+
+    @cached_property
+    def idealisation(self) -> Reals:
+        """Variance of z beyond the covariance, shape (p,): see :func:`permway.diagnosis.idealised.idealised`."""
+        # That module takes a fit.
+        from permway.diagnosis.idealised import idealised
+
+        return idealised(self)
 
     def values(self) -> dict[str, float]:
         """Values by name."""

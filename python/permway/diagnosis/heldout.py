@@ -19,7 +19,7 @@ from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.evidence import Evidence
-from permway.diagnosis.fit import Fit
+from permway.diagnosis.fit import Fit, limits_of
 from permway.diagnosis.whitener import Whitener
 from permway.errors import InputError, SolveError
 from permway.recordings.campaign_groups import held_out
@@ -202,7 +202,7 @@ class Rest:
         information = jacobian.T @ jacobian - reduced.T @ reduced
         normal = information / fit.heat + np.eye(fit.z.size)
         known = ~(self._recording & (np.diag(jacobian.T @ jacobian) < OWN * (fit.jacobian**2).sum(axis=0)))
-        low, high = np.array([f.limits for f in fit.free]).T
+        low, high = limits_of(fit.free)
         z, deviations = fit.z, fit.deviations
         datasets: list[xr.Dataset] | None = None
         value = whitener.square(deviations * rows) / fit.heat + float(z @ z)

@@ -90,7 +90,7 @@ class Scan:
         self._share = share
         shape = block.measured.shape
         self.left: Complexes = (clean[:half] + 1j * clean[half:]).reshape(shape)
-        self.slopes: Complexes = (jacobian[:half] + 1j * jacobian[half:]).reshape(*shape, -1)
+        self.slopes: Complexes = (jacobian[:half] + 1j * jacobian[half:]).reshape(*shape, fit.z.size)
         # What remains free is held by all other records, too: their curvature and the priors.
         self._normal = share**2 * fit.jacobian.T @ fit.jacobian + np.eye(fit.z.size)
         self._slope = share**2 * fit.jacobian.T @ left + fit.z
@@ -146,7 +146,7 @@ class Scan:
         # Deviations are measured less predicted: an added stiffness lessens the prediction.
         effect = self._share * block.white(product * self.read * self._steep)
         columns = (effect[..., None] * basis).reshape(-1, basis.shape[1])
-        left, slopes = self.left.reshape(-1), self.slopes.reshape(-1, self.slopes.shape[-1])
+        left, slopes = self.left.reshape(-1), self.slopes.reshape(self.left.size, self.slopes.shape[-1])
         inner = columns.conj().T @ columns
         cross = columns.conj().T @ slopes
         pull = columns.conj().T @ left

@@ -11,7 +11,6 @@ from permway.diagnosis.e_value import log_e_value
 from permway.diagnosis.fit import Fit, gained
 from permway.diagnosis.heldout import Rest, between_lines, gains, parts
 from permway.diagnosis.hypothesis import Where
-from permway.diagnosis.idealised import idealised
 from permway.diagnosis.quick import Quick
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.refit import weighed_anew
@@ -52,7 +51,7 @@ def prove(
         held_out=held_out,
         log_e=log_e,
         placebo=placebo_held_out,
-        unsteady=unsteady(amended, told) + idealised(weighed) + misread(weighed, accepted),
+        unsteady=unsteady(amended, told) + weighed.idealisation + misread(weighed, accepted),
         weighed=weighed,
         bic_gain=bic,
         conditions=decide.conditions(

@@ -15,7 +15,7 @@ from scipy import linalg
 from permway.arrays import Reals
 from permway.diagnosis.bounded import bounded_step
 from permway.diagnosis.evidence import Evidence
-from permway.diagnosis.fit import Build, Fit, Free, free_parameters
+from permway.diagnosis.fit import Build, Fit, Free, free_parameters, limits_of
 from permway.diagnosis.journal import Arrays, current
 from permway.diagnosis.learning import learnt
 from permway.diagnosis.speeds import begin
@@ -151,7 +151,7 @@ def _descended(
     tangent = problem.tangent(state, slopes)
     exact = slopes is None
     damping, rounds = 1e-3, 0
-    low, high = _limits(free)
+    low, high = limits_of(free)
     for step in range(most_steps):
         # Far from the records the priors lead: the deviations count as if each were no better than all are.
         heat = max(1.0, tangent.chi2(state) / max(1, state.deviations.size))
@@ -202,7 +202,7 @@ def _to_the_floor(
     problem: Problem, tangent: Tangent, state: State, tried: State, heat: float, damping: float, foretold: float
 ) -> tuple[State, float]:
     """A step that gained less than foretold, taken as far along a bent valley, and back to its floor; its gain."""
-    low, high = _limits(problem.free)
+    low, high = limits_of(problem.free)
     before, normal = tangent.heated(state, heat), tangent.normal(heat)
     gained = before - tangent.heated(tried, heat)
     for _ in range(BENDS):
@@ -234,8 +234,10 @@ def _noted(state: State, changes: Changes, evaluations: int) -> dict[str, np.nda
     """What it takes to come to a state again."""
     return {
         "z": state.z,
-        "changed": np.array([(reweigh, learn) for reweigh, learn, _ in changes], dtype=bool).reshape(-1, 2),
-        "changed_at": np.array([z for _, _, z in changes]).reshape(-1, state.z.size),
+        "changed": np.array([(reweigh, learn) for reweigh, learn, _ in changes], dtype=bool).reshape(
+            len(changes), 2
+        ),
+        "changed_at": np.array([z for _, _, z in changes]).reshape(len(changes), state.z.size),
         "evaluations": np.array(evaluations),
     }
 
@@ -249,14 +251,7 @@ def _recalled(problem: Problem, kept: Arrays) -> State:
 
 
 def _solvable(problem: Problem, z: Reals) -> State:
-    state = problem.at(np.clip(z, *_limits(problem.free)))
+    state = problem.at(np.clip(z, *limits_of(problem.free)))
     if state is None:
         raise InputError("the model cannot be solved there", where="start", value=z.tolist())
     return state
-
-
-def _limits(free: tuple[Free, ...]) -> tuple[Reals, Reals]:
-    if not free:
-        return np.zeros(0), np.zeros(0)
-    low, high = np.array([f.limits for f in free]).T
-    return low, high

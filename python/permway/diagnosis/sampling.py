@@ -17,7 +17,7 @@ from scipy import linalg, stats
 
 from permway.arrays import Reals
 from permway.diagnosis.clock import Progress
-from permway.diagnosis.fit import Fit
+from permway.diagnosis.fit import Fit, limits_of
 from permway.diagnosis.search import Round
 from permway.errors import InputError, SolveError
 
@@ -81,7 +81,7 @@ class Posterior:
         between = fit.covariance[np.ix_(self._rest, self.at)]
         self._along = between @ np.linalg.inv(self.covariance)
         self._near = fit.evidence.predicted(fit.campaign)
-        self.limits = np.array([fit.free[i].limits for i in self.at]).T
+        self.limits = np.array(limits_of([fit.free[i] for i in self.at]))
         self._start = self._objective(fit.deviations, fit.z[self._rest])[0] + float(self.centre @ self.centre)
 
     @property
@@ -99,7 +99,7 @@ class Posterior:
         if np.any(z < self.limits[0]) or np.any(z > self.limits[1]):
             return -np.inf
         rest = self.fit.z[self._rest] + self._along @ (z - self.centre)
-        low, high = np.array([self.fit.free[i].limits for i in self._rest]).reshape(-1, 2).T
+        low, high = limits_of([self.fit.free[i] for i in self._rest])
         value = np.inf
         for _ in range(MOST_MOVES):
             rest = np.clip(rest, low, high)

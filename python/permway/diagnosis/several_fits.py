@@ -114,7 +114,7 @@ def _each_kept(
         except (InputError, SolveError):
             return {}
         found = {name: np.asarray(getattr(here[index], name)) for name in (*NUMBERS, "evaluations")}
-        return {**found, LEARNT_AT: np.array(path).reshape(-1, here[index].z.size)}
+        return {**found, LEARNT_AT: np.array(path).reshape(len(path), here[index].z.size)}
 
     journal = current()
     known = None if journal is None else journal.recall(what, *given)

@@ -130,12 +130,13 @@ class PairColumns:
     def pull(self, values: Reals) -> Reals:
         """See :class:`Columns`."""
         half = values.shape[0] // 2
-        turned = (values[:half] + 1j * values[half:]).reshape(*self.phase.shape, -1)
+        turned = (values[:half] + 1j * values[half:]).reshape(*self.phase.shape, values[0].size)
         turned *= self.phase.conj()[..., None]
         found = as_complex(self.gains.swapaxes(-1, -2) @ as_parts(turned))
         whole = np.concatenate([found.sum(axis=1), found.sum(axis=0)])
         both = np.stack([whole.real, whole.imag], axis=1)
-        return np.asarray(both.reshape(-1, *values.shape[1:]))
+        # No length is left to be guessed: there may be no columns at all.
+        return np.asarray(both.reshape(2 * whole.shape[0] * whole.shape[1], *values.shape[1:]))
 
     def push(self, coefficients: Reals) -> Reals:
         """See :class:`Columns`."""

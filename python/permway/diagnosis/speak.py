@@ -16,10 +16,10 @@ from permway.diagnosis.decide import Conditions
 from permway.diagnosis.detectable import detectable
 from permway.diagnosis.fit import WIDTH, Fit
 from permway.diagnosis.heldout import Gain
-from permway.diagnosis.idealised import idealised
 from permway.diagnosis.level import beyond
 from permway.diagnosis.ragged import explains_elsewhere, unexplained_lines, unsteady_misfit
 from permway.diagnosis.recalibrate import UNFIT
+from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.search import Finalist, Round
 from permway.diagnosis.speak_effect import bands_of, effect_of, of_another_form
 from permway.diagnosis.spot import Found
@@ -28,7 +28,6 @@ from permway.diagnosis.verdict_parts import (
     Condition,
     Effect,
     HeldOutGain,
-    Moved,
     NextMeasurement,
     Place,
     Recalibrated,
@@ -255,23 +254,6 @@ def _ends(proof: Proof) -> dict[str, tuple[float, float]]:
         further = [float(np.hypot(end - z, more) - abs(end - z)) for end in (low, high)]
         found[f.name] = (low - further[0], high + further[1])
     return found
-
-
-def recalibrated_of(fit: Fit) -> dict[str, Moved]:
-    """The owner's parameters as a fit has them, by name."""
-    known, more = fit.evidence.campaign.parameters.known, idealised(fit)
-    values, ends = fit.values(), {name: sorted(pair) for name, pair in fit.intervals(more=more).items()}
-    return {
-        f.name: Moved(
-            value=values[f.name],
-            prior=known[f.name].nominal,
-            z=float(z),
-            low=ends[f.name][0],
-            high=ends[f.name][1],
-        )
-        for f, z in zip(fit.free, fit.z, strict=True)
-        if f.name in known
-    }
 
 
 def _held_out(found: Sequence[Gain]) -> dict[str, HeldOutGain]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.labels import Mislabelled
-from permway.diagnosis.speak import recalibrated_of
+from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.verdict import Status, Verdict
 from permway.diagnosis.verdict_parts import Effect, Mechanics, Place, Recalibrated
 from permway.recordings.spoilt import Spoilt

@@ -80,6 +80,11 @@ class Verdict(VerdictPart):
         return self
 
     @property
+    def amended(self) -> bool:
+        """Whether the verdict speaks of an amended model: of what is missing, or of a suspicion."""
+        return self.explained_gap is not None
+
+    @property
     def sentence(self) -> str:
         """The verdict in one plain sentence."""
         from permway.diagnosis.verdict_words import sentence

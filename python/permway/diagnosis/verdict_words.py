@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
-from permway.diagnosis.verdict import NOVEL, Effect, Estimate, HeldOutGain, Smallest, Verdict
+from permway.diagnosis.verdict import NOVEL, Effect, Estimate, HeldOutGain, Moved, Smallest, Verdict
 from permway.diagnosis.verdict_parts import E_VALUE, RECALIBRATED, Condition
 
 MOST_SIZES = 3
@@ -95,7 +95,7 @@ def span(low: float, high: float) -> str:
     return f"{ends[0]} to {ends[1]}"
 
 
-def interval(one: Estimate) -> str:
+def interval(one: Estimate | Moved) -> str:
     """The 90 % interval, or ""."""
     return "" if one.low is None or one.high is None else span(one.low, one.high)
 

@@ -203,8 +203,8 @@ def _rooted(values: Reals, stacked: Sequence[Reals], of: Callable[[Reals], Reals
     for roots in stacked:
         parts, count, _ = roots.shape
         start, stop = stop, stop + parts * count
-        mine = values[start:stop].reshape(parts, count, -1)
-        moved[start:stop] = (of(roots) @ mine).reshape(-1, *values.shape[1:])
+        mine = values[start:stop].reshape(parts, count, values[0].size)
+        moved[start:stop] = (of(roots) @ mine).reshape(stop - start, *values.shape[1:])
     return moved
 
 

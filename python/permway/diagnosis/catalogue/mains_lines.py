@@ -96,7 +96,8 @@ def _mains(values: Mapping[str, float]) -> Mains:
 
 def _score(runs: list[Excess], supply: float) -> float:
     at = supply * np.arange(1.0, 9.0)
-    return float(sum(np.nansum(run.score_at(at)) / np.sum(at < run.frequency_Hz[-1]) for run in runs))
+    # A record may end below the first line: it shows none.
+    return float(sum(np.nansum(run.score_at(at)) / max(1, np.sum(at < run.frequency_Hz[-1])) for run in runs))
 
 
 def _shown(runs: list[Excess], supply: float, name: str) -> float:

@@ -58,7 +58,9 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     yield _everywhere(rail, everywhere, "at every fastener")
     if len(on_structure) in range(1, len(found)):
         yield _everywhere(rail, _places(on_structure), "at every fastener")
-    yield _everywhere(rail, _between(everywhere), "between any two fasteners")
+    bays = _between(everywhere)
+    if bays.size:
+        yield _everywhere(rail, bays, "between any two fasteners")
     few = _places(on_structure or found)
     if few.size >= FEWEST:
         yield _over_a_stretch(rail, few, "at every fastener")

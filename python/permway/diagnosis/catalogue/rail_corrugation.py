@@ -69,8 +69,9 @@ def _starts(runs: list[Excess]) -> Iterator[tuple[float, float, float]]:
     high = min(run.speed / run.frequency_Hz[0] for run in runs)
     if not low < high:
         low, high = (run_end(runs[0]) for run_end in (_shortest, _longest))
-    wavelengths = np.geomspace(low, high, 400)
-    per_octave = 399.0 / np.log2(high / low)
+    # One line of a run is one wavelength.
+    wavelengths = np.geomspace(low, high, 400) if low < high else np.array([low])
+    per_octave = 399.0 / np.log2(high / low) if low < high else 0.0
     shown = np.array([np.interp(-np.log(wavelengths), np.log(r.frequency_Hz / r.speed), r.neper) for r in runs])
     lowest: Reals = shown.min(axis=0)
     for octaves, z in ((0.04, -1.0), (0.25, 1.0)):

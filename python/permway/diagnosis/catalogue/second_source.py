@@ -41,7 +41,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     if not runs or train is None:
         return
     degree_of = {sensor.name: str(sensor.degree) for sensor in on_board(situation)}
-    peaks = [run.frequency_Hz[int(np.argmax(np.convolve(run.neper, np.ones(5) / 5, "same")))] for run in runs]
+    peaks = [run.frequency_Hz[int(np.argmax(np.convolve(run.neper, np.ones(5) / 5)[2:-2]))] for run in runs]
     z = float(np.log(np.exp(np.mean(np.log(peaks))) / CENTRE_HZ) / np.log(FACTOR))
     for name in suspects(situation, degree_of, 3):
         sensor, degree = situation.campaign.sensor(name), degree_of[name]

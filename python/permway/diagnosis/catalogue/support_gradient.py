@@ -37,7 +37,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     for law in laws_of([*pads(line), *beds(line)]):
         mine = [layer for layer in every if layer.law == law]
         carried = [layer for layer in mine if layer.lower != GROUND] or mine
-        x = np.concatenate([layer.x for layer in carried])
+        x = np.unique(np.concatenate([layer.x for layer in carried]))
         if x.size >= FEWEST:
             low, high = float(x.min()), float(x.max())
             yield _of(law, low, high, beyond=True)

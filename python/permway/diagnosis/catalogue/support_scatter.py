@@ -48,11 +48,11 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     for law in laws_of(found):
         mine = [layer for layer in found if layer.law == law]
         carried = [layer for layer in mine if layer.lower != GROUND] or mine
-        x = np.concatenate([layer.x for layer in carried])
+        x = np.unique(np.concatenate([layer.x for layer in carried]))
         if x.size >= FEWEST:
-            yield _of(law, np.unique(x), FEW)
+            yield _of(law, x, FEW)
             if x.size >= FEWEST * len(MANY) / len(FEW):
-                yield _of(law, np.unique(x), MANY)
+                yield _of(law, x, MANY)
 
 
 def _of(law: str, at: Reals, orders: tuple[int, ...], begun: Mapping[str, float] | None = None) -> Hypothesis:

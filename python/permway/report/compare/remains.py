@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from permway.diagnosis.compare import CLEAN, Comparison
+from permway.diagnosis.fit import WIDTH
 from permway.diagnosis.residuals import lag_correlation
 from permway.report.compare.looks import COLOUR, FONT, INK, plain
 from permway.report.compare.maps import groups
@@ -37,7 +38,7 @@ def parameter_picture(comparison: Comparison) -> Figure:
             axes.errorbar(
                 z[chosen],
                 y[chosen],
-                xerr=1.645 * sigma[chosen],
+                xerr=WIDTH * sigma[chosen],
                 fmt="o",
                 ms=3.5,
                 lw=1.2,
@@ -46,7 +47,7 @@ def parameter_picture(comparison: Comparison) -> Figure:
             )
     axes.set_yticks(y, table["parameter"].values.astype(str))
     axes.set_ylim(count - 0.4, -0.6)
-    reach = max(2.6, float(np.max(np.abs(z) + 1.645 * sigma)) * 1.05)
+    reach = max(2.6, float(np.max(np.abs(z) + WIDTH * sigma)) * 1.05)
     axes.set_xlim(-reach, reach)
     axes.set_xlabel("found less believed, standard deviations of the owner's prior")
     plain(axes)

@@ -11,6 +11,7 @@ import xarray as xr
 
 from permway.diagnosis.compare import RAW, RECALIBRATED, Comparison
 from permway.diagnosis.residuals import channel_rms, lag_correlation
+from permway.diagnosis.verdict_words import quantity, span
 from permway.recordings.compare import NEPER_DB
 
 NOTABLE_DB = 1.0
@@ -32,11 +33,6 @@ def signed(value: float, digits: int = 1) -> str:
         return ""
     text = f"{value:+.{digits}f}"
     return f"{0.0:.{digits}f}" if float(text) == 0.0 else text.replace("-", "−")
-
-
-def quantity(value: float) -> str:
-    """Three significant digits, with powers of ten as they are typed."""
-    return f"{value:.3g}".replace("e+0", "e").replace("e+", "e").replace("e-0", "e-").replace("-", "−")
 
 
 def share(value: float | None) -> str:
@@ -85,7 +81,7 @@ def parameter_rows(comparison: Comparison) -> list[dict[str, Any]]:
                 said = "the records say nothing of it"
             row |= {
                 "found": quantity(float(one["value"])),
-                "interval": f"{quantity(float(one['low']))} to {quantity(float(one['high']))}",
+                "interval": span(float(one["low"]), float(one["high"])),
                 "z": signed(float(one["z"]), 2),
                 "width": f"{100.0 * float(one['sigma_over_prior']):.0f} %",
                 "said": said,

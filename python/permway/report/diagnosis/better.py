@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from permway.diagnosis.compare import RAW, RECALIBRATED
-from permway.diagnosis.fit import Fit
 from permway.diagnosis.result import Diagnosis
 from permway.report.compare.curves import FEW_POINTS
 from permway.report.compare.looks import (
@@ -179,26 +178,31 @@ def _style(model: str) -> dict[str, Any]:
 
 
 def parameter_picture(diagnosis: Diagnosis) -> Figure:
-    """The owner's parameters in standard deviations of their priors, before and after, with 90 % intervals."""
-    names = [f.name for f in diagnosis.base.free]
-    fits: dict[str, Fit] = {RECALIBRATED: diagnosis.base}
-    if diagnosis.amended is not None:
-        fits[AMENDED] = diagnosis.amended
+    """The verdict's parameters in standard deviations of their priors, before and after, with 90 % intervals."""
+    known = diagnosis.comparison.campaign.parameters.known
+    told, names = diagnosis.verdict.recalibrated, list(known)
+    shown = {RECALIBRATED: told.before} | ({AMENDED: told.after} if told.after else {})
     figure = Figure(figsize=(6.8, 0.9 + 0.2 * len(names)), layout="constrained")
     axes = figure.subplots()
     axes.axvspan(-2.0, 2.0, color="0.94", label="tolerance")
     axes.axvline(0.0, color=INK, linewidth=0.7)
     reach = 2.6
-    for row, (model, fit) in enumerate(fits.items()):
-        z = dict(zip((f.name for f in fit.free), fit.z, strict=True))
-        sigma = dict(zip((f.name for f in fit.free), np.sqrt(np.diag(fit.covariance)), strict=True))
-        shown = [(i, z[n], 1.645 * sigma[n]) for i, n in enumerate(names) if n in z]
-        y, value, half = np.array(shown).T
-        shift = 0.18 * (2 * row - len(fits) + 1)
+    for row, (model, moved) in enumerate(shown.items()):
+        shift = 0.18 * (2 * row - len(shown) + 1)
+        y, ends = [], []
+        for place, name in enumerate(names):
+            one = moved.get(name)
+            if one is not None:
+                low, high = sorted(one.z if end is None else known[name].z(end) for end in (one.low, one.high))
+                y.append(place + shift)
+                ends.append((one.z - low, one.z, high - one.z))
+        if not ends:
+            continue
+        below, value, above = np.array(ends).T
         axes.errorbar(
-            value, y + shift, xerr=half, fmt="o", ms=3.5, lw=1.2, color=COLOURS[model], label=NAMES[model]
+            value, y, xerr=(below, above), fmt="o", ms=3.5, lw=1.2, color=COLOURS[model], label=NAMES[model]
         )
-        reach = max(reach, float(np.max(np.abs(value) + half)) * 1.05)
+        reach = max(reach, float(np.max(np.abs(value) + np.maximum(below, above))) * 1.05)
     axes.set_yticks(range(len(names)), names)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.set_xlim(-reach, reach)

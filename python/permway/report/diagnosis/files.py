@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from permway.diagnosis.result import Diagnosis
+from permway.diagnosis.verdict import UNPROVED
 from permway.errors import InputError
 from permway.files import prepare_folder, write_text
 from permway.laws.toml import to_toml
@@ -18,7 +19,8 @@ VERDICT, AMENDED = "verdict.json", "amended.toml"
 def write_diagnosis(diagnosis: Diagnosis, folder: Path, *, page: bool = True) -> dict[str, Any]:
     """Write the verdict, the amended model, and the page.
 
-    Without an effect that passed, the model is the owner's, recalibrated: a file of another name would say less.
+    Without an effect that passed every bar the model is that of the campaign, recalibrated; its parameters are
+    then `recalibrated.before` of the verdict, else `recalibrated.after`.
 
     Parameters
     ----------
@@ -49,7 +51,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path, *, page: bool = True) ->
         ],
         "seconds": {stage: round(seconds, 1) for stage, seconds in diagnosis.seconds.items()},
     }
-    fit = diagnosis.amended or diagnosis.base
+    fit = diagnosis.base if diagnosis.amended is None or verdict.status in UNPROVED else diagnosis.amended
     write_text(folder / VERDICT, verdict.to_json())
     found["verdict file"] = str(folder / VERDICT)
     try:

@@ -6,23 +6,21 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from permway.arrays import Reals
+from permway.diagnosis.fit import WIDTH
 from permway.diagnosis.result import Diagnosis
 from permway.report.compare.looks import FONT, INK, logarithmic_hertz, plain
 from permway.report.diagnosis.where import COLOURS
-
-REACH = 1.645
-"""Standard deviations to either side of 90 %."""
 
 
 def law_picture(diagnosis: Diagnosis) -> Figure:
     """Real and imaginary part of dZ with its 90 % band, and of the laws that were named."""
     best = diagnosis.found[0]
-    frequency, stiffness, sigma = best.frequency_Hz, best.stiffness_N_per_m, REACH * best.sigma_N_per_m
+    frequency, stiffness, sigma = best.frequency_Hz, best.stiffness_N_per_m, WIDTH * best.sigma_N_per_m
     remaining = diagnosis.remaining
     if remaining is not None and remaining.frequency_Hz.size == frequency.size:
         # About the amended model a linear step is no guess.
         stiffness = remaining.stiffness_N_per_m + sum(diagnosis.law_dZ.values())
-        sigma = REACH * remaining.sigma_N_per_m
+        sigma = WIDTH * remaining.sigma_N_per_m
     figure = Figure(figsize=(6.8, 4.3), layout="constrained")
     panels = figure.subplots(2, 1, sharex=True)
     laws = {name: values for name, values in diagnosis.law_dZ.items() if values.size == frequency.size}

@@ -213,8 +213,6 @@ def change_table(change: Change) -> tuple[BandTable, BandTable | None]:
 def parameter_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """The owner's parameters: belief and tolerance, before and after with z and 90 % intervals."""
     verdict, rows = diagnosis.verdict.recalibrated, []
-    spans = diagnosis.base.intervals()
-    later = {} if diagnosis.amended is None else diagnosis.amended.intervals()
     for known in diagnosis.comparison.campaign.parameters.known.values():
         before, after = verdict.before.get(known.name), verdict.after.get(known.name)
         rows.append(
@@ -224,10 +222,10 @@ def parameter_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
                 "owner": quantity(known.nominal),
                 "tolerance": f"{quantity(known.value(-2.0))} to {quantity(known.value(2.0))}",
                 "before": "" if before is None else quantity(before.value),
-                "before_span": _span(spans.get(known.name)),
+                "before_span": "" if before is None else interval(before),
                 "before_z": "" if before is None else signed(before.z, 2),
                 "after": "" if after is None else quantity(after.value),
-                "after_span": _span(later.get(known.name)),
+                "after_span": "" if after is None else interval(after),
                 "after_z": "" if after is None else signed(after.z, 2),
                 "left": before is not None and abs(before.z) > LEFT,
                 "said": _went(before, after),
@@ -243,10 +241,6 @@ def _went(before: Moved | None, after: Moved | None) -> str:
     if abs(after.z) > LEFT:
         return "outside its tolerance"
     return "went back" if abs(after.z) < abs(before.z) - WENT_BACK else ""
-
-
-def _span(ends: tuple[float, float] | None) -> str:
-    return "" if ends is None else span(min(ends), max(ends))
 
 
 def next_rows(verdict: Verdict) -> list[dict[str, str]]:

@@ -1,0 +1,272 @@
+"""One number has one source: page, verdict, amended model and comparison of a diagnosis say the same."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from permway.diagnosis.catalogue._change import with_chain, with_factors
+from permway.diagnosis.catalogue._interval import weakened
+from permway.diagnosis.diagnose import diagnose
+from permway.diagnosis.result import Diagnosis
+from permway.model.file import Model, read_model
+from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_paths import parse_path, value_at
+from permway.report.compare.tables import parameter_rows
+from permway.report.diagnosis import write_diagnosis
+from permway.report.diagnosis.better import parameter_picture
+from simulated import simulate
+from small_sizes import SIZES
+
+
+def lost(campaign: Campaign) -> Campaign:
+    return weakened(campaign, "pad", 7.5, 0.6, 0.05)
+
+
+def loud(campaign: Campaign) -> Campaign:
+    chain = campaign.sensor("deck@3").chain
+    return with_chain(campaign, "deck@3", chain.model_copy(update={"gain": 1.26 * chain.gain}))
+
+
+def nothing(campaign: Campaign) -> Campaign:
+    return campaign
+
+
+def suspected(folder: Path) -> Campaign:
+    """A pad that keeps a fifth, and one parameter: it is suspected, and does not pass every bar."""
+    return SIZES["one parameter"].made(folder, amend=soft).campaign
+
+
+def soft(campaign: Campaign) -> Campaign:
+    return with_factors(campaign, "pad", lambda x: np.where(np.abs(x - 6.0) < 0.1, 0.2, 1.0))
+
+
+def concealed(amend: Callable[[Campaign], Campaign], noise: float = 0.05) -> Callable[[Path], Campaign]:
+    return lambda folder: simulate(folder, 3, amend=amend, noise=noise, smooth=0.4 * noise).campaign
+
+
+CASES: dict[str, tuple[Callable[[Path], Campaign], str]] = {
+    "lost fasteners": (concealed(lost), "named"),
+    "a loud sensor": (concealed(loud), "measurement"),
+    "nothing": (concealed(nothing), "recalibrated"),
+    # Where what the model idealises is most of what is not known.
+    "nothing, and no noise": (concealed(nothing, 1e-3), "recalibrated"),
+    "a suspicion": (suspected, "insufficient"),
+}
+"""What makes the campaign, and what is said of it."""
+
+
+@dataclass(frozen=True)
+class Written:
+    """A diagnosis and the three files."""
+
+    diagnosis: Diagnosis
+    told: dict[str, Any]
+    verdict: dict[str, Any]
+    page: str
+    amended: Model
+
+    def rows(self, heads: str) -> list[list[str]]:
+        """Of all tables of the page whose heads begin so, one after the other."""
+        return [
+            row for found, rows in Tables(self.page).tables if ", ".join(found).startswith(heads) for row in rows
+        ]
+
+
+class Tables(HTMLParser):
+    """Every table of a page: its heads, and the text of its cells row by row."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.tables: list[tuple[list[str], list[list[str]]]] = []
+        self._inside, self._cell = False, False
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag == "table":
+            self.tables.append(([], []))
+            self._inside = False
+        elif tag == "tbody":
+            self._inside = True
+        elif tag == "tr" and self._inside:
+            self.tables[-1][1].append([])
+        elif tag in ("td", "th"):
+            self._cell = True
+            (self.tables[-1][1][-1] if self._inside else self.tables[-1][0]).append("")
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag in ("td", "th"):
+            self._cell = False
+
+    def handle_data(self, data: str) -> None:
+        if self._cell:
+            (self.tables[-1][1][-1] if self._inside else self.tables[-1][0])[-1] += data
+
+
+NUMBER = re.compile(r"([-+]?)(\d+)\.?(\d*)(?:e([-+]?\d+))?")
+
+
+def numbers(text: str) -> list[tuple[float, float]]:
+    """All numbers in a text, each with half a unit of its last digit."""
+    found = []
+    for match in NUMBER.finditer(text.replace("−", "-")):
+        _, _, decimals, power = match.groups()
+        found.append((float(match[0]), 0.501 * 10.0 ** (int(power or 0) - len(decimals))))
+    return found
+
+
+def same(text: str, values: list[float | None]) -> None:
+    """That a text prints these numbers, to its last digit, and no others."""
+    printed, expected = numbers(text), [value for value in values if value is not None]
+    assert len(printed) == len(expected), (text, expected)
+    for (number, half), value in zip(printed, expected, strict=True):
+        assert number == pytest.approx(value, abs=half, rel=1e-12), (text, expected)
+
+
+@pytest.fixture(scope="module", params=CASES)
+def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Written:
+    make, status = CASES[request.param]
+    folder = tmp_path_factory.mktemp("one")
+    found = diagnose(make(folder / "c"), threads=1)
+    told = write_diagnosis(found, folder / "d")
+    assert found.verdict.status == status
+    return Written(
+        found,
+        told,
+        json.loads((folder / "d" / "verdict.json").read_text(encoding="utf-8")),
+        (folder / "d" / "report.html").read_text(encoding="utf-8"),
+        read_model(folder / "d" / "amended.toml"),
+    )
+
+
+def test_parameters_and_their_intervals(written: Written) -> None:
+    before, after = (written.verdict["recalibrated"][when] for when in ("before", "after"))
+    rows = written.rows("Parameter, Unit, Owner's value")
+    assert [row[0] for row in rows] == list(before)
+    for name, _, prior, _, *cells in rows:
+        same(prior, [before[name]["prior"]])
+        for moved in (before, after) if after else (before,):
+            value, span, z, *cells = cells
+            same(value, [moved[name]["value"]])
+            same(span, [moved[name]["low"], moved[name]["high"]])
+            same(z, [moved[name]["z"]])
+        if not after:
+            assert cells == []
+
+
+def test_the_comparison_says_what_the_verdict_says_of_the_base(written: Written) -> None:
+    before = written.verdict["recalibrated"]["before"]
+    table = written.diagnosis.comparison.parameters
+    for row in parameter_rows(written.diagnosis.comparison):
+        one, moved = table.sel(parameter=row["name"]), before[row["name"]]
+        for key in ("value", "low", "high", "z"):
+            assert float(one[key]) == moved[key]
+        same(row["found"], [moved["value"]])
+        same(row["interval"], [moved["low"], moved["high"]])
+
+
+def test_the_picture_shows_the_intervals_of_the_verdict(written: Written) -> None:
+    known = written.diagnosis.comparison.campaign.parameters.known
+    told = [moved for moved in written.verdict["recalibrated"].values() if moved]
+    bars = parameter_picture(written.diagnosis).axes[0].containers
+    assert len(bars) == len(told)
+    for bar, moved in zip(bars, told, strict=True):
+        ends = np.array([segment[:, 0] for segment in bar.lines[2][0].get_segments()])
+        expected = [[known[name].z(moved[name][end]) for end in ("low", "high")] for name in known]
+        np.testing.assert_allclose(ends, expected, atol=1e-9)
+
+
+def test_effects(written: Written) -> None:
+    effects = written.verdict["effects"]
+    estimates = [(n, one) for effect in effects for n, one in effect["parameters"].items()]
+    rows = written.rows("Parameter, Value, 90 % interval")
+    assert [row[0] for row in rows] == [name for name, _ in estimates]
+    for (_, value, span, _), (_, one) in zip(rows, estimates, strict=True):
+        same(value, [one["value"]])
+        same(span, [one["low"], one["high"]])
+    text = " ".join(written.page.split())
+    for member in (m for effect in effects for m in effect["class"]):
+        assert f"{member['name']} ({member['probability']:.2f})" in text
+
+
+def test_what_was_tried_has_the_numbers_of_the_verdict_where_it_speaks_of_it(written: Written) -> None:
+    rows = [row for row in written.rows("Effect, Place, Mechanics") if row[-1] == "full"]
+    for effect in written.verdict["effects"][:1]:
+        row = next(row for row in rows if row[2] == effect["law"]["words"])
+        ends = [
+            one[key] for one in effect["parameters"].values() for key in ("value", "low", "high")
+        ]  # Units bear digits, too.
+        cells = re.sub(r"[a-z]+[0-9]|m/s2|m3", "", row[3])
+        same(cells, ends)
+        if effect["name"] is not None:
+            same(row[6], [effect["class"][0]["probability"]])
+
+
+def test_evidence_and_records_that_were_held_out(written: Written) -> None:
+    weight = written.verdict["evidence"]
+    keys = {
+        "Gain of BIC": "bic_gain",
+        "Bayes factor, common logarithm": "log10_bayes_factor",
+        "e-value on held-out records": "e_value",
+        "Threshold for false alarms": "false_alarm_threshold",
+    }
+    for name, value, bar in written.rows("Measure, Value, Bar"):
+        same(value, [weight[keys[name]]])
+        if name == "Gain of BIC" and bar:
+            same(bar.partition(",")[0], [weight["false_alarm_threshold"]])
+    gains, placebo = written.verdict["held_out"], written.verdict["placebo"]
+    rows = written.rows("Held out by")
+    assert [row[0] for row in rows] == list(dict.fromkeys([*gains, *placebo]))
+    for axis, gain, before, after, *other in rows:
+        same(gain, [gains[axis][key] for key in ("gain_nats", "standard_error")])
+        same(before, [gains[axis]["db_before"]])
+        same(after, [gains[axis]["db_after"]])
+        if other and axis in placebo:
+            same(other[0], [placebo[axis][key] for key in ("gain_nats", "standard_error")])
+
+
+def test_sizes_and_advice(written: Written) -> None:
+    rows = written.rows("Effect, Parameter, Seen")
+    assert [row[0] for row in rows] == list(written.verdict["detectable"])
+    for name, parameter, seen in rows:
+        one = written.verdict["detectable"][name]
+        assert parameter == one["parameter"]
+        if one["value"] is not None and one["none"]:
+            same(seen.partition("%")[0], [100.0 * abs(one["value"] / one["none"] - 1.0)])
+        elif one["value"] is not None:
+            same(re.sub("m/s2", "", seen), [one["value"]])
+    rows = written.rows("Measure, Tells")
+    assert len(rows) == len(written.verdict["next"])
+    for (_, _, now, then), one in zip(rows, written.verdict["next"], strict=True):
+        same(now, [one["separation_before"]])
+        same(then, [one["separation_after"]])
+
+
+def test_the_amended_model_has_the_values_that_the_verdict_says(written: Written) -> None:
+    called = written.verdict["status"] not in ("recalibrated", "insufficient")
+    said = written.verdict["recalibrated"]["after" if called else "before"]
+    campaign = written.diagnosis.comparison.campaign
+    for name, known in campaign.parameters.known.items():
+        path = parse_path(known.parameter.paths[0], name)
+        ratio = value_at(written.amended, path) / value_at(campaign.model, path)
+        assert ratio == pytest.approx(said[name]["value"] / said[name]["prior"], rel=1e-9)
+    # And where nothing is called missing, nothing beside them.
+    if not called:
+        assert written.amended.line.joints == campaign.model.line.joints
+
+
+def test_what_is_printed_is_the_verdict(written: Written) -> None:
+    assert written.told["status"] == written.verdict["status"]
+    assert written.told["verdict"] in re.sub(r"&#39;", "'", written.page)
+    assert [one["place"] for one in written.told["effects"]] == [
+        effect.place.label for effect in written.diagnosis.verdict.effects
+    ]
+    amended = bool(written.verdict["recalibrated"]["after"])
+    assert ("How well the recalibrated model fits" in written.page) is not amended
