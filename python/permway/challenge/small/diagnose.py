@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from queue import Empty, SimpleQueue
 
@@ -179,20 +180,23 @@ class _Process:
             timer.cancel()
         if answer or self._killed:
             return bool(answer)
+        self.end()
         out.mkdir(parents=True, exist_ok=True)
-        status = self._process.wait()
-        whole(out / "failed.txt", f"ProcessDied: the interpreter ended with status {status}\n")
+        whole(out / "failed.txt", f"ProcessDied: the interpreter ended with status {self._process.returncode}\n")
         return False
 
     _killed = False
 
     def end(self) -> None:
         """Let it end by itself."""
-        assert self._process.stdin is not None
-        self._process.stdin.close()
+        for pipe in (self._process.stdin, self._process.stdout):
+            assert pipe is not None
+            with suppress(BrokenPipeError):
+                pipe.close()
         self._process.wait()
 
     def kill(self) -> None:
         """End it now."""
         self._killed = True
         self._process.kill()
+        self._process.wait()
