@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -24,6 +24,10 @@ SPACING_M = 1.0
 
 BAND_HZ, BANDS = (8.0, 200.0), 24
 """What a place that was not scanned is handed on with: frequencies where nothing stands out."""
+
+WIDER = 2.5
+"""Times the standard deviation that an entry states of the logarithm of its size: with a factor of 2.5 to one, two of
+them then reach a hundredth. Twice as much costs every effect ln 2 nats."""
 
 SOMETHING = 0.5
 """Prior probability that something is missing: shared by the entries, and in each by its places."""
@@ -66,7 +70,7 @@ def cells(base: Fit, ruled_out: Collection[str] = ()) -> list[Cell]:
     situations = list(_situations(base))
     for name, entry in {**entries(), stated.ID: cast(Entry, stated)}.items():
         if name not in ruled_out:
-            found = list(_offered(entry, situations))
+            found = [widened(hypothesis) for hypothesis in _offered(entry, situations)]
             if found:
                 offered[name] = found
     found_cells = []
@@ -81,6 +85,28 @@ def cells(base: Fit, ruled_out: Collection[str] = ()) -> list[Cell]:
                 for start in hypothesis.starts:
                     found_cells.append(Cell(hypothesis, np.array(start, dtype=np.float64), each))
     return found_cells
+
+
+def widened(hypothesis: Hypothesis) -> Hypothesis:
+    """The same with a prior of its size that spans what clean records can show.
+
+    An entry states sizes that engineers meet. What is a thousandth of them shows in clean records, too.
+    """
+    free = []
+    starts = np.array(hypothesis.starts, dtype=np.float64)
+    for index, one in enumerate(hypothesis.free):
+        ends = [one.value(z) for z in (0.0, 1.0, 2.0)]
+        logarithmic = ends[0] > 0.0 and math.isclose(ends[1] ** 2, ends[0] * ends[2], rel_tol=1e-9)
+        if one.name != hypothesis.size or hypothesis.none != 0.0 or not logarithmic:
+            free.append(one)
+            continue
+        low, high = one.limits
+        value = one.value
+        free.append(
+            replace(one, value=lambda z, v=value: v(WIDER * z), limits=(min(low, -high), high / WIDER))  # type: ignore[misc]
+        )
+        starts[:, index] /= WIDER
+    return replace(hypothesis, free=tuple(free), starts=tuple(tuple(map(float, row)) for row in starts))
 
 
 def _overlap(alike: list[Hypothesis]) -> float:

@@ -11,7 +11,7 @@ from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
-from permway.posterior.matern import Nodes
+from permway.posterior.matern import STATES, Nodes
 
 
 @dataclass(frozen=True)
@@ -51,16 +51,17 @@ class Chains:
     def __init__(self, rows: np.ndarray, turn: Complexes | None, kinds: tuple[str, ...], entries: Entries) -> None:
         self.rows, self.turn, self.kinds = rows, turn, kinds
         self.nodes = Nodes.of(entries.x)
-        width = 2 * len(kinds)
+        width = STATES * len(kinds)
         self.size = width * self.nodes.x.size
         before, value, slope = self.nodes.at(entries.x)
         weights = value * entries.value[:, None] + slope * entries.slope[:, None]
-        first = before * width + 2 * entries.process
-        columns = np.stack([first, first + 1, first + width, first + width + 1], axis=1)
-        count = len(rows)
+        first = (before * width + STATES * entries.process)[:, None] + np.arange(STATES)
+        columns = np.concatenate([first, first + width], axis=1)
         inside = columns < self.size
         row = np.broadcast_to(entries.row[:, None], columns.shape)
-        self.design = sparse.csr_array((weights[inside], (row[inside], columns[inside])), shape=(count, self.size))
+        self.design = sparse.csr_array(
+            (weights[inside], (row[inside], columns[inside])), shape=(len(rows), self.size)
+        )
         self.band = 2 * width if self.nodes.x.size > 1 else width
         self._pairs()
 
@@ -98,18 +99,18 @@ class Chains:
         diagonal, below, log_prior = self.nodes.precision(length)
         banded = np.zeros((self.band, self.size))
         banded.reshape(-1)[self._place] = self._products @ weights
-        count, width = self.nodes.x.size, 2 * len(self.kinds)
+        count, width = self.nodes.x.size, STATES * len(self.kinds)
         precision = 1.0 / sizes**2
-        for i in range(2):
-            for j in range(2):
+        for i in range(STATES):
+            for j in range(STATES):
+                column = np.arange(count)[:, None] * width + STATES * np.arange(len(self.kinds)) + j
                 if i >= j:
-                    at = (np.arange(count)[:, None] * width + 2 * np.arange(len(self.kinds)) + j).reshape(-1)
-                    banded[i - j, at] += (diagonal[:, i, j, None] * precision).reshape(-1)
+                    banded[i - j, column.reshape(-1)] += (diagonal[:, i, j, None] * precision).reshape(-1)
                 if count > 1:
-                    at = (np.arange(count - 1)[:, None] * width + 2 * np.arange(len(self.kinds)) + j).reshape(-1)
+                    at = column[:-1].reshape(-1)
                     banded[width + i - j, at] += (below[:, i, j, None] * precision).reshape(-1)
         factor = linalg.cholesky_banded(banded, lower=True, overwrite_ab=True, check_finite=False)
-        prior = len(self.kinds) * log_prior - 2.0 * count * float(np.log(sizes**2).sum())
+        prior = len(self.kinds) * log_prior - STATES * count * float(np.log(sizes**2).sum())
         log_determinant = 2.0 * float(np.log(factor[0]).sum()) - prior
         if self.turn is not None:
             log_determinant *= 2.0

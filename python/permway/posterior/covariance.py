@@ -19,6 +19,9 @@ from permway.posterior.hyper import Hyper
 
 NEPER_PER_DB = float(np.log(10.0)) / 20.0
 
+FLOOR = 0.0005
+"""Relative error that a response has beside its noise whatever the discrepancy, neper: of its last decimals."""
+
 PAIR = 1e-9
 """Neper: smooth errors of single pairs of sensor and point, which the discrepancy stands for."""
 
@@ -49,7 +52,9 @@ class Frame:
     @staticmethod
     def of(evidence: Evidence) -> Frame:
         """From the records."""
-        blocks = tuple(b.with_pair(PAIR) if isinstance(b, FrfBlock) else b for b in evidence.blocks)
+        blocks = tuple(
+            b.with_floor(FLOOR).with_pair(PAIR) if isinstance(b, FrfBlock) else b for b in evidence.blocks
+        )
         evidence = evidence.with_blocks(blocks)
         statistic = np.concatenate(
             [np.full(b.rows.channel.size, b.dataset.record.statistic, dtype="U16") for b in blocks]

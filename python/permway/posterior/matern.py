@@ -1,8 +1,9 @@
-"""Calibration errors over frequency as a Markov process: a value and a slope at each node.
+"""Calibration errors over frequency as a Markov process: value, slope and curvature at each node.
 
-The error of a measuring chain is a Gaussian process of the logarithm of frequency with Matern's covariance of
-order 3/2, s^2 (1 + u) exp(-u), u = sqrt(3) |x - x'| / l. Together with its slope it is a Markov process, so that
-its precision over nodes is block tridiagonal whatever the length: rough errors cost no more than smooth ones.
+The error of a measuring chain is a Gaussian process of the logarithm of frequency with Matern's covariance of order
+5/2, s^2 (1 + u + u^2 / 3) exp(-u), u = sqrt(5) |x - x'| / l. Together with its first two derivatives it is a Markov
+process, so that its precision over nodes is block tridiagonal whatever the length: rough errors cost no more than
+smooth ones.
 
 Source: Hartikainen and Sarkka (2010), Kalman filtering and smoothing solutions to temporal Gaussian process
 regression models, section 4; Rasmussen and Williams (2006), equation 4.17.
@@ -16,9 +17,17 @@ import numpy as np
 
 from permway.arrays import Reals
 
+STATES = 3
+"""Of a process at a node: value, slope, curvature."""
+
 CLOSEST = 0.05
-"""Octaves between nodes at least: a third of the shortest length, where interpolating between nodes loses 0.4 % of
-the variance. Half of it costs twice the time and changes nothing; twice loses 3 % of the variance."""
+"""Octaves between nodes at least: a third of the shortest length. Interpolation loses 6e-5 of the variance there, and
+2e-3 at twice the spacing."""
+
+_DRIFT = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, -3.0, -3.0]])
+_NILPOTENT = _DRIFT + np.eye(STATES)
+_STATIONARY = np.array([[1.0, 0.0, -1.0 / 3.0], [0.0, 1.0 / 3.0, 0.0], [-1.0 / 3.0, 0.0, 1.0]])
+"""Covariance of value, slope and curvature, each in units of the rate's power, for a standard deviation of 1."""
 
 
 @dataclass(frozen=True)
@@ -52,32 +61,32 @@ class Nodes:
         return Nodes(np.array(kept))
 
     def at(self, x: Reals) -> tuple[np.ndarray, Reals, Reals]:
-        """How lines follow from values and slopes at the nodes to either side (cubic Hermite interpolation).
+        """How lines follow from the states of the nodes to either side (quintic Hermite interpolation).
 
         Returns
         -------
         ndarray of int, shape (F,)
             The node before.
-        ndarray, shape (F, 4)
-            Weights of value and slope there, of value and slope at the next node, in the process's value.
-        ndarray, shape (F, 4)
+        ndarray, shape (F, 6)
+            Weights of the states of that node and of the next in the process's value.
+        ndarray, shape (F, 6)
             The same in its slope.
         """
         if self.x.size == 1:
-            weights = np.zeros((x.size, 4))
-            weights[:, 0] = 1.0
-            slopes = np.zeros((x.size, 4))
-            slopes[:, 1] = 1.0
-            return np.zeros(x.size, dtype=np.int64), weights, slopes
+            weights = np.zeros((2, x.size, 2 * STATES))
+            weights[0, :, 0] = 1.0
+            weights[1, :, 1] = 1.0
+            return np.zeros(x.size, dtype=np.int64), weights[0], weights[1]
         before = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, self.x.size - 2)
-        step = self.x[before + 1] - self.x[before]
-        t = (x - self.x[before]) / step
-        value = [2 * t**3 - 3 * t**2 + 1, step * (t**3 - 2 * t**2 + t), 3 * t**2 - 2 * t**3, step * (t**3 - t**2)]
-        slope = [(6 * t**2 - 6 * t) / step, 3 * t**2 - 4 * t + 1, (6 * t - 6 * t**2) / step, 3 * t**2 - 2 * t]
-        return before, np.stack(value, axis=1), np.stack(slope, axis=1)
+        step = (self.x[before + 1] - self.x[before])[:, None]
+        t = (x - self.x[before])[:, None] / step
+        powers = t ** np.arange(6)
+        slopes = np.arange(1, 6) * t ** np.arange(5)
+        scale = np.concatenate([step**0, step, step**2] * 2, axis=1)
+        return before, (powers @ _QUINTIC) * scale, (slopes @ _QUINTIC[1:]) * scale / step
 
     def precision(self, length: float) -> tuple[Reals, Reals, float]:
-        """Of value and slope at all nodes, for a standard deviation of 1.
+        """Of the states at all nodes, for a standard deviation of 1.
 
         Parameters
         ----------
@@ -86,26 +95,39 @@ class Nodes:
 
         Returns
         -------
-        ndarray, shape (K, 2, 2)
+        ndarray, shape (K, 3, 3)
             Blocks on the diagonal.
-        ndarray, shape (K - 1, 2, 2)
+        ndarray, shape (K - 1, 3, 3)
             Blocks below it.
         float
             Logarithm of the determinant.
         """
-        rate = np.sqrt(3.0) / length
-        u = rate * np.diff(self.x)
-        e = np.exp(-u)
-        # In units of the stationary standard deviations of value and slope, which are 1 and `rate`.
-        go = np.stack([np.stack([e * (1 + u), e * u], -1), np.stack([-e * u, e * (1 - u)], -1)], -2)
-        left = np.eye(2) - go @ go.swapaxes(1, 2)
+        rate = np.sqrt(5.0) / length
+        u = (rate * np.diff(self.x))[:, None, None]
+        go = np.exp(-u) * (np.eye(STATES) + u * _NILPOTENT + 0.5 * u**2 * (_NILPOTENT @ _NILPOTENT))
+        left = _STATIONARY - go @ _STATIONARY @ go.swapaxes(1, 2)
         inverse = np.linalg.inv(left)
-        diagonal = np.zeros((self.x.size, 2, 2))
-        diagonal[0] = np.eye(2)
+        first = np.linalg.inv(_STATIONARY)
+        diagonal = np.zeros((self.x.size, STATES, STATES))
+        diagonal[0] = first
         diagonal[1:] += inverse
         diagonal[:-1] += go.swapaxes(1, 2) @ inverse @ go
         below = -inverse @ go
-        scale = np.array([1.0, 1.0 / rate])
+        scale = rate ** -np.arange(float(STATES))
         both = scale[:, None] * scale
-        log_determinant = -float(np.linalg.slogdet(left)[1].sum()) - 2.0 * self.x.size * float(np.log(rate))
+        log_determinant = -float(np.linalg.slogdet(left)[1].sum()) - float(np.linalg.slogdet(_STATIONARY)[1])
+        log_determinant += 2.0 * self.x.size * float(np.log(scale).sum())
         return diagonal * both, below * both, log_determinant
+
+
+def _quintic() -> Reals:
+    """Coefficients of 1, t, ... t^5 (rows) of each of value, slope, curvature at 0, then at 1 (columns)."""
+    at = np.zeros((6, 6))
+    for row, (t, order) in enumerate([(0.0, 0), (0.0, 1), (0.0, 2), (1.0, 0), (1.0, 1), (1.0, 2)]):
+        for power in range(order, 6):
+            factor = np.prod(np.arange(power, power - order, -1.0)) if order else 1.0
+            at[row, power] = factor * t ** (power - order)
+    return np.asarray(np.linalg.inv(at))
+
+
+_QUINTIC = _quintic()
