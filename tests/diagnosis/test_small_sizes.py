@@ -189,3 +189,13 @@ def test_a_diagnosis_without_parameters_goes_on_where_it_was(tmp_path: Path) -> 
     assert verdicts[0] == verdicts[1]
     assert recalled[0] == 0
     assert recalled[1] > 3
+
+
+@pytest.mark.filterwarnings("ignore:.*draws of")
+def test_draws_need_no_parameters(tmp_path: Path) -> None:
+    case = SIZES["no parameters"].made(tmp_path / "c", amend=softened)
+    (effect,) = diagnose(case.campaign, draws=60, threads=1).verdict.effects
+    factor = effect.parameters["factor"]
+    assert factor.low is not None
+    assert factor.high is not None
+    assert 0.0 <= factor.low < factor.value < factor.high <= 1.0
