@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -19,8 +19,9 @@ from permway.diagnosis.compare import RAW, RECALIBRATED, compare
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.journal import keeping
 from permway.diagnosis.separability import separability
-from permway.diagnosis.verdict import Verdict
+from permway.diagnosis.verdict import UNPROVED, Verdict
 from permway.recordings.campaign import Campaign
+from permway.recordings.parameters import Known
 from permway.report.compare import write_comparison
 from permway.report.diagnosis import write_diagnosis
 from simulated import CAMPAIGN, FREQUENCY, MODEL, simulate
@@ -60,10 +61,17 @@ def finishes(campaign: Campaign, folder: Path) -> Verdict:
     return verdict
 
 
+def _known(campaign: Campaign) -> Iterable[tuple[str, Known]]:
+    return campaign.parameters.known.items()
+
+
 @pytest.mark.parametrize("size", SIZES)
 def test_nothing_is_called_missing_of_one_of_everything(size: str, tmp_path: Path) -> None:
     case = SIZES[size].made(tmp_path / "c")
-    assert finishes(case.campaign, tmp_path).status in ("recalibrated", "insufficient")
+    verdict = finishes(case.campaign, tmp_path)
+    # The pads' true stiffness is 2.04 standard deviations from the stated one.
+    beyond = [z for z in (known.z(case.truth[name]) for name, known in _known(case.campaign)) if abs(z) > 2.0]
+    assert verdict.status in (UNPROVED if beyond else ("recalibrated", "insufficient"))
 
 
 @pytest.mark.parametrize(
