@@ -30,7 +30,7 @@ ARROWS = [
     ("rust/core", "response", "H[f, sensor,\nforce]", (0.62, 0.0)),
     ("response", "recordings", "datasets", (0.0, 0.2)),
     ("response", "study", "", (0.0, 0.0)),
-    ("recordings", "diagnosis", "deviations", (0.0, 0.2)),
+    ("recordings", "diagnosis", "residuals", (0.0, 0.2)),
     ("challenge", "diagnosis", "campaigns,\nas files", (0.65, 0.0)),
     ("diagnosis", "report", "verdict,\ncomparison", (0.65, 0.0)),
     ("response", "paper", "", (0.0, 0.0)),

@@ -47,10 +47,13 @@ def _instructions() -> list[str]:
         f"Counted by valgrind ({report['path']} path, rustc {report['tools']['rustc']}).",
         "`python benches/gates.py` fails if one grows by 2 %.",
         "",
-        "| case | instructions per frequency |",
-        "|---|---:|",
+        "A support is one more of a rail without end, in the set-up and the first eight frequencies.",
+        "",
+        "| case | instructions | per |",
+        "|---|---:|---|",
     ]
-    return [*lines, *(f"| {name} | {row['per_frequency']:,.0f} |" for name, row in report["counts"].items()), ""]
+    rows = report["counts"].items()
+    return [*lines, *(f"| {name} | {row['per_unit']:,.0f} | {row['unit']} |" for name, row in rows), ""]
 
 
 def _dense() -> list[str]:
@@ -79,7 +82,7 @@ def page() -> str:
         "",
         "Written by `python docs/make_performance.py` from the results in `benches/*.json`. Times are of a",
         "machine that others used at the same time, so they are upper bounds. How each was measured, and what",
-        "limits it, is told in `benches/README.md`.",
+        "limits it, is described in `benches/README.md`.",
         "",
         "## Against peers",
         peers.replace("\n#### ", "\n### "),

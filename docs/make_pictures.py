@@ -1,9 +1,11 @@
-"""Draws the README's picture, docs/images/viaduct.png: run `python docs/make_pictures.py`."""
+"""Draws the README's pictures, docs/images/diagnosis.png and viaduct.png: run `python docs/make_pictures.py`."""
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 
+import make_diagnosis_picture
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -81,8 +83,16 @@ def _finish(axes: Axes) -> None:
     axes.legend(fontsize=8.5, facecolor="white", edgecolor="none", framealpha=1.0)
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Both pictures."""
     IMAGES.mkdir(exist_ok=True)
-    path = IMAGES / "viaduct.png"
-    draw(curves()).savefig(path, dpi=DPI, metadata={"Software": None})
-    print(path)
+    with tempfile.TemporaryDirectory() as folder:
+        diagnosis = make_diagnosis_picture.draw(make_diagnosis_picture.diagnose(Path(folder)))
+    for name, figure in (("diagnosis", diagnosis), ("viaduct", draw(curves()))):
+        path = IMAGES / f"{name}.png"
+        figure.savefig(path, dpi=DPI, metadata={"Software": None})
+        print(path)
+
+
+if __name__ == "__main__":
+    main()

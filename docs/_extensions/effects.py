@@ -30,10 +30,8 @@ def _cell(text: str) -> str:
     return text.replace("|", "\\|")
 
 
-def _read(app: Sphinx, docname: str, source: list[str]) -> None:
-    if "% effects" not in source[0]:
-        return
-    app.env.note_reread()
+def page(source: str) -> str:
+    """The page's source with the effects in it."""
     order = list(TITLES)
     known = sorted(entries().values(), key=lambda e: (order.index(e.DOMAIN), e.ID))
     lines: list[str] = []
@@ -41,7 +39,14 @@ def _read(app: Sphinx, docname: str, source: list[str]) -> None:
         lines += [f"## {TITLES[domain]}", ""]
         for entry in group:
             lines += _section(entry)
-    source[0] = source[0].replace("% effects", "\n".join(lines)).replace("% count", str(len(known)))
+    return source.replace("% effects", "\n".join(lines)).replace("% count", str(len(known)))
+
+
+def _read(app: Sphinx, docname: str, source: list[str]) -> None:
+    if "% effects" not in source[0]:
+        return
+    app.env.note_reread()
+    source[0] = page(source[0])
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

@@ -21,7 +21,13 @@ def _turned(match: re.Match[str]) -> str:
     if target.startswith("docs/"):
         return f"({target.removeprefix('docs/')})"
     # What is no page of the site stays a file of the repository.
-    return {"benches/README.md": "(performance.md)", "README.md": "(readme.md)"}.get(target, "(#file)")
+    pages = {
+        "benches/README.md": "performance.md",
+        "README.md": "readme.md",
+        "CONTRIBUTING.md": "contributing.md",
+        "CHANGELOG.md": "changelog.md",
+    }
+    return f"({pages.get(target, '#file')})"
 
 
 def _read(app: Sphinx, docname: str, source: list[str]) -> None:

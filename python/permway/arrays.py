@@ -1,4 +1,4 @@
-"""Arrays of numbers: their types, and what is refused of frequencies and temperatures."""
+"""Arrays of numbers: their types, and what is refused of real numbers, frequencies and temperatures."""
 
 from __future__ import annotations
 
@@ -13,9 +13,48 @@ Complexes = NDArray[np.complex128]
 ABSOLUTE_ZERO_C = -273.15
 
 
+def real_numbers(values: ArrayLike, where: str) -> Reals:
+    """Real numbers as float64; numpy by itself would drop an imaginary part with a mere warning.
+
+    Parameters
+    ----------
+    values : array_like
+        Finite or not.
+    where : str
+        The argument's name.
+
+    Raises
+    ------
+    InputError
+        For complex numbers, whatever their imaginary parts, and for what is no array of numbers.
+    """
+    try:
+        array = np.asarray(values)
+        if any_complex(array):
+            raise InputError("must be real, not complex", where=where, value=values, remedy=_REAL)
+        return np.asarray(array, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError("not a number or an array of numbers", where=where, value=values) from error
+
+
+def any_complex(array: np.ndarray) -> bool:
+    """Whether an array is complex, or is one of objects that has a complex number among them."""
+    return np.iscomplexobj(array) or (array.dtype == object and any(np.iscomplexobj(v) for v in array.flat))
+
+
+def is_real(value: object) -> bool:
+    """Whether something is one real number of Python or numpy, which a truth value is not."""
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+
+
+_REAL = "give its real part, or its modulus, if that is what is meant"
+
+
 def check_frequency(frequency_Hz: ArrayLike) -> Reals:
     """Frequencies as float64, refused with index and value unless finite and positive."""
-    frequency = _as_floats(frequency_Hz, "frequency_Hz")
+    frequency = real_numbers(frequency_Hz, "frequency_Hz")
     bad = ~(np.isfinite(frequency) & (frequency > 0.0))
     if bad.any():
         where, value = _first(frequency, bad)
@@ -32,7 +71,7 @@ def check_temperature(temperature_C: ArrayLike | None) -> Reals | None:
     """Temperatures as float64, refused unless finite and above absolute zero."""
     if temperature_C is None:
         return None
-    temperature = _as_floats(temperature_C, "temperature_C")
+    temperature = real_numbers(temperature_C, "temperature_C")
     bad = ~(np.isfinite(temperature) & (temperature > ABSOLUTE_ZERO_C))
     if bad.any():
         where, value = _first(temperature, bad)
@@ -43,13 +82,6 @@ def check_temperature(temperature_C: ArrayLike | None) -> Reals | None:
             remedy="give degrees Celsius",
         )
     return temperature
-
-
-def _as_floats(values: ArrayLike, name: str) -> Reals:
-    try:
-        return np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError("not a number or an array of numbers", where=name, value=values) from error
 
 
 def _first(values: Reals, bad: NDArray[np.bool_]) -> tuple[str, float]:

@@ -15,6 +15,7 @@ from permway.cli_campaign import campaigns
 from permway.cli_challenge import challenges
 from permway.cli_import import imports
 from permway.cli_output import Json, Threads, examples, progress_bar, say, tell
+from permway.cli_track import tracks
 from permway.errors import InputError, PermwayError
 
 
@@ -51,6 +52,7 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 app.add_typer(campaigns)
+app.add_typer(tracks)
 app.add_typer(imports, name="import")
 app.add_typer(challenges, name="challenge")
 
@@ -107,22 +109,50 @@ def solve(
     epilog=examples(
         "permway fit-pad dma.csv -o law.toml --plot pictures",
         "permway fit-pad dma.csv --law fractional_zener --shift none",
+        "permway fit-pad sweep.csv --frequency 2",
+        "permway fit-pad stiffness.csv --shape-factor 1.84",
     ),
 )
 def fit_pad(
-    dma: Annotated[Path, typer.Argument(help="DMA table (CSV or TSV, units in the header).")],
+    dma: Annotated[Path, typer.Argument(help="DMA table (text: CSV, TSV).")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Law to write (TOML).")] = Path("law.toml"),
     law: Annotated[str, typer.Option(help="Form of the law; 'compare' tries several.")] = "compare",
-    shift: Annotated[str, typer.Option(help="Shift over temperature: wlf, arrhenius, free, none.")] = "wlf",
-    reference: Annotated[float, typer.Option(help="Reference temperature, degrees Celsius.")] = 20.0,
+    shift: Annotated[
+        str,
+        typer.Option(
+            help="Shift over temperature: wlf, arrhenius, wlf_arrhenius (Arrhenius in the glass), free, none; "
+            "'compare' tries the first three."
+        ),
+    ] = "wlf",
+    reference: Annotated[
+        float | None,
+        typer.Option(
+            help="Temperature for which the law's parameters are written, degrees Celsius; by default 20, or the "
+            "table's nearest. What the law says at any temperature does not depend on it."
+        ),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the genetic algorithm.")] = 0,
     plot: Annotated[Path | None, typer.Option(help="Folder for pictures (PNG).")] = None,
+    frequency: Annotated[
+        float | None, typer.Option(help="Frequency of a temperature sweep without such a column, Hz.")
+    ] = None,
+    temperature: Annotated[
+        float | None, typer.Option(help="Temperature of a frequency sweep without such a column, degrees Celsius.")
+    ] = None,
+    decimal: Annotated[
+        str | None, typer.Option(help='Decimal sign, "." or ",", where cells leave it open.')
+    ] = None,
+    shape_factor: Annotated[
+        float | None,
+        typer.Option(help="Stiffness of the part over modulus, e A / h in m: makes a modulus of a stiffness."),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """A pad's law and its shift from DMA tests.
 
-    The table has a row for each test: frequency, temperature, storage modulus or stiffness, loss factor, units in
-    the header. The law is written as a file that a model can name.
+    The table has a row for each test: frequency; temperature; storage modulus (Pa) or stiffness (N/m) with loss
+    modulus, loss factor or phase, or absolute value and phase; units in the header or in a row below it. The law
+    is written as a file that a model can name: of a modulus for a law of type "pad", of a stiffness as it is.
     """
     from permway.laws.fitting import fit_table
 
@@ -135,6 +165,10 @@ def fit_pad(
             reference_temperature_C=reference,
             seed=seed,
             pictures=plot,
+            frequency_Hz=frequency,
+            temperature_C=temperature,
+            decimal=decimal,
+            shape_factor_m=shape_factor,
             progress=progress,
         )
     say(result, as_json)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from permway.cli_output import Folder, Json, examples, progress_bar, say
+from permway.cli_output import Folder, Json, examples, progress_bar, say, stage_bar
 from permway.errors import InputError
 
 if TYPE_CHECKING:
@@ -27,7 +27,10 @@ def challenge_make(
     seed: Annotated[int, typer.Option(min=0, help="Of the first campaign.")] = 1,
     cases: Annotated[int, typer.Option(min=1, help="How many campaigns.")] = 10,
     tier: Annotated[
-        str, typer.Option(help="null, single, twin, multiple, outside, nonlinear, graded, sparse, running.")
+        str,
+        typer.Option(
+            help="null, single, twin, multiple, outside, nonlinear, graded, sparse, running; small, fixture."
+        ),
     ] = "single",
     as_json: Json = False,
 ) -> None:
@@ -35,14 +38,26 @@ def challenge_make(
 
     Made by finite elements that share no code with the solver. The truths lie in a folder of their own. Graded
     effects are faded until the records hardly tell of them, which takes a minute each; trains that run are
-    integrated in time, which takes ten.
+    integrated in time, which takes ten. Small ones are drawn whole, layout and all, from `--seed` and a number
+    from 0 on, and take a fraction of a second; half are made by the tool's own model.
     """
     from permway.challenge.case import TIERS
     from permway.challenge.make import make
+    from permway.challenge.small.suite import TIERS as SMALL_TIERS
+    from permway.challenge.small.suite import made, names_of
     from permway.diagnosis.deviance import against_folder
 
+    if tier in SMALL_TIERS:
+        with progress_bar("making", as_json) as progress:
+            names = names_of([tier], seed, cases)
+            for index, name in enumerate(names):
+                made(output, name)
+                progress(index + 1, len(names))
+        say({"folder": str(output), "campaigns": len(names)}, as_json)
+        return
     if tier not in TIERS:
-        raise InputError("is no tier", where="--tier", value=tier, remedy=f"use one of {list(TIERS)}")
+        remedy = f"use one of {[*TIERS, *SMALL_TIERS]}"
+        raise InputError("is no tier", where="--tier", value=tier, remedy=remedy)
     with progress_bar("making", as_json) as progress:
         for index in range(cases):
             make(seed + index, 1, tier, output, against=against_folder)
@@ -163,12 +178,30 @@ def challenge_suite(
     ] = None,
     workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
     rivals: Annotated[bool, typer.Option("--rivals", help="Let simpler methods answer, too.")] = False,
+    tiers: Annotated[
+        str | None,
+        typer.Option(help="small, fixture, or both with a comma between: a suite of its own, see below."),
+    ] = None,
+    method: Annotated[
+        str | None,
+        typer.Option(
+            "--diagnose",
+            metavar="PATH",
+            help="Of small campaigns: another installation's `permway`, or a command that ends in `-m permway`.",
+        ),
+    ] = None,
+    limit: Annotated[
+        float, typer.Option(min=1.0, help="Of small campaigns: processor time of one diagnosis, s.")
+    ] = 120.0,
     as_json: Json = False,
 ) -> None:
     """All tiers made, diagnosed, weighed and scored.
 
     205 campaigns, some minutes each. Stopped and called again, it goes on where it was; called with more cases, it
     adds them. Writes score.json, from which docs/make_challenge.py makes the page of results.
+
+    With --tiers small: random small campaigns of that seed, 1,000 unless --cases says otherwise.
+    With --tiers fixture: forty campaigns of one layout. Writes score.json and table.md.
     """
     import json
 
@@ -178,6 +211,11 @@ def challenge_suite(
     from permway.diagnosis.deviance import against_folder
     from permway.diagnosis.rivals import of_file
 
+    if tiers is not None:
+        say(_small(output, tiers, seed, cases, workers, method, limit, as_json), as_json)
+        return
+    if method is not None:
+        raise InputError("goes with --tiers", where="--diagnose", value=method)
     with progress_bar("suite", as_json) as progress:
         result = run_suite(
             output,
@@ -195,6 +233,49 @@ def challenge_suite(
         scores["rivals"] = _rivals(output)
     whole(output / "score.json", json.dumps(scores, indent=1) + "\n")
     say({**result, "scores": str(output / "score.json")}, as_json)
+
+
+def _small(
+    folder: Path,
+    tiers: str,
+    seed: int,
+    cases: int | None,
+    workers: int,
+    method: str | None,
+    limit: float,
+    as_json: bool,
+) -> dict[str, object]:
+    """The suite of small campaigns and its table."""
+    from permway import __version__
+    from permway.challenge.small.judge import judged
+    from permway.challenge.small.suite import run_small
+    from permway.challenge.small.table import as_json as lines_of
+    from permway.challenge.small.table import markdown, reliability_markdown, table, worst_markdown
+    from permway.challenge.weigh import whole
+    from permway.diagnosis.catalogue import entries
+
+    chosen = tiers.split(",")
+    with stage_bar("small campaigns", as_json) as progress:
+        names = run_small(
+            folder,
+            chosen,
+            seed,
+            cases=cases,
+            workers=workers,
+            method=method,
+            limit_s=limit,
+            progress=progress,
+        )
+    count = "" if cases is None else f" --cases {cases}"
+    command = f"permway challenge suite -o suite --tiers {tiers} --seed {seed}{count}"
+    found = table(judged(folder, names, {name: entry.FAMILY for name, entry in entries().items()}))
+    scores = {"version": __version__, "command": command, **found}
+    whole(folder / "score.json", lines_of(scores))
+    page = f"{markdown(found)}\n{reliability_markdown(found)}\n{worst_markdown(found)}"
+    whole(folder / "table.md", page)
+    failed = sum(found["rows"][0]["failed"].values())
+    files = {"scores": str(folder / "score.json"), "table": str(folder / "table.md")}
+    return {"verdicts": found["rows"][0]["cases"] - failed, "failed": failed, **files}
 
 
 def _scores(folder: Path) -> dict[str, object]:

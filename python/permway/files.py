@@ -42,16 +42,13 @@ def prepare_folder(folder: Path, names: Iterable[str] = ()) -> Path:
     InputError
         If the folder cannot be made or written, or a name in it is taken by a folder.
     """
-    if not folder.parent.is_dir():
-        raise InputError("there is no such folder", where=str(folder.parent), remedy="make it first")
-    if folder.exists() and not folder.is_dir():
-        raise InputError("is a file, not a folder", where=str(folder), remedy="name another folder")
+    check_folder(folder)
     try:
         folder.mkdir(exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
-        raise _unwritable(folder, error) from error
+        raise unwritable(folder, error) from error
     for name in names:
         if (folder / name).is_dir():
             raise InputError("is a folder, not a file", where=str(folder / name), remedy="name another folder")
@@ -60,6 +57,20 @@ def prepare_folder(folder: Path, names: Iterable[str] = ()) -> Path:
                 if time.time() - part.stat().st_mtime > LEFT_BEHIND_S:
                     part.unlink()
     return folder
+
+
+def check_folder(folder: Path) -> None:
+    """See that a folder is there, or that it can be made beside others; nothing is written.
+
+    Raises
+    ------
+    InputError
+        If its parent is not there, or its name is taken by a file.
+    """
+    if not folder.parent.is_dir():
+        raise InputError("there is no such folder", where=str(folder.parent), remedy="make it first")
+    if folder.exists() and not folder.is_dir():
+        raise InputError("is a file, not a folder", where=str(folder), remedy="name another folder")
 
 
 def write_bytes(path: Path, content: bytes) -> Path:
@@ -80,7 +91,7 @@ def write_bytes(path: Path, content: bytes) -> Path:
         Path(temporary).chmod(0o666 & ~_umask())
         os.replace(temporary, path)
     except OSError as error:
-        raise _unwritable(path, error) from error
+        raise unwritable(path, error) from error
     finally:
         if temporary is not None:
             Path(temporary).unlink(missing_ok=True)
@@ -92,7 +103,8 @@ def write_text(path: Path, text: str) -> Path:
     return write_bytes(path, text.encode("utf-8"))
 
 
-def _unwritable(path: Path, error: OSError) -> InputError:
+def unwritable(path: Path, error: OSError) -> InputError:
+    """What to say of a file or folder that could not be written."""
     remedy = (
         "make room there, or name another place" if error.errno in FULL else "name a place that you may write to"
     )

@@ -29,12 +29,21 @@ class FrozenModel(BaseModel):
 
     def __init__(self, **data: Any) -> None:
         try:
-            super().__init__(**data)
+            super().__init__(**{name: _unwarned(value) for name, value in data.items()})
         except ValidationError as error:
             raise input_error(error, data, type_name(type(self))) from error
 
     # Pydantic then builds nested records itself, so that a fault inside one keeps its full path.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+
+def _unwarned(value: object) -> object:
+    """Complex numbers of numpy as Python's, which pydantic refuses; it would cut those of numpy with a warning."""
+    if isinstance(value, np.complexfloating):
+        return complex(value)
+    if isinstance(value, list | tuple) and any(isinstance(item, np.complexfloating) for item in value):
+        return [_unwarned(item) for item in value]
+    return value
 
 
 def input_error(error: ValidationError, table: object, place: str) -> InputError:

@@ -9,12 +9,13 @@ import pytest
 from permway.challenge.layout import NOMINAL, Layout, draw_layout, draw_nominal, draw_tests
 from permway.challenge.sheet import sheet
 from permway.recordings.importers.sheet_form import Sheet
-from permway.recordings.importers.sheet_model import wheels_m
+from permway.recordings.importers.sheet_position import position
 
 
 def imported(layout: Layout, seed: int = 0) -> list[float]:
     tests = draw_tests(np.random.default_rng(seed), layout, temperatures=1)
-    return wheels_m(Sheet.model_validate(sheet(layout, draw_nominal(np.random.default_rng(seed)), tests)))
+    read = Sheet.model_validate(sheet(layout, draw_nominal(np.random.default_rng(seed)), tests))
+    return list(position(read).wheels_m)
 
 
 @pytest.mark.parametrize("seed", range(200))

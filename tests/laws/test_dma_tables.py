@@ -76,7 +76,7 @@ def test_isotherms_group_near_temperatures(tmp_path: Path) -> None:
         (GOOD.replace("3e6", ""), ["line 3", "'G_storage_pa'", "the cell is empty"]),
         (GOOD.replace("3e6", "n/a"), ["line 3", "'G_storage_pa'", "not a number", "n/a"]),
         (GOOD.replace("3e6", "3 MPa"), ["line 3", "units in the header"]),
-        (GOOD.replace(",", ";").replace("2e6", "2,5e6"), ["line 2", "decimal point"]),
+        (GOOD.replace(",", ";").replace("2e6", "2,5e6").replace("3e5", "3.1e5"), ["line 2", "decimal point"]),
         (GOOD.replace("3e6", "-3e6"), ["line 3", "'G_storage_pa'", "above zero", "-3e6"]),
         (GOOD.replace("5e5", "-5e5"), ["line 3", "'G_loss_pa'", "above zero"]),
         (GOOD.replace("\n1,", "\n0,"), ["line 2", "'freq_hz'", "above zero", "quasi-static"]),

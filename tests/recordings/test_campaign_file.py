@@ -354,6 +354,15 @@ def test_what_a_preset_is_made_of_can_be_a_parameter(tmp_path: Path) -> None:
     assert np.diff(stations[:3]) == pytest.approx(0.6)
 
 
+def test_a_summary_names_the_file_that_was_read(tmp_path: Path) -> None:
+    path = write(tmp_path).rename(tmp_path / "line 7, may.toml")
+    campaign = read_campaign(path)
+    changed = campaign.with_values({"pad.k": 5.0e7, "gain": 1.1})
+    others = changed.with_model(campaign.model), changed.with_records(campaign.said.records[:1])
+    for one in (campaign, changed, *others):
+        assert one.summary()["campaign"] == str(path)
+
+
 def test_priors() -> None:
     from permway.recordings.parameters import Known, Parameter
 

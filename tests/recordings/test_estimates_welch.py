@@ -135,7 +135,7 @@ def broken(record):
         (noise((2, 2, 2)), {}, r"record: must be \(channel, sample\)"),
         (np.zeros((0, 10)), {}, "record: is empty"),
         (noise(2000) + 1j, {}, "record: must be real"),
-        (["a", "b"], {}, "record: not an array of numbers"),
+        (["a", "b"], {}, "record: not a number or an array of numbers"),
         (noise((2, 2000)), {"channels": ["a", "a"]}, "channels: a channel named twice"),
         (noise((2, 2000)), {"units": ["m"]}, r"units: 1 unit\(s\) for 2"),
         (noise(2000), {"overlap": 1.0}, "overlap: must lie in"),

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from folders import make_pads
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.importers.pad_materials import import_pad_materials
@@ -141,6 +142,9 @@ SHEET_FAULTS: list[tuple[Callable[[Any], None], str, str]] = [
     (_set("runs", "channels", to=["bogie2"]), "", "bogie2"),
     (_set("runs", "speeds_kmh", to=[300.0]), "", "no file run_300kmh"),
     (_set("runs", "sampling_Hz", to=512), "sampling_Hz", "1024"),
+    (_set("runs", "position", to=16.0), "runs.position", "must be words, or a list"),
+    (_set("runs", "position", to=["16"]), "runs.position", "must be words, or a list"),
+    (_set("runs", "position", to="in the middle"), "runs.position", "where do the wheelsets stand?"),
 ]
 
 
@@ -179,6 +183,14 @@ def test_folders_that_hold_nothing(tmp_path: Path) -> None:
             run(tmp_path, tmp_path / "out")
     with pytest.raises(InputError, match="discrete"):
         import_track_decay(tmp_path, tmp_path / "out", support="soft")
+
+
+@pytest.mark.parametrize("missing", ["storage_modulus_MPa.tsv", "loss_factor.tsv"])
+def test_a_material_of_one_file_is_not_passed_over(tmp_path: Path, missing: str) -> None:
+    folder = make_pads(tmp_path / "pads")
+    (folder / "pu" / missing).unlink()
+    with pytest.raises(InputError, match=f"pu/{missing}"):
+        import_pad_materials(folder, tmp_path / "out")
 
 
 def test_two_files_of_one_name_are_not_chosen_between(folder: Path, tmp_path: Path) -> None:

@@ -62,8 +62,8 @@ def joined(at, between=("rail", "ground")):
         (lambda: solved(frequency=[100.0, -5.0]), "frequency_Hz[1]", "got -5.0"),
         (lambda: solved(frequency=[np.nan]), "frequency_Hz[0]", "got nan"),
         (lambda: solved(frequency=[[1.0, 2.0]]), "frequency_Hz", "must be a list (got (1, 2))"),
-        (lambda: solved(frequency=["low"]), "frequency_Hz", "must be numbers"),
-        (lambda: solved(frequency=[1.0 + 2.0j]), "frequency_Hz", "must be numbers"),
+        (lambda: solved(frequency=["low"]), "frequency_Hz", "not a number or an array of numbers"),
+        (lambda: solved(frequency=[1.0 + 2.0j]), "frequency_Hz", "must be real, not complex"),
         (lambda: solved(frequency=[20.0, 10.0]), "frequency_Hz[1]", "sort them"),
         (lambda: solved(frequency=[1e18]), "frequency_Hz", "too short"),
         (lambda: solved(frequency=[1e200]), "frequency_Hz", "too short"),
@@ -225,6 +225,10 @@ def test_tables_are_good():
         ({"joints_upper": [0, 2]}, "joint 1 at x = 0 m: there is no body 2"),
         ({"joints_upper": [0, -1]}, "must not be negative"),
         ({"joints_lower": [0, -1]}, "joint 0 at x = 0 m: it joins a body to itself"),
+        ({"joints_lower": [1, -2]}, "joints: lower body -2 must not be negative; -1 alone stands for the ground"),
+        ({"joints_lower": [1, -7]}, "joints: lower body -7 must not be negative"),
+        ({"joints_lower": [1, -(2**63)]}, "joints: lower body -9223372036854775808 must not be negative"),
+        ({"joints_lower": [2, -1]}, "joint 0 at x = 0 m: there is no body 2"),
         ({"joints_law": [0, 2]}, "joint 1 at x = 0 m: its law is not in the table"),
         ({"joints_law": [0, -1]}, "must not be negative"),
         ({"joints_law": [0, 2**62]}, "its law is not in the table"),
@@ -247,9 +251,71 @@ def test_tables_that_do_not_fit(changes, says, formulation):
     assert says in str(caught.value)
 
 
+DERIVED = {
+    "groups": np.array([0, -1]),
+    "weights": np.ones(2),
+    "n_groups": 1,
+    "bodies": True,
+    "sensors": np.array([0]),
+    "forces": np.array([0]),
+    "own": True,
+}
+
+
+def test_a_group_of_minus_one_is_none():
+    one, none = (
+        _core.solve_line(
+            **tables(derived={**DERIVED, "groups": np.array([0, second])}, sensors=tables()["forces"])
+        )
+        for second in (0, -1)
+    )
+    assert np.isfinite(none[2]).all()
+    assert not np.allclose(one[2][:, 0], none[2][:, 0], rtol=1e-3, atol=0.0)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"groups": np.array([0, -2])}, "derived: group -2 must not be negative; -1 alone stands for no group"),
+        ({"groups": np.array([0, -7])}, "derived: group -7 must not be negative"),
+        ({"groups": np.array([0, 1])}, "joint 1 is in a group that is none of the 1"),
+        ({"groups": np.array([0])}, "1 groups and 2 weights for 2 joints"),
+        ({"sensors": np.array([-1])}, "derived: sensor -1 must not be negative"),
+        ({"forces": np.array([-1])}, "derived: force -1 must not be negative"),
+        ({"forces": np.array([1])}, "there is no force 1"),
+        ({"n_groups": 10_000_001}, "derived: 10000001 groups are more than 10000000"),
+        ({"n_groups": 2**63}, "more than 10000000"),
+        ({"n_groups": 2**64 - 1}, "more than 10000000"),
+        ({"n_groups": 10**7, "sensors": np.zeros(10**6, dtype=np.int64)}, "no room for an answer of shape"),
+    ],
+)
+def test_what_cannot_be_derived(change, says):
+    with pytest.raises(_core.TablesError) as caught:
+        _core.solve_line(**tables(derived={**DERIVED, **change}))
+    assert says in str(caught.value)
+
+
+def test_an_answer_too_large_is_refused_by_the_core():
+    """Shapes that no memory holds, and whose number of values does not fit 64 bits: an error, no panic."""
+    many = {"body": np.zeros(10**6, dtype=np.int64), "x": np.zeros(10**6)}
+    for count in (10**3, 2 * 10**6):
+        line = tables(
+            forces=many, sensors=many, frequencies=np.ones(count), laws=np.ones((count, 2), dtype=complex)
+        )
+        with pytest.raises(_core.TablesError, match="no room for an answer of shape"):
+            _core.solve_line(**line)
+
+
 @pytest.mark.parametrize(
     "changes",
     [
+        {"frequencies": np.array([10.0 + 1.0j, 100.0])},
+        {"joints_x": [0j, 0j]},
+        {"forces_x": [1j]},
+        {"joints_lower": np.array([1, 2**64 - 1], dtype=np.uint64)},
+        {"joints_lower": np.array([1, -1], dtype=np.int32)},
+        {"threads": -1},
+        {"threads": 2**64},
         {"frequencies": [10.0, 100.0]},
         {"frequencies": np.array([10, 100])},
         {"frequencies": np.array([[10.0, 100.0]])},
@@ -262,7 +328,7 @@ def test_tables_that_do_not_fit(changes, says, formulation):
     ],
 )
 def test_tables_of_a_wrong_type(changes):
-    with pytest.raises(TypeError) as caught:
+    with pytest.raises((TypeError, OverflowError)) as caught:
         _core.solve_line(**tables(**changes))
     # What is at fault stands in the message or in a note below it.
     told = [str(caught.value), *getattr(caught.value, "__notes__", [])]

@@ -126,10 +126,17 @@ def test_finite_change_is_that_of_the_changed_line(line, data, joint):
 def test_bad_arguments(line, data):
     ask = {"forces": FORCES, "sensors": SENSORS, "temperature_C": 20.0}
     for by in ("layer", [0, 1], np.full(len(line.joint_table().x), 0.5), np.full(len(line.joint_table().x), -2)):
-        with pytest.raises(InputError, match=r"^by: "):
+        with pytest.raises(InputError, match=r"^by(\[0\])?: "):
             sensitivity(line, FREQUENCY, by=by, **ask)
-    with pytest.raises(InputError, match=r"there is no such joint \(got 100000\)"):
-        by_joint(data, 100000)
+    many = len(line.joint_table().x)
+    for beyond in (many, 10**12, 2**64 - 1):
+        by = np.zeros(many, dtype=np.uint64)
+        by[1] = beyond
+        with pytest.raises(InputError, match=rf"^by\[1\]: a group of {many} joints is .* \(got {beyond}\)"):
+            sensitivity(line, FREQUENCY, by=by, **ask)
+    for joint in (100000, -1, 1.5, True):
+        with pytest.raises(InputError, match=rf"there is no such joint \(got {joint}\)"):
+            by_joint(data, joint)
     with pytest.raises(InputError, match="places=True"):
         by_joint(sensitivity(line, FREQUENCY, **ask), 0)
     own = data["own_extension"].values[:, 3]

@@ -39,6 +39,7 @@ from permway.challenge.plan import Chain, Plan, plan_of
 from permway.challenge.running import running_layout, running_tests, with_dashpots
 from permway.challenge.sheet import sheet
 from permway.challenge.sparse import NOISE, sparse
+from permway.challenge.tiers import number_of
 from permway.errors import InputError
 
 Tier = Literal["null", "single", "twin", "multiple", "outside", "nonlinear", "graded", "sparse", "running"]
@@ -249,7 +250,7 @@ def _chain(random: np.random.Generator, noisier: float) -> Chain:
 
 
 def _random(seed: int, tier: Tier, *purpose: int) -> np.random.Generator:
-    return np.random.default_rng([seed, TIERS.index(tier), *purpose])
+    return np.random.default_rng([seed, number_of(tier), *purpose])
 
 
 def _short(part: dict[str, Any]) -> dict[str, Any]:

@@ -27,7 +27,7 @@ NOVEL = "novel"
 """The name of what no catalogue has."""
 
 NEAR_M = 1.5
-"""How far from a true place an interval may end and still be there."""
+"""How far from a true place an interval may end and still be there, unless the place has its own `near_m`."""
 
 
 @dataclass(frozen=True)
@@ -258,7 +258,8 @@ def _there(true: Mapping[str, Any], said: Mapping[str, Any], domain: str | None,
     x = true.get("x_m")
     if x:
         stretch = said.get("within") or said.get("x")
-        return stretch is not None and stretch[0] - NEAR_M <= x[-1] and x[0] <= stretch[1] + NEAR_M
+        near = float(true.get("near_m", NEAR_M))
+        return stretch is not None and stretch[0] - near <= x[-1] and x[0] <= stretch[1] + near
     channels = true.get("channels")
     if isinstance(channels, list) and said.get("channels"):
         return bool({_channel(name) for name in channels} & {_channel(name) for name in said["channels"]})

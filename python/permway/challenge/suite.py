@@ -12,6 +12,7 @@ from permway.challenge.make import make
 from permway.challenge.pool import processes
 from permway.challenge.rivals import Ask, answer
 from permway.challenge.run import FAILED, VERDICT, diagnosed, ruled_out, threads_of
+from permway.challenge.tiers import number_of
 from permway.challenge.weigh import Against, weigh_one, whole
 from permway.errors import InputError, SolveError
 
@@ -27,7 +28,7 @@ CASES: dict[Tier, int] = {
 """Campaigns of the whole suite, by tier."""
 
 APART = 1000
-"""Between the first seeds of two tiers."""
+"""Between the first seeds of tiers whose numbers follow each other."""
 
 Progress = Callable[[int, int], object]
 
@@ -51,11 +52,11 @@ def suite_of(seed: int) -> list[Numbered]:
     Parameters
     ----------
     seed : int
-        Of the first tier; each further tier begins a thousand later.
+        Of the tier of number 0; that of number n begins n thousand later, whatever other tiers there are.
     """
     placed = [
-        ((index + 0.5) / count, Numbered(tier, seed + APART * order + index))
-        for order, (tier, count) in enumerate(CASES.items())
+        ((index + 0.5) / count, Numbered(tier, seed + APART * number_of(tier) + index))
+        for tier, count in sorted(CASES.items(), key=lambda pair: number_of(pair[0]))
         for index in range(count)
     ]
     return [one for _, one in sorted(placed, key=lambda pair: pair[0])]

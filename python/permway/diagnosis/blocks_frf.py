@@ -114,6 +114,16 @@ class FrfBlock:
         columns = (label, sensor, force, frequency, decibels.reshape(-1))
         self.rows = Rows(*(np.tile(v, 2) for v in columns))
 
+    @property
+    def relative(self) -> Reals:
+        """Modulus of what is there, in standard deviations of the noise, shape (sensors, points, F)."""
+        return self._relative
+
+    @property
+    def phase(self) -> Complexes:
+        """Of what is there, as a factor of modulus 1, shape (sensors, points, F)."""
+        return self._phase
+
     def _sized(self, pair: float) -> None:
         """Take a size of the pairs' errors, and let go of what came of another."""
         self.pair = pair

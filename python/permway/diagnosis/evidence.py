@@ -210,6 +210,10 @@ class Evidence:
             other.__dict__["columns"] = self.columns
         return other
 
+    def with_blocks(self, blocks: tuple[Block, ...]) -> Evidence:
+        """The same records as other blocks."""
+        return replace(self, blocks=blocks)
+
     def blunted(self, floor: float, about: Solved | None = None) -> Evidence:
         """The same with a larger relative error of every frequency response.
 

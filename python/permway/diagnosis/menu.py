@@ -165,7 +165,7 @@ def _other_condition(dataset: Dataset, words: str, kind: Kind, **changed: float)
 
     def planned(campaign: Campaign) -> Campaign:
         said = campaign.said.model_copy(update={"conditions": (*campaign.said.conditions, condition)})
-        return Campaign(said, campaign.model, campaign.folder, campaign.parameters)
+        return replace(campaign, said=said)
 
     (value,) = changed.values()
     return Item(words, kind, COST[kind], planned, replace(dataset, condition=condition), value=value)
@@ -174,7 +174,7 @@ def _other_condition(dataset: Dataset, words: str, kind: Kind, **changed: float)
 def _with_sensor(sensor: Sensor) -> Callable[[Campaign], Campaign]:
     def planned(campaign: Campaign) -> Campaign:
         said = campaign.said.model_copy(update={"sensors": (*campaign.said.sensors, sensor)})
-        return Campaign(said, campaign.model, campaign.folder, campaign.parameters)
+        return replace(campaign, said=said)
 
     return planned
 
@@ -182,6 +182,6 @@ def _with_sensor(sensor: Sensor) -> Callable[[Campaign], Campaign]:
 def _with_point(point: Point) -> Callable[[Campaign], Campaign]:
     def planned(campaign: Campaign) -> Campaign:
         said = campaign.said.model_copy(update={"forces": (*campaign.said.forces, point)})
-        return Campaign(said, campaign.model, campaign.folder, campaign.parameters)
+        return replace(campaign, said=said)
 
     return planned

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -95,10 +96,10 @@ class Problem:
     def _campaign(self, z: Reals) -> Campaign:
         return self.build({f.name: f.value(float(v)) for f, v in zip(self.free, z, strict=True)})
 
-    def at(self, z: Reals) -> State | None:
-        """The state; None if the model cannot be solved there."""
+    def at(self, z: Reals, near: Solved | None = None) -> State | None:
+        """The state; None if the model cannot be solved there. Predictions near by save solves."""
         try:
-            deviations, predicted = self.deviations(z)
+            deviations, predicted = self.deviations(z, near)
         except (SolveError, InputError):
             return None
         return State(z, predicted, deviations) if np.isfinite(deviations).all() else None
@@ -115,6 +116,11 @@ class Problem:
     def jacobian(self, state: State) -> Reals:
         """Derivative of the deviations by z: forward differences, solves spared where derivatives do."""
         nearby = Nearby(self.evidence, state.solved)
+        nearby.derive()
+        return self.columns(state, range(len(self.free)), nearby)
+
+    def columns(self, state: State, indices: Sequence[int], nearby: Nearby | None = None) -> Reals:
+        """Columns of the Jacobian, of some parameters; by derivatives where they are given, else by solves."""
 
         def column(index: int) -> Reals:
             forward = state.z[index] + STEP <= self.free[index].limits[1]
@@ -124,13 +130,13 @@ class Problem:
                 # A number may stand at the edge of what there can be: then from its other side.
                 return self._slope(state, index, -STEP if forward else STEP, nearby)
 
-        nearby.derive()
-        columns = each(column, range(len(self.free)), threads=self.evidence.threads, least=SMALL)
+        columns = each(column, indices, threads=self.evidence.threads, least=SMALL)
         return np.column_stack(columns) if columns else np.zeros((state.deviations.size, 0))
 
-    def _slope(self, state: State, index: int, step: float, nearby: Nearby) -> Reals:
+    def _slope(self, state: State, index: int, step: float, nearby: Nearby | None) -> Reals:
         moved = state.z.copy()
         moved[index] += step
         campaign = self._campaign(moved)
-        predicted = nearby.predicted(campaign) or self.evidence.predicted(campaign, state.solved)
+        near = None if nearby is None else nearby.predicted(campaign)
+        predicted = near or self.evidence.predicted(campaign, state.solved)
         return np.asarray((self._near(predicted, state) - state.deviations) / step)

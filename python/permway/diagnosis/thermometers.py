@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -72,7 +73,7 @@ def _shifted(campaign: Campaign, temperature_C: float | None, step_K: float) -> 
         for c in campaign.said.conditions
     )
     said = campaign.said.model_copy(update={"conditions": conditions})
-    return Campaign(said, campaign.model, campaign.folder, campaign.parameters)
+    return replace(campaign, said=said)
 
 
 def _built(

@@ -20,7 +20,7 @@ from permway.laws.fractional import FVMP, FractionalKelvinVoigt, FractionalZener
 from permway.laws.measured import Given, Measured
 from permway.laws.pad import Pad
 from permway.laws.prony import Prony
-from permway.laws.shift import WLF, AnyShift, Arrhenius, Free, Shift
+from permway.laws.shift import WLF, AnyShift, Arrhenius, Free, Shift, WLFArrhenius
 from permway.laws.tabulated import Tabulated
 from permway.laws.tfdv import TFDV
 from permway.laws.waves import Waves
@@ -78,6 +78,7 @@ __all__ = [
     "Springpot",
     "StorageLossPair",
     "Tabulated",
+    "WLFArrhenius",
     "Waves",
     "Zener",
     "law_from_dict",

@@ -3,90 +3,148 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 
-from permway.arrays import Reals
+from permway.arrays import ABSOLUTE_ZERO_C, Reals
 from permway.errors import InputError
-from permway.laws.columns import MODULUS_UNITS, Column
+from permway.laws.column_units import MODULUS_UNITS
+from permway.laws.columns import Column, Recognised
+from permway.laws.dma_layout import Layout
 from permway.laws.textfile import Line, number, read_lines
 
+WAYS = tuple(
+    frozenset(way)
+    for way in (
+        *(("storage", "loss"), ("storage", "loss_factor"), ("storage", "phase"), ("magnitude", "phase")),
+        *(("magnitude", "loss_factor"), ("magnitude", "loss"), ("loss", "loss_factor"), ("loss", "phase")),
+    )
+)
+"""Pairs of columns that give a complex modulus, the more direct first."""
+
 _KELVIN_ABOVE_C = 200.0
+"""No rubber is tested above: half would refuse tests of hot seals, twice would let most tables in kelvin pass."""
+
+_UNSTATED_ABOVE_C = 140.0
+"""Without a unit, above this, degrees Celsius, Fahrenheit and kelvin are all likely. Half would refuse warm
+tests, twice would let kelvin pass."""
+
+_MOST_LOSS_FACTOR = 6.0
+"""Rubber at its glass transition has 1 to 3. Half would refuse damping rubber, twice let 7 % pass as 7."""
+
+_PLAIN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?")
 
 
-_DISAGREE = 0.05
-"""Relative difference between tan delta and loss/storage beyond rounding of either."""
+def refuse_missing(recognised: Recognised, where: str, *, frequency_Hz: float | None) -> None:
+    """Refuse a table that lacks a column, or what stands in for it, and name what was not understood."""
+    columns = recognised.columns
+    missing: list[tuple[str, tuple[str, ...]]] = []
+    if "frequency" not in columns and frequency_Hz is None:
+        missing.append(("frequency", ("frequency",)))
+    if not any(way <= columns.keys() for way in WAYS):
+        if not columns.keys() & {"storage", "magnitude"}:
+            missing.append(("storage", ("storage", "magnitude")))
+        if not columns.keys() & {"loss", "loss_factor", "phase"}:
+            missing.append(("loss or loss_factor", ("loss", "loss_factor", "phase")))
+    if not missing:
+        return
+    faults = [recognised.faults[name] for _, names in missing for name in names if name in recognised.faults]
+    advice = "name the columns as in freq_hz, temperature_C, G_storage_Pa, G_loss_Pa or tan_delta"
+    if missing[0][0] == "frequency" and len(missing) == 1:
+        advice += "; of a sweep at one frequency, give it: --frequency (Python: frequency_Hz=)"
+    raise InputError(
+        f"no column for {', '.join(name for name, _ in missing)}",
+        where=where,
+        value=sorted(column.header for column in columns.values()),
+        remedy="; ".join([f"not understood: {_some(recognised.unread)}", *faults, advice]),
+    )
 
 
-def refuse_missing(columns: dict[str, Column], source: Path, frequency_Hz: float | None) -> None:
-    """Refuse a table that lacks a column, or what stands in for it."""
-    missing = [name for name in ("frequency", "storage") if name not in columns]
-    if "frequency" in missing and frequency_Hz is not None and frequency_Hz > 0.0:
-        missing.remove("frequency")
-    if "loss" not in columns and "loss_factor" not in columns:
-        missing.append("loss or loss_factor")
-    if missing:
-        raise InputError(
-            f"no column for {', '.join(missing)}",
-            where=f"{source}: header",
-            value=sorted(column.header for column in columns.values()),
-            remedy="name the columns as in freq_hz, temperature_C, G_storage_Pa, G_loss_Pa or tan_delta",
-        )
+def _some(headers: tuple[str, ...]) -> str:
+    """The first headers, quoted."""
+    shown = ", ".join(repr(header[:60]) for header in headers[:12])
+    return (shown or "none") + (f" and {len(headers) - 12} more" if len(headers) > 12 else "")
 
 
-def read_column(source: Path, rows: list[Line], header: Line, column: Column) -> Reals:
+def read_column(source: Path, layout: Layout, column: Column) -> Reals:
     """One column in SI."""
-    values = np.empty(len(rows))
-    for index, row in enumerate(rows):
-        if len(row.cells) != len(header.cells):
-            raise InputError(
-                f"{len(row.cells)} cells where the header has {len(header.cells)}",
-                where=f"{source}: line {row.number}",
-                value=",".join(row.cells),
-                remedy="complete or remove the line (a file cut short ends like this)",
-            )
+    values = np.empty(len(layout.rows))
+    for index, row in enumerate(layout.rows):
         place = f"{source}: line {row.number}, column '{column.header}'"
-        value = column.to_si(number(row.cells[column.index], place))
+        cell = row.cells[column.index]
+        plain = cell.replace("−", "-")
+        if layout.decimal_comma:
+            if "." in plain:
+                what = "a decimal point in a table with decimal commas"
+                raise InputError(what, where=place, value=cell, remedy="write all numbers alike")
+            plain = plain.replace(",", ".", 1)
+        value = column.to_si(_number(plain, place))
         if column.quantity not in ("temperature", "strain") and value <= 0.0:
             raise InputError(
                 "must be above zero",
                 where=place,
-                value=row.cells[column.index],
+                value=cell,
                 remedy="check the sign, and leave quasi-static rows out of the sweep",
             )
         values[index] = value
     return values
 
 
+def _number(cell: str, place: str) -> float:
+    """A cell as a number, without Python's own ways to write one (1_000, full-width digits)."""
+    if cell and not _PLAIN.fullmatch(cell) and ("_" in cell or not cell.isascii()):
+        raise InputError(
+            "not a number", where=place, value=cell, remedy="give a plain number, units in the header"
+        )
+    return number(cell, place)
+
+
 def refuse_kelvin(source: Path, rows: list[Line], temperature: Reals, column: Column) -> None:
-    """Refuse temperatures that can only be in kelvin."""
-    hot = np.nonzero(temperature > _KELVIN_ABOVE_C)[0]
+    """Refuse temperatures that can only be in kelvin, and high ones without a unit."""
+    most = _KELVIN_ABOVE_C if column.unit else _UNSTATED_ABOVE_C
+    hot = np.nonzero(temperature > most)[0]
     if len(hot):
         raise InputError(
-            f"a temperature above {_KELVIN_ABOVE_C:g} degC: kelvin given as degrees Celsius?",
+            f"a temperature above {most:g} degC: kelvin given as degrees Celsius?",
             where=f"{source}: line {rows[hot[0]].number}, column '{column.header}'",
             value=float(temperature[hot[0]]),
             remedy="subtract 273.15, or name the column temperature_K",
         )
+    if (temperature <= ABSOLUTE_ZERO_C).any():
+        at = int(temperature.argmin())
+        raise InputError(
+            "a temperature below absolute zero",
+            where=f"{source}: line {rows[at].number}, column '{column.header}'",
+            value=float(temperature[at]),
+            remedy="correct the value or the unit of the column",
+        )
 
 
-def loss_of(source: Path, rows: list[Line], read: dict[str, Reals], columns: dict[str, Column]) -> Reals:
-    """The loss modulus, also from the loss factor; where there are both they have to agree."""
-    if "loss" not in read:
-        return read["storage"] * read["loss_factor"]
-    if "loss_factor" in read:
-        ratio = read["loss"] / read["storage"]
-        apart = np.nonzero(np.abs(ratio - read["loss_factor"]) > _DISAGREE * np.abs(ratio))[0]
-        if len(apart):
-            at = apart[0]
-            raise InputError(
-                f"loss over storage is {ratio[at]:.4g}, which the loss factor beside it contradicts",
-                where=f"{source}: line {rows[at].number}, column '{columns['loss_factor'].header}'",
-                value=float(read["loss_factor"][at]),
-                remedy="mixed units or a shifted column? correct or remove one of the two",
-            )
-    return read["loss"]
+def refuse_percent(source: Path, rows: list[Line], loss_factor: Reals, column: Column) -> None:
+    """Refuse a loss factor that can only be in per cent."""
+    at = int(loss_factor.argmax())
+    if loss_factor[at] > _MOST_LOSS_FACTOR:
+        raise InputError(
+            f"a loss factor above {_MOST_LOSS_FACTOR:g}: per cent?",
+            where=f"{source}: line {rows[at].number}, column '{column.header}'",
+            value=float(loss_factor[at]),
+            remedy="name the column tan_delta_pct, or correct the value",
+        )
+
+
+def refuse_again(source: Path, rows: list[Line], frequency: Reals) -> None:
+    """Refuse a table without temperatures whose frequencies come again: sweeps at several that nobody says."""
+    _, first = np.unique(frequency, return_index=True)
+    again = np.setdiff1d(np.arange(len(frequency)), first)
+    if len(again):
+        raise InputError(
+            "the frequencies come again and no column says the temperature of each sweep",
+            where=f"{source}: line {rows[again[0]].number}",
+            value=f"{frequency[again[0]]:g} Hz",
+            remedy="add a column temperature_C; if all rows are of one temperature, give it: --temperature",
+        )
 
 
 def unit_scale(source: Path, unit: str | None) -> float:

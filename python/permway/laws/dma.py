@@ -2,21 +2,33 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
-from permway.arrays import Complexes, Reals
+from permway.arrays import Complexes, Reals, real_numbers
 from permway.errors import InputError
-from permway.laws.columns import recognise
-from permway.laws.columns_read import loss_of, read_column, refuse_kelvin, refuse_missing, two_columns, unit_scale
-from permway.laws.textfile import read_lines
+from permway.laws.column_units import MODULUS, STIFFNESS, words
+from permway.laws.columns import Column
+from permway.laws.columns_read import (
+    read_column,
+    refuse_again,
+    refuse_kelvin,
+    refuse_missing,
+    refuse_percent,
+    two_columns,
+    unit_scale,
+)
+from permway.laws.dma_layout import read_layout
+from permway.laws.dma_values import storage_and_loss
 
 
 @dataclass(frozen=True, kw_only=True)
 class DmaTable:
-    """Modulus against frequency and temperature.
+    """Modulus, or a part's stiffness, against frequency and temperature.
 
     Attributes
     ----------
@@ -25,7 +37,9 @@ class DmaTable:
     temperature_C : ndarray, shape (n,), or None
         Degrees Celsius; None if the source does not say.
     storage_Pa, loss_Pa : ndarray, shape (n,)
-        Pa.
+        Pa; N/m where `quantity` is "stiffness".
+    quantity : {"modulus", "stiffness"}
+        What the rows are of.
     strain : ndarray, shape (n,), or None
         Amplitude of dynamic strain, as a fraction.
     static_Pa : float or None
@@ -40,6 +54,7 @@ class DmaTable:
     temperature_C: Reals | None
     storage_Pa: Reals
     loss_Pa: Reals
+    quantity: Literal["modulus", "stiffness"] = "modulus"
     strain: Reals | None = None
     static_Pa: float | None = None
     source: str = ""
@@ -51,7 +66,7 @@ class DmaTable:
             column = getattr(self, name)
             if column is None:
                 continue
-            fixed = np.array(column, dtype=np.float64)
+            fixed = real_numbers(column, name).copy()
             if fixed.shape != (rows,) or not np.isfinite(fixed).all():
                 raise InputError(
                     "a column of a DMA table is finite and as long as frequency_Hz",
@@ -69,7 +84,7 @@ class DmaTable:
 
     @property
     def modulus(self) -> Complexes:
-        """Complex modulus, Pa, shape (n,)."""
+        """Complex modulus, Pa (N/m of a stiffness), shape (n,)."""
         return np.asarray(self.storage_Pa + 1j * self.loss_Pa)
 
     @property
@@ -87,22 +102,32 @@ class DmaTable:
 
 
 def read_dma(
-    path: str | Path, *, frequency_Hz: float | None = None, temperature_C: float | None = None
+    path: str | Path,
+    *,
+    frequency_Hz: float | None = None,
+    temperature_C: float | None = None,
+    decimal: str | None = None,
+    shape_factor_m: float | None = None,
 ) -> DmaTable:
-    """Read a DMA table from a CSV or TSV file with a header.
+    """Read a DMA table from a text file with a header.
 
-    Columns are found by name and unit, in any order; see :mod:`permway.laws.columns` for the names. Needed
-    are a storage modulus and a loss modulus or loss factor; a frequency; a temperature unless the test was
-    at an unstated one.
+    Columns are found by name and unit, in any order; see :mod:`permway.laws.columns` for the names. Needed are a
+    storage modulus or stiffness, or an absolute value; a loss modulus, loss factor or phase; a frequency; a
+    temperature unless the test was at an unstated one.
 
     Parameters
     ----------
     path : path
-        The file. Comma, semicolon or tab between the cells; lines that start with # are remarks.
+        Comma, semicolon, tab, bar or blanks between the cells; UTF-8, UTF-16 or Latin-1; lines above the header
+        and lines that begin with # are passed over, a row of units may follow the header.
     frequency_Hz : float, optional
         Of a temperature sweep whose file has no frequency column.
     temperature_C : float, optional
         Of a frequency sweep whose file has no temperature column.
+    decimal : {".", ","}, optional
+        Found from the cells if not given.
+    shape_factor_m : float, optional
+        Stiffness of the part over modulus of its material, e A / h in m: makes a modulus of a table of stiffness.
 
     Returns
     -------
@@ -115,26 +140,76 @@ def read_dma(
         For anything in the file that cannot be used, with line and column.
     """
     source = Path(path)
-    lines = read_lines(source)
-    header, rows = lines[0], lines[1:]
-    columns = recognise(header.cells, where=f"{source}: line {header.number}")
-    refuse_missing(columns, source, frequency_Hz)
+    layout = read_layout(source, decimal=decimal)
+    columns, rows = layout.recognised.columns, layout.rows
+    refuse_missing(layout.recognised, f"{source}: header (line {layout.header.number})", frequency_Hz=frequency_Hz)
     if not rows:
         raise InputError("a header but no rows", where=str(source), remedy="give at least one measured row")
-    read = {name: read_column(source, rows, header, column) for name, column in columns.items()}
-    count = len(rows)
+    read = {name: read_column(source, layout, column) for name, column in columns.items()}
+    frequency = _or_given(read.get("frequency"), frequency_Hz, len(rows), "frequency_Hz")
+    assert frequency is not None
+    temperature = _or_given(read.get("temperature"), temperature_C, len(rows), "temperature_C")
     if "temperature" in read:
         refuse_kelvin(source, rows, read["temperature"], columns["temperature"])
-        temperature: Reals | None = read["temperature"]
-    else:
-        temperature = None if temperature_C is None else np.full(count, float(temperature_C))
+    elif "temperature" in layout.recognised.faults and temperature is None:
+        raise InputError(
+            "a column of temperatures that is not understood",
+            where=f"{source}: header (line {layout.header.number})",
+            remedy=layout.recognised.faults["temperature"],
+        )
+    elif temperature is None:
+        refuse_again(source, rows, frequency)
+    storage, loss = storage_and_loss(source, rows, read, columns)
+    if "loss_factor" in read:
+        refuse_percent(source, rows, read["loss_factor"], columns["loss_factor"])
+    quantity, scale = _quantity(columns["storage" if "storage" in columns else _elastic(columns)], shape_factor_m)
     return DmaTable(
-        frequency_Hz=read["frequency"] if "frequency" in read else np.full(count, float(frequency_Hz or 0.0)),
+        frequency_Hz=frequency,
         temperature_C=temperature,
-        storage_Pa=read["storage"],
-        loss_Pa=loss_of(source, rows, read, columns),
+        storage_Pa=storage * scale,
+        loss_Pa=loss * scale,
+        quantity=quantity,
         strain=read.get("strain"),
         source=str(source),
+        notes=(*layout.notes, *_assumed(columns)),
+    )
+
+
+def _or_given(column: Reals | None, given: float | None, count: int, name: str) -> Reals | None:
+    """A column, or the one value that stands for it; both together are refused unless they agree."""
+    if given is None or column is None:
+        if given is not None and not (math.isfinite(given) and (name == "temperature_C" or given > 0.0)):
+            raise InputError("must be a finite number, a frequency above zero", where=name, value=given)
+        return column if given is None else np.full(count, float(given))
+    return column
+
+
+def _elastic(columns: dict[str, Column]) -> str:
+    return "magnitude" if "magnitude" in columns else "loss"
+
+
+def _quantity(column: Column, shape_factor_m: float | None) -> tuple[Literal["modulus", "stiffness"], float]:
+    """What the rows are of, and the factor that makes them so."""
+    if shape_factor_m is None:
+        return ("stiffness" if column.elastic == STIFFNESS else "modulus"), 1.0
+    if column.elastic == MODULUS:
+        raise InputError(
+            f"a shape factor goes with a stiffness, and column '{column.header}' is a modulus",
+            where="shape_factor_m",
+            value=shape_factor_m,
+            remedy="leave the shape factor out; a pad's law takes area and thickness",
+        )
+    if not (math.isfinite(shape_factor_m) and shape_factor_m > 0.0):
+        raise InputError("must be finite and above zero", where="shape_factor_m", value=shape_factor_m)
+    return "modulus", 1.0 / shape_factor_m
+
+
+def _assumed(columns: dict[str, Column]) -> tuple[str, ...]:
+    units = {"frequency": "Hz", "temperature": "degrees Celsius"}
+    return tuple(
+        f"column '{columns[name].header}' has no unit; {unit} assumed"
+        for name, unit in units.items()
+        if name in columns and not columns[name].unit and "omega" not in words(columns[name].header)
     )
 
 

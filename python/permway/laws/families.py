@@ -68,6 +68,9 @@ class Family:
         From coordinates to the law.
     parameters : callable
         From coordinates to the law's own parameters by name, in SI.
+    kinds : tuple of str
+        What each coordinate is: "floor" (modulus at rest), "strength" (a relaxing modulus), "damping",
+        "coefficient", "time", "gap" (to the next time), "order", "rise", "loss".
     """
 
     name: str
@@ -75,6 +78,27 @@ class Family:
     value: Callable[[list[Reals], Complexes], Complexes]
     law: Callable[[Reals], Law]
     parameters: Callable[[Reals], dict[str, float]]
+    kinds: tuple[str, ...]
+
+    def moved(self, x: Reals, lg_shift: float, lg_scale: float) -> Reals:
+        """Coordinates of the law k' with k'(f) = 10^lg_scale k(10^lg_shift f).
+
+        Parameters
+        ----------
+        x : ndarray, shape (d,)
+        lg_shift, lg_scale : float
+            Decades of frequency and of modulus.
+        """
+        result = np.array(x, dtype=np.float64)
+        order = self.kinds.index("order") if "order" in self.kinds else None
+        for index, kind in enumerate(self.kinds):
+            if kind in ("floor", "strength", "damping", "coefficient"):
+                result[index] += lg_scale
+            if kind in ("time", "damping"):
+                result[index] += lg_shift
+            if kind == "coefficient" and order is not None:
+                result[index] += lg_shift * x[order]
+        return result
 
 
 def family(name: str) -> Family:
@@ -111,6 +135,7 @@ def _simple(
     value: Callable[..., Complexes],
     build: Callable[[dict[str, float]], Law],
     parameters: Callable[..., dict[str, float]],
+    kinds: str,
 ) -> Family:
     return Family(
         name,
@@ -118,6 +143,7 @@ def _simple(
         lambda x, s: value(s, *x),
         lambda x: build(parameters(*map(float, x))),
         lambda x: parameters(*map(float, x)),
+        tuple(kinds.split()),
     )
 
 
@@ -202,7 +228,8 @@ def _series(name: str, count: int, *, spring: bool) -> Family:
         named |= {f"strengths[{i}]": float(10.0**g) for i, g in enumerate(x[offset : offset + count])}
         return named | {f"relaxation_times_s[{i}]": float(10.0**t) for i, t in enumerate(times(x))}
 
-    return Family(name, bounds, value, law, parameters)
+    kinds = ("floor",) * offset + ("strength",) * count + ("time",) + ("gap",) * (count - 1)
+    return Family(name, bounds, value, law, parameters, kinds)
 
 
 _FAMILIES: dict[str, Family] = {
@@ -214,6 +241,7 @@ _FAMILIES: dict[str, Family] = {
             lambda s, lg_k, lg_eta: 10.0**lg_k * (1.0 + 1j * 10.0**lg_eta) + 0.0 * s,
             lambda p: Hysteretic(**p),
             lambda lg_k, lg_eta: {"stiffness": 10.0**lg_k, "loss_factor": 10.0**lg_eta},
+            "floor loss",
         ),
         _simple(
             "kelvin_voigt",
@@ -221,6 +249,7 @@ _FAMILIES: dict[str, Family] = {
             lambda s, lg_k, lg_c: 10.0**lg_k + s * 10.0**lg_c,
             lambda p: KelvinVoigt(**p),
             lambda lg_k, lg_c: {"stiffness": 10.0**lg_k, "damping": 10.0**lg_c},
+            "floor damping",
         ),
         _simple(
             "springpot",
@@ -228,6 +257,7 @@ _FAMILIES: dict[str, Family] = {
             lambda s, lg_c, order: 10.0**lg_c * _power(s, np.zeros(()), order),
             lambda p: Springpot(**p),
             lambda lg_c, order: {"coefficient": 10.0**lg_c, "order": order},
+            "coefficient order",
         ),
         _simple(
             "springpot_parallel",
@@ -239,6 +269,7 @@ _FAMILIES: dict[str, Family] = {
             lambda s, lg_k, lg_c, order: 10.0**lg_k + 10.0**lg_c * _power(s, np.zeros(()), order),
             lambda p: FractionalKelvinVoigt(**p),
             lambda lg_k, lg_c, order: {"stiffness": 10.0**lg_k, "coefficient": 10.0**lg_c, "order": order},
+            "floor coefficient order",
         ),
         _simple(
             "zener",
@@ -250,6 +281,7 @@ _FAMILIES: dict[str, Family] = {
                 "unrelaxed": 10.0**lg_k + 10.0**lg_d,
                 "relaxation_time_s": 10.0**lg_t,
             },
+            "floor strength time",
         ),
         _simple(
             "fractional_zener",
@@ -262,6 +294,7 @@ _FAMILIES: dict[str, Family] = {
                 "relaxation_time_s": 10.0**lg_t,
                 "order": order,
             },
+            "floor strength time order",
         ),
         _simple(
             "havriliak_negami",
@@ -275,6 +308,7 @@ _FAMILIES: dict[str, Family] = {
                 "order": order,
                 "skew": product / order,
             },
+            "floor strength time order order",
         ),
         _simple(
             "fvmp",
@@ -282,6 +316,7 @@ _FAMILIES: dict[str, Family] = {
             _fvmp,
             lambda p: FVMP(**p),
             _fvmp_parameters,
+            "floor strength order strength time order rise",
         ),
     )
 }

@@ -13,14 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from permway.arrays import ABSOLUTE_ZERO_C, Reals
+from permway.arrays import ABSOLUTE_ZERO_C, Reals, is_real
 from permway.errors import InputError
 from permway.laws.base import Law
 from permway.laws.dma import DmaTable
 from permway.laws.families import Scales, family
 from permway.laws.intervals import Parameter, parameter_table
 from permway.laws.search import STEPS, Found, Problem, Progress, nodes_of, search
-from permway.laws.shift_fit import ShiftFamily, shift_family
+from permway.laws.shift_fit import ShiftFamily, middle, shift_family
 from permway.laws.tfdv import TFDV
 
 
@@ -94,10 +94,11 @@ def identify(
         Frequency sweeps, temperature sweeps, or both.
     law : str
         A family, see :func:`permway.laws.families.family`.
-    shift : {"none", "wlf", "arrhenius", "free"}
+    shift : {"none", "wlf", "arrhenius", "wlf_arrhenius", "free"}
         A free shift has one number per isotherm but one.
     reference_temperature_C : float, optional
-        Needed with a shift.
+        Needed with a shift. The law's parameters are written for it; what the law says at any temperature does not
+        depend on it.
     vertical : {"none", "paper"}
         Vertical factor, see :class:`permway.laws.TFDV`.
     seed : int
@@ -118,7 +119,7 @@ def identify(
         For a table with too few rows, an unknown family, a shift without temperatures or reference.
     """
     problem = _pose(table, law, shift, reference_temperature_C, vertical, weights)
-    found = search(problem, table, reference_temperature_C, seed, progress)
+    found = search(problem, table, seed, progress)
     if progress is not None:
         progress(STEPS, STEPS)
     return _report(problem, table, found, reference_temperature_C, vertical, seed)
@@ -134,7 +135,7 @@ def _pose(
 ) -> Problem:
     if vertical not in ("none", "paper"):
         raise InputError("not a vertical factor", where="vertical", value=vertical, remedy='use "none" or "paper"')
-    if not (len(weights) == 2 and all(np.isfinite(w) and w > 0.0 for w in weights)):
+    if not (len(weights) == 2 and all(is_real(w) and np.isfinite(w) and w > 0.0 for w in weights)):
         raise InputError("two finite weights above zero are needed", where="weights", value=weights)
     if shift != "none" and reference_C is None:
         raise InputError(
@@ -150,7 +151,7 @@ def _pose(
             f"the table spans {np.ptp(temperature):.3g} K but no shift is to be identified",
             where="shift",
             value=shift,
-            remedy='use "wlf", "arrhenius" or "free", or a table of one temperature',
+            remedy='use "wlf", "arrhenius", "wlf_arrhenius" or "free", or a table of one temperature',
         )
     lg_frequency = np.log10(table.frequency_Hz)
     scales = _scales(table, moved)
@@ -161,9 +162,10 @@ def _pose(
             where="table",
             remedy="measure more rows",
         )
-    factor = np.ones(len(table))
+    factor, lg_scale = np.ones(len(table)), 0.0
     if vertical == "paper" and shift != "none" and temperature is not None and reference_C is not None:
-        factor = (temperature - ABSOLUTE_ZERO_C) / (reference_C - ABSOLUTE_ZERO_C)
+        factor = (temperature - ABSOLUTE_ZERO_C) / (middle(temperature) - ABSOLUTE_ZERO_C)
+        lg_scale = float(np.log10((reference_C - ABSOLUTE_ZERO_C) / (middle(temperature) - ABSOLUTE_ZERO_C)))
     measured = np.log(table.modulus)
     return Problem(
         law=chosen,
@@ -173,6 +175,7 @@ def _pose(
         vertical=factor,
         target=np.concatenate([measured.real, measured.imag]),
         weights=np.repeat(np.asarray(weights, dtype=np.float64), len(table)),
+        lg_scale=lg_scale,
     )
 
 
@@ -199,7 +202,7 @@ def _report(
 ) -> Identification:
     x = found.x
     own = len(x) - len(problem.shift.bounds)
-    law = problem.law.law(x[:own])
+    law = problem.law.law(problem.at_reference(x))
     shift = problem.shift.shift(x[own:])
     if shift is not None and reference_C is not None:
         law = TFDV.model_validate(

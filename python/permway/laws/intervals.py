@@ -9,6 +9,7 @@ import numpy as np
 from scipy import stats
 
 from permway.arrays import Reals
+from permway.laws.limits import limit_words
 from permway.laws.search import Problem
 
 _CONFIDENCE = 0.90
@@ -49,12 +50,14 @@ def parameter_table(problem: Problem, x: Reals, jacobian: Reals, square: float) 
         Sum of squares there.
     """
     width = problem.bounds[:, 1] - problem.bounds[:, 0]
-    bound = np.minimum(x - problem.bounds[:, 0], problem.bounds[:, 1] - x) < _AT_BOUND * width
+    low_end = x - problem.bounds[:, 0] < _AT_BOUND * width
+    bound = low_end | (problem.bounds[:, 1] - x < _AT_BOUND * width)
+    kinds = problem.law.kinds + problem.shift.kinds
     covariance, quantile = _covariance(jacobian, square)
     own = len(x) - len(problem.shift.bounds)
 
     def named(coordinates: Reals) -> dict[str, float]:
-        return problem.law.parameters(coordinates[:own]) | {
+        return problem.law.parameters(problem.at_reference(coordinates)) | {
             f"shift.{name}": value for name, value in problem.shift.parameters(coordinates[own:]).items()
         }
 
@@ -68,13 +71,15 @@ def parameter_table(problem: Problem, x: Reals, jacobian: Reals, square: float) 
         spread = quantile * max(variance, 0.0) ** 0.5
         middle = _view(value, scale)
         low, high = middle - spread, middle + spread
-        touched = bool(np.any(bound & (np.abs(gradient) * width > 1e-3)))
+        touched = np.nonzero(bound & (np.abs(gradient) * width > 1e-3))[0]
         note = ""
-        if touched:
-            note = "not identifiable: depends on a coordinate at the limit of its range"
+        if len(touched):
+            said = dict.fromkeys(limit_words(kinds[index], not low_end[index]) for index in touched)
+            note = "not identifiable: " + "; also, ".join(said)
         elif spread > (_WIDE_DECADES if scale else _WIDE_RANGE):
             note = "not identifiable: the interval is wider than " + ("a decade" if scale else f"{_WIDE_RANGE}")
-            note += " on either side"
+            note += " on either side; measure over more temperatures and frequencies, or use a law with fewer "
+            note += "parameters"
         low, high = (_power(low), _power(high)) if scale else (low, high)
         found.append(Parameter(name=name, value=value, low=low, high=high, note=note))
     return tuple(found)

@@ -96,10 +96,24 @@ def load_law(path: str | Path) -> AnyLaw:
     return law_from_dict(table, where=f"{source}: law")
 
 
+def identified_quantity(path: str | Path) -> str | None:
+    """What the law of a file was identified from, "modulus" or "stiffness"; None of a law written by hand.
+
+    Raises
+    ------
+    InputError
+        As :func:`load_law`.
+    """
+    account = read_toml(Path(path), "give an existing file").get("identification")
+    quantity = account.get("quantity") if isinstance(account, dict) else None
+    return quantity if isinstance(quantity, str) else None
+
+
 def _account(found: Identification) -> dict[str, object]:
     return {
         "family": found.family,
         "shift": found.shift,
+        "quantity": found.table.quantity,
         "source": found.table.source,
         "rows": found.n_rows,
         "seed": found.seed,

@@ -13,6 +13,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MultipleL
 from permway.arrays import Reals
 from permway.errors import InputError
 from permway.laws.identify import Identification
+from permway.laws.overlay import overlay
 from permway.laws.shift import Free
 from permway.laws.tfdv import TFDV
 
@@ -66,7 +67,7 @@ def master_curve(found: Identification) -> Figure:
 
 
 def shift_factors(found: Identification) -> Figure:
-    """Draw the shift factor over temperature, at the table's isotherms and between.
+    """Draw the shift factor over temperature, and what overlaying the isotherms gives without a law.
 
     Raises
     ------
@@ -80,18 +81,22 @@ def shift_factors(found: Identification) -> Figure:
         )
     low, high = found.table.temperature_C.min(), found.table.temperature_C.max()
     dense = np.linspace(low, high, 200)
-    nodes = np.clip(found.table.isotherms(), low, high)
     figure = Figure(figsize=(_WIDTH_IN * 0.62, 2.9), layout="constrained")
     axes = figure.subplots()
     axes.axhline(0.0, color="0.75", linewidth=0.6)
     axes.axvline(law.reference_temperature_C, color="0.75", linewidth=0.6)
-    name = {"wlf": "WLF", "arrhenius": "Arrhenius"}.get(law.shift.type, "free, monotone between")
-    axes.plot(dense, law.log10_shift(dense), label=name, **_LAW)
-    spread = _node_intervals(found) if isinstance(law.shift, Free) else None
-    at = law.log10_shift(nodes)
-    axes.errorbar(
-        nodes, at, yerr=spread, fmt="o", color="0.15", markersize=3.5, capsize=2, label="isotherms", lw=0.8
-    )
+    names = {"wlf": "WLF", "arrhenius": "Arrhenius", "wlf_arrhenius": "WLF, Arrhenius below"}
+    axes.plot(dense, law.log10_shift(dense), label=names.get(law.shift.type, "free, monotone between"), **_LAW)
+    if isinstance(law.shift, Free):
+        nodes = np.array(law.shift.temperatures_C)
+        spread = _node_intervals(found)
+        axes.errorbar(nodes, law.log10_shift(nodes), yerr=spread, fmt="none", color="0.15", capsize=2, lw=0.8)
+    laid = overlay(found.table).log10_shift()
+    if len(laid) > 1:
+        # What is laid over each other says differences only: it begins on the law at the warmest temperature.
+        nodes = np.clip(np.array(list(laid)), low, high)
+        at = np.array(list(laid.values())) + law.log10_shift(nodes[0])
+        axes.plot(nodes, at, "o", color="0.15", markersize=3.5, label="overlaid without a law")
     axes.set(xlabel="temperature, °C", ylabel=r"shift factor $\log_{10}\alpha_T$")
     axes.legend(fontsize=_FONT, frameon=False)
     return _finish(figure, axes)

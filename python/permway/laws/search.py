@@ -18,7 +18,7 @@ from scipy import optimize
 from permway.arrays import Reals
 from permway.laws.dma import DmaTable
 from permway.laws.families import Family
-from permway.laws.shift_fit import ShiftFamily, shift_family
+from permway.laws.shift_fit import ShiftFamily, middle, shift_family
 
 Progress = Callable[[int, int], None]
 """Told the steps done and the steps in all."""
@@ -51,6 +51,13 @@ class Problem:
     vertical: Reals
     target: Reals
     weights: Reals
+    lg_scale: float = 0.0
+    """Decades of the vertical factor at the user's reference, relative to that in the middle of the table."""
+
+    def at_reference(self, x: Reals) -> Reals:
+        """The law's own coordinates at the user's reference, from those of the search."""
+        own = len(x) - len(self.shift.bounds)
+        return self.law.moved(x[:own], self.shift.at_reference(x[own:]), self.lg_scale)
 
     def residuals(self, x: Reals) -> Reals:
         """Weighted errors of log modulus and phase, shape (..., 2 n), for coordinates of shape (..., d)."""
@@ -98,17 +105,17 @@ def nodes_of(table: DmaTable) -> Reals:
     return nodes
 
 
-def search(
-    problem: Problem, table: DmaTable, reference_C: float | None, seed: int, progress: Progress | None
-) -> Found:
+def search(problem: Problem, table: DmaTable, seed: int, progress: Progress | None) -> Found:
     """Find the optimum of a problem.
 
     A free shift is searched for as WLF first, and freed in the last step from where that ended.
     """
     wide = problem
     own = len(problem.bounds) - len(problem.shift.bounds)
-    if problem.shift.name == "free":
-        stand_in = shift_family("wlf", table.temperature_C, nodes_of(table), reference_C)
+    if problem.shift.name == "free" and table.temperature_C is not None:
+        # For the middle of the table, so that the user's reference has no part in the search.
+        centre = middle(table.temperature_C)
+        stand_in = shift_family("wlf", table.temperature_C, nodes_of(table), centre)
         bounds = np.concatenate([problem.bounds[:own], np.array(stand_in.bounds)])
         wide = replace(problem, shift=stand_in, bounds=bounds)
     starts, evaluations = _evolve(wide, seed, progress)

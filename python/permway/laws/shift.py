@@ -119,6 +119,47 @@ class Arrhenius(Shift):
         return np.asarray(scale * (inverse - reference))
 
 
+class WLFArrhenius(Shift):
+    """Williams, Landel and Ferry's shift above a transition, Arrhenius' below it, joined without a step.
+
+    Below the glass transition the structure is frozen, and WLF, which runs to a singularity there, no longer
+    holds (Ferry, Viscoelastic Properties of Polymers, 3rd ed., 1980, chapter 11). log10 alpha is zero at the
+    transition Tg; above, -c1 (T - Tg) / (c2 + T - Tg), below, E/(R ln 10) (1/T - 1/Tg) with T in kelvin.
+
+    Parameters
+    ----------
+    c1 : float
+        Dimensionless, for the transition as reference.
+    c2_K : float
+        Kelvin, above zero, for the transition as reference.
+    transition_C : float
+        Tg, degrees Celsius.
+    activation_energy_J_per_mol : float
+        E below the transition.
+    """
+
+    type: Literal["wlf_arrhenius"] = "wlf_arrhenius"
+    c1: Number
+    c2_K: Number
+    transition_C: Number
+    activation_energy_J_per_mol: Number
+
+    @model_validator(mode="after")
+    def _parts_exist(self) -> WLFArrhenius:
+        if self.c2_K <= 0.0:
+            raise ValueError(f"c2_K must be above zero, not {self.c2_K:g}")
+        if self.transition_C <= ABSOLUTE_ZERO_C:
+            raise ValueError("transition_C must be above -273.15 degC")
+        return self
+
+    def _log10(self, temperature_C: Reals) -> Reals:
+        above = np.maximum(temperature_C - self.transition_C, 0.0)
+        below = np.minimum(temperature_C, self.transition_C) - ABSOLUTE_ZERO_C
+        scale = self.activation_energy_J_per_mol / (GAS_CONSTANT * np.log(10.0))
+        frozen = scale * (1.0 / below - 1.0 / (self.transition_C - ABSOLUTE_ZERO_C))
+        return np.asarray(frozen - self.c1 * above / (self.c2_K + above))
+
+
 class Free(Shift):
     """A shift factor known at some temperatures, monotone in between (Fritsch and Carlson's cubic).
 
@@ -170,5 +211,5 @@ class Free(Shift):
         return np.asarray(PchipInterpolator(self.temperatures_C, self.log10_shift)(temperature_C))
 
 
-AnyShift = Annotated[WLF | Arrhenius | Free, Field(discriminator="type")]
+AnyShift = Annotated[WLF | Arrhenius | WLFArrhenius | Free, Field(discriminator="type")]
 """Any shift, told apart by its `type`."""

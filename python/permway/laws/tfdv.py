@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from pydantic import model_validator
 
-from permway.arrays import ABSOLUTE_ZERO_C, Complexes, Reals
+from permway.arrays import ABSOLUTE_ZERO_C, Complexes, Reals, real_numbers
 from permway.laws.base import Law
 from permway.laws.shift import AnyShift
 from permway.records import Number
@@ -66,7 +66,7 @@ class TFDV(Law):
 
     def vertical_factor(self, temperature_C: Reals | float) -> Reals:
         """Factor rho T / (rho_s T_s), or one; shape of `temperature_C`."""
-        temperature = np.asarray(temperature_C, dtype=np.float64)
+        temperature = real_numbers(temperature_C, "temperature_C")
         if self.vertical == "none":
             return np.ones_like(temperature)
         warmer = temperature - self.reference_temperature_C

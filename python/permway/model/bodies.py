@@ -48,8 +48,11 @@ class Beam(Slender):
         Of both moduli, hysteretic: E (1 + i eta).
     intervals_m : sequence of (from, to), optional
         Where the beams lie; left out, the beam has no end on either side.
-    ends : "free" or "pinned", or one for each end
-        A pinned end does not move and may turn.
+    ends : "free", "pinned" or "clamped", or one for each end
+        A pinned end does not move and may turn; a clamped end does neither.
+    rotation_law : str, or one for each end, optional
+        Name of a law of the line, in N m/rad: a rotational spring between a pinned end and the ground; "" at
+        an end that has none.
     modes : int, optional
         Number of bending modes that the receptance formulation sums, instead of the closed form.
     share : float
@@ -66,6 +69,7 @@ class Beam(Slender):
     area_m2: PositiveFloat
     shear_modulus_Pa: PositiveFloat | None = None
     shear_coefficient: PositiveFloat | None = None
+    rotation_law: str | tuple[str, str] = ""
     modes: int | None = Field(default=None, ge=1, le=10_000)
     changes: tuple[BeamChange, ...] = ()
 
@@ -77,6 +81,7 @@ class Beam(Slender):
         if self.theory == "euler" and shear != (None, None):
             raise ValueError("an euler beam has no shear_modulus_Pa or shear_coefficient: use timoshenko")
         _check_units(self)
+        self._check_ends()
         if self.modes is not None:
             if self.intervals_m is None:
                 raise fault("modes need a beam with ends: give intervals_m", "modes")
@@ -89,6 +94,23 @@ class Beam(Slender):
                 raise fault("an euler beam has no shear stiffness", "changes", index, "shear_factor")
         check_changes(self.changes, self.intervals_m)
         return self
+
+    def _check_ends(self) -> None:
+        if self.intervals_m is None and (any(self.clamped) or any(self.rotation_laws)):
+            raise fault("a beam without ends has none to hold: give intervals_m", "ends")
+        for side, law in zip(("left", "right"), self.rotation_laws, strict=True):
+            index = 0 if side == "left" else 1
+            if law is not None and (not self.pinned[index] or self.clamped[index]):
+                what = f"a rotational spring goes with a pinned end, and the {side} one is not"
+                raise fault(what, "rotation_law", value=self.rotation_law)
+        if self.modes is not None and (any(self.clamped) or any(self.rotation_laws)):
+            raise fault("modes are for free and pinned ends; the closed form needs none", "modes")
+
+    @property
+    def rotation_laws(self) -> tuple[str | None, str | None]:
+        """Law of the rotational spring at the left and the right end."""
+        left, right = (self.rotation_law,) * 2 if isinstance(self.rotation_law, str) else self.rotation_law
+        return left or None, right or None
 
     @property
     def mass_kg_per_m(self) -> float:

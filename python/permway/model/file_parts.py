@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from permway.errors import InputError
 from permway.laws.base import Law
-from permway.laws.lawfile import load_law
+from permway.laws.lawfile import identified_quantity, load_law
 from permway.laws.measured import Quantity, read_measured
 from permway.model.faults import model_error, refuse_coercion
 from permway.model.irregularity_spectra import FASTEST_M_PER_S
@@ -97,11 +97,33 @@ def _law_file(table: dict[str, Any], where: str, folder: Path | None) -> Law:
         raise InputError("a table without a folder cannot name a file", where=f"{where}.file", value=name)
     path = inside(name, folder, where=f"{where}.file", of="the model's", remedy="put it beside the model")
     try:
-        return load_law(path) if quantity is None else read_measured(path, quantity)
+        if quantity is not None:
+            return read_measured(path, quantity)
+        law = load_law(path)
+        _check_quantity(identified_quantity(path), where)
+        return law
     except InputError as error:
         raise InputError(
             error.what, where=f"{where}.file: {error.where}", value=error.value, remedy=error.remedy
         ) from error
+
+
+def _check_quantity(identified: str | None, where: str) -> None:
+    """Refuse the stiffness of a part where a material's modulus belongs, and the other way round."""
+    if identified == "stiffness" and where.endswith(".material"):
+        raise InputError(
+            "was identified from the stiffness of a part, and a pad's material is a modulus",
+            where="identification.quantity",
+            value=identified,
+            remedy="name the file as the law itself, or identify it again with --shape-factor",
+        )
+    if identified == "modulus" and where.count(".") == 2:
+        raise InputError(
+            "was identified from a modulus, in Pa, and a joint needs a stiffness, in N/m",
+            where="identification.quantity",
+            value=identified,
+            remedy='use { type = "pad", material = { file = ... }, area_m2 = ..., thickness_m = ...}',
+        )
 
 
 def train_of(table: dict[str, Any]) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import PositiveFloat
 
-from permway.arrays import Reals, check_frequency
+from permway.arrays import Reals, check_frequency, real_numbers
 from permway.errors import InputError
 from permway.records import FrozenModel
 
@@ -159,12 +159,7 @@ class Irregularity(FrozenModel, ABC):
 
 def check_wavenumber(wavenumber_rad_per_m: ArrayLike) -> Reals:
     """Wavenumbers as float64, refused with index and value unless finite and positive."""
-    try:
-        wavenumber = np.asarray(wavenumber_rad_per_m, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(
-            "not a number or an array of numbers", where="wavenumber_rad_per_m", value=wavenumber_rad_per_m
-        ) from error
+    wavenumber = real_numbers(wavenumber_rad_per_m, "wavenumber_rad_per_m")
     bad = ~(np.isfinite(wavenumber) & (wavenumber > 0.0))
     if bad.any():
         index = tuple(int(axis[0]) for axis in np.nonzero(bad)) if wavenumber.ndim else ()
@@ -180,8 +175,8 @@ def check_wavenumber(wavenumber_rad_per_m: ArrayLike) -> Reals:
 def check_speed(speed_m_per_s: float) -> float:
     """A speed as a float, refused unless finite, positive and credible in m/s."""
     try:
-        speed = float(speed_m_per_s)
-    except (TypeError, ValueError) as error:
+        speed = float(real_numbers(speed_m_per_s, "speed_m_per_s"))
+    except TypeError as error:
         raise InputError("not a number", where="speed_m_per_s", value=speed_m_per_s) from error
     if not np.isfinite(speed) or speed <= 0.0:
         raise InputError(

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
-from permway.arrays import Complexes, Reals
+from permway.arrays import Complexes, Reals, real_numbers
 from permway.errors import InputError
 from permway.laws import AnyLaw, Hysteretic
 from permway.model.beam_columns import beam_columns
@@ -37,14 +37,14 @@ class Line(FrozenModel):
     Parameters
     ----------
     bodies : dict of name to Beam, Shaft or Mass
-    joints : sequence of Joints
-    laws : dict of name to law
-        Complex stiffness in N/m that the joints refer to.
+    joints : sequence of Joints, optional
+    laws : dict of name to law, optional
+        Complex stiffness in N/m that the joints refer to; in N m/rad of a beam's rotational springs.
     """
 
     bodies: dict[str, AnyBody]
-    joints: tuple[Joints, ...]
-    laws: dict[str, AnyLaw]
+    joints: tuple[Joints, ...] = ()
+    laws: dict[str, AnyLaw] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _check(self) -> Line:
@@ -61,6 +61,11 @@ class Line(FrozenModel):
             if isinstance(law, Hysteretic) and law.eta > 5.0:
                 what = "is above any material's: give it as a ratio, not in percent"
                 raise fault(what, "laws", name, "loss_factor", value=law.eta)
+        for name, body in self.bodies.items():
+            for turned in body.rotation_laws if isinstance(body, Beam) else ():
+                if turned is not None and turned not in self.laws:
+                    what = f"there is no law {turned!r}; there are {sorted(self.laws)}"
+                    raise fault(what, "bodies", name, "rotation_law")
         for index, layer in enumerate(self.joints):
             if layer.law not in self.laws:
                 what = f"there is no law {layer.law!r}; there are {sorted(self.laws)}"
@@ -126,7 +131,7 @@ class Line(FrozenModel):
             From a law, for a frequency or a temperature outside what it knows; for a stiffness that is not
             finite, or that creates energy.
         """
-        frequency = np.atleast_1d(np.asarray(frequency_Hz, dtype=np.float64))
+        frequency = np.atleast_1d(real_numbers(frequency_Hz, "frequency_Hz"))
         columns = []
         for name, law in self.laws.items():
             try:

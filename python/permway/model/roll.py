@@ -149,7 +149,8 @@ def _rolled(name: str, body: AnyBody, roll: Roll, arm_m: float) -> AnyBody:
             arm_m=arm_m,
             loss_factor=body.loss_factor,
             intervals_m=body.intervals_m,
-            ends=body.ends,
+            # What may not turn in bending does not roll either.
+            ends=("pinned" if body.pinned[0] else "free", "pinned" if body.pinned[1] else "free"),
             share=body.share,
             changes=how.changes,
         )

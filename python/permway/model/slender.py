@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, model_validator
 
@@ -12,7 +12,7 @@ from permway.model.faults import fault
 from permway.model.stations import TOUCH_M, Interval, Metres
 from permway.records import FrozenModel
 
-End = Literal["free", "pinned"]
+End = Literal["free", "pinned", "clamped"]
 
 SHORTEST_M = 1e-6
 """A change of section over less is a slip."""
@@ -22,9 +22,9 @@ Factor = Annotated[float, Field(gt=0.0, le=1e6)]
 
 def _ends(value: object) -> object:
     given = [value] if isinstance(value, str) else value
-    known = isinstance(given, Sequence) and all(isinstance(e, str) and e in ("free", "pinned") for e in given)
+    known = isinstance(given, Sequence) and all(isinstance(e, str) and e in get_args(End) for e in given)
     if not known or (value is given and len(given) != 2):  # type: ignore[arg-type]
-        raise fault('must be "free" or "pinned", or one of them for each end', value=value)
+        raise fault('must be "free", "pinned" or "clamped", or one of them for each end', value=value)
     return value
 
 
@@ -66,8 +66,8 @@ class Slender(FrozenModel):
         Of all moduli, hysteretic.
     intervals_m : sequence of (from, to), optional
         Where the bodies lie; left out, the body has no end on either side.
-    ends : "free" or "pinned", or one for each end
-        A pinned end does not move.
+    ends : "free", "pinned" or "clamped", or one for each end
+        A pinned end does not move; a clamped end of a beam neither moves nor turns.
     share : float
         Factor on stiffness and mass: 0.5 for half of the body, 2 for two as one.
     """
@@ -95,9 +95,15 @@ class Slender(FrozenModel):
 
     @property
     def pinned(self) -> tuple[bool, bool]:
-        """Whether the left and the right end are pinned."""
+        """Whether the left and the right end do not move, pinned or clamped."""
         left, right = (self.ends, self.ends) if isinstance(self.ends, str) else self.ends
-        return left == "pinned", right == "pinned"
+        return left != "free", right != "free"
+
+    @property
+    def clamped(self) -> tuple[bool, bool]:
+        """Whether the left and the right end neither move nor turn."""
+        left, right = (self.ends, self.ends) if isinstance(self.ends, str) else self.ends
+        return left == "clamped", right == "clamped"
 
 
 def check_changes(changes: Sequence[SectionChange], intervals_m: Sequence[tuple[float, float]] | None) -> None:

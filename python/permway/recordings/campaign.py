@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -74,12 +74,15 @@ class Campaign:
         Where the campaign file lies.
     parameters : ParameterSet
         Resolved against the model.
+    file : str
+        Name of the campaign file in the folder.
     """
 
     said: Said
     model: Model
     folder: Path
     parameters: ParameterSet = field(repr=False, compare=False)
+    file: str = field(default="campaign.toml", compare=False)
 
     def _repr_html_(self) -> str:
         from permway.report.notebook import campaign_html
@@ -123,7 +126,7 @@ class Campaign:
             As :meth:`model_with`.
         """
         model, said = self.parameters.changed(values)
-        return Campaign(said, model, self.folder, self.parameters)
+        return replace(self, said=said, model=model)
 
     def with_model(self, model: Model) -> Campaign:
         """The campaign with another model, as an amendment makes it of the owner's.
@@ -131,7 +134,7 @@ class Campaign:
         Parameters keep their names, nominals and priors, and act on the new model; one whose numbers it no longer
         has (of a law that was replaced) acts no more.
         """
-        return Campaign(self.said, model, self.folder, self.parameters.on(model))
+        return replace(self, model=model, parameters=self.parameters.on(model))
 
     def rolling_about(self, other: Campaign) -> Campaign:
         """The campaign whose trains roll over the supports of another's line, at its speeds; see :class:`About`.
@@ -150,17 +153,17 @@ class Campaign:
         rolling = known.rolling.model_copy(update={"about": About(other.model.line, runs)})
         irregularity = known.model_copy(update={"rolling": rolling})
         said = self.said.model_copy(update={"irregularity": irregularity})
-        return Campaign(said, self.model, self.folder, self.parameters.saying(said))
+        return replace(self, said=said, parameters=self.parameters.saying(said))
 
     def with_records(self, records: Sequence[Record]) -> Campaign:
         """The campaign with some of its records, or of their channels, alone."""
         said = self.said.model_copy(update={"records": tuple(records)})
-        return Campaign(said, self.model, self.folder, self.parameters)
+        return replace(self, said=said)
 
     def summary(self) -> dict[str, str | int]:
         """What there is, for people and machines."""
         return {
-            "campaign": str(self.folder / "campaign.toml"),
+            "campaign": str(self.folder / self.file),
             "title": self.said.title,
             "records": len(self.said.records),
             "sensors": len(self.said.sensors),
@@ -194,11 +197,12 @@ def read_campaign(path: str | Path, *, allow_outside: bool = False) -> Campaign:
     path = Path(path)
     table = read_toml(path, "name a campaign file (TOML)")
     try:
-        return campaign_from_dict(table, folder=path.parent, allow_outside=allow_outside)
+        read = campaign_from_dict(table, folder=path.parent, allow_outside=allow_outside)
     except InputError as error:
         raise InputError(
             error.what, where=f"{path}: {error.where}", value=error.value, remedy=error.remedy
         ) from error
+    return replace(read, file=path.name)
 
 
 def campaign_from_dict(table: Mapping[str, Any], *, folder: Path, allow_outside: bool = False) -> Campaign:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike
 
-from permway.arrays import Complexes, Reals
+from permway.arrays import Complexes, Reals, real_numbers
 from permway.errors import InputError
 from permway.model.file import Model
 from permway.recordings.campaign import Campaign
@@ -69,7 +69,7 @@ def tables(model: Model, frequency_Hz: ArrayLike, temperature_C: float | None = 
     InputError
         As :meth:`permway.model.line.Line.joint_table` and :meth:`~permway.model.line.Line.stiffness`.
     """
-    frequency = np.atleast_1d(np.asarray(frequency_Hz, dtype=np.float64))
+    frequency = np.atleast_1d(real_numbers(frequency_Hz, "frequency_Hz"))
     temperature = model.temperature_C if temperature_C is None else temperature_C
     return _compiled(model, frequency, temperature, {"laws", "scale", "beams", "vehicle"}, None)
 
@@ -104,7 +104,7 @@ def table_derivatives(
     InputError
         As :meth:`Campaign.model_with`.
     """
-    frequency = np.atleast_1d(np.asarray(frequency_Hz, dtype=np.float64))
+    frequency = np.atleast_1d(real_numbers(frequency_Hz, "frequency_Hz"))
     known = campaign.parameters.known
     here = {**campaign.parameters.nominal(), **values}
     base_model = campaign.model_with(here)

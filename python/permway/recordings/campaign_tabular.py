@@ -77,6 +77,9 @@ def material(campaign: Campaign, record: Record) -> xr.Dataset:
     table: DmaTable
     if record.loss_file is None:
         table = read_dma(path, temperature_C=condition.temperature_C)
+        if table.quantity != "modulus":
+            what = "a table of stiffness, and a material's record is of its modulus"
+            raise InputError(what, where=str(path), remedy="divide by the part's e A / h, in m, and write Pa")
     else:
         table = read_modulus_pair(path, campaign.folder / record.loss_file, temperature_C=condition.temperature_C)
     low, high = record.band_Hz or (0.0, np.inf)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from permway.arrays import ABSOLUTE_ZERO_C, Reals
+from permway.arrays import ABSOLUTE_ZERO_C, Reals, real_numbers
 from permway.errors import InputError
 from permway.recordings.unit_grammar import Grammar
 from permway.recordings.unit_symbols import DECIBEL, NONE, Dimension, unknown
@@ -102,7 +102,7 @@ class Unit:
 
     def to_SI(self, values: ArrayLike) -> Reals:
         """Bring values to SI: kelvin for temperatures, the quantity itself for levels; dB/m stays dB/m."""
-        array = np.asarray(values, dtype=np.float64)
+        array = real_numbers(values, self.text)
         if self.level:
             return np.asarray(self.factor * 10.0 ** (array / 20.0))
         return np.asarray(array * self.factor + self.offset)

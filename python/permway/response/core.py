@@ -12,6 +12,7 @@ import numpy as np
 from permway import _core
 from permway.arrays import Complexes, Reals
 from permway.errors import InputError, SolveError
+from permway.model.held_ends import held_ends, held_groups, with_held_ends
 from permway.model.joint_table import JointTable
 from permway.model.line import Line
 from permway.response.limits import check_answer, check_dense, check_elements, check_threads
@@ -87,15 +88,24 @@ def run(
         check_dense(table)
     elif frequency.size:
         check_elements(line, table, np.concatenate([p["x"] for p in points.values()]), float(frequency[-1]))
+    beams, laws = line.beam_columns(), line.stiffness(frequency, temperature_C)
+    columns = {name: getattr(table, name) for name in ("x", "upper", "lower", "law", "scale")}
+    by_law = bool(derived.get("by_law")) if derived is not None else False
+    derived = {key: value for key, value in derived.items() if key != "by_law"} if derived is not None else None
+    held = held_ends(pairs, list(line.laws))
+    if held:
+        _check_chain(formulation, pairs[held[0].beam][1].body)
+        beams, columns, laws = with_held_ends(held, beams, columns, laws)
+        derived = None if derived is None else held_groups(held, derived, by_law=by_law)
     try:
         values, extension, derivatives, own, failures = _core.solve_line(
             formulation=formulation,
             frequencies=frequency,
             names=[s.name for s in line.segments()],
-            beams=line.beam_columns(),
+            beams=beams,
             masses=line.masses_kg(),
-            joints={name: getattr(table, name) for name in ("x", "upper", "lower", "law", "scale")},
-            laws=line.stiffness(frequency, temperature_C),
+            joints=columns,
+            laws=laws,
             forces=points["forces"],
             sensors=points["sensors"],
             extensions=extensions,
@@ -108,4 +118,16 @@ def run(
     if failures and on_error == "raise":
         more = f" (and {len(failures) - 1} more frequencies)" if len(failures) > 1 else ""
         raise SolveError(failures[0][2] + more)
+    # The joints that hold ends come last, and are nobody's.
+    extension = None if extension is None else extension[:, : table.x.size]
+    own = None if own is None else own[:, : table.x.size]
     return Solved(values, extension, derivatives, own, table, tuple(text for _, _, text in failures))
+
+
+def _check_chain(formulation: Formulation, body: str) -> None:
+    if formulation != "chain":
+        raise InputError(
+            "clamped ends and rotational springs are for the chain formulation",
+            where=f"line.bodies.{body}.ends",
+            remedy='choose formulation = "chain"',
+        )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from permway.arrays import Reals
+from permway.arrays import Reals, is_real
 from permway.errors import InputError
 
 
@@ -29,7 +29,7 @@ def decay_rate(near: ArrayLike, far: ArrayLike, distance_m: float) -> Reals:
     InputError
         For a distance that is not positive, or a response that is zero or not finite.
     """
-    if not isinstance(distance_m, int | float | np.number) or not (np.isfinite(distance_m) and distance_m > 0.0):
+    if not is_real(distance_m) or not (np.isfinite(distance_m) and distance_m > 0.0):
         raise InputError("must be positive", where="distance_m", value=distance_m, remedy="give it in m")
     moduli = [_modulus(name, response) for name, response in (("near", near), ("far", far))]
     if moduli[0].shape != moduli[1].shape:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from permway.arrays import Complexes, Reals, check_frequency
+from permway.arrays import Complexes, Reals, check_frequency, real_numbers
 from permway.errors import InputError, SolveError
 from permway.model.irregularity_spectra import check_speed
 
@@ -189,7 +189,7 @@ def _norm(matrices: Complexes) -> Reals:
 
 
 def _floats(values: ArrayLike, name: str) -> Reals:
-    array = np.asarray(values, dtype=np.float64)
+    array = real_numbers(values, name)
     if not np.isfinite(array).all():
         index = tuple(int(axis[0]) for axis in np.nonzero(~np.isfinite(array))) if array.ndim else ()
         raise InputError("not finite", where=f"{name}{list(index) or ''}", value=float(array[index]))

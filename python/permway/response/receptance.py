@@ -11,7 +11,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from permway import _core
-from permway.arrays import Reals
+from permway.arrays import Reals, real_numbers
 from permway.errors import InputError
 from permway.model.bodies import Metres
 from permway.model.joint_table import JointTable
@@ -44,8 +44,8 @@ class Place(FrozenModel):
 
     @property
     def label(self) -> str:
-        """The name, or body and place."""
-        return self.name or f"{self.body}@{self.x_m:g}"
+        """The name, or body and place, which differs where places do."""
+        return self.name or f"{self.body}@{self.x_m:.12g}"
 
 
 def receptance(
@@ -182,8 +182,9 @@ def check_places(line: Line, places: Sequence[Place], where: str) -> dict[str, n
     labels = [p.label for p in places]
     if len(set(labels)) < len(labels):
         index = next(i for i, label in enumerate(labels) if label in labels[:i])
+        named = places[index].name is not None
         raise InputError(
-            "the name stands twice",
+            "the name stands twice" if named else "has no name, and the one made of its place stands twice",
             where=f"{where}[{index}]",
             value=labels[index],
             remedy="give each its own name",
@@ -208,10 +209,7 @@ def check_sweep(frequency_Hz: ArrayLike) -> Reals:
     InputError
         Naming the first frequency at fault.
     """
-    try:
-        frequency = np.atleast_1d(np.asarray(frequency_Hz, dtype=np.float64))
-    except (TypeError, ValueError) as error:
-        raise InputError("frequencies must be numbers", where="frequency_Hz", value=frequency_Hz) from error
+    frequency = np.atleast_1d(real_numbers(frequency_Hz, "frequency_Hz"))
     if frequency.ndim != 1:
         raise InputError("frequencies must be a list", where="frequency_Hz", value=frequency.shape)
     bad = np.flatnonzero(~(np.isfinite(frequency) & (frequency > 0.0)))

@@ -112,6 +112,7 @@ def sensitivity(
             "sensors": sensor_port,
             "forces": force_port,
             "own": places,
+            "by_law": name == "law",
         },
     )
     data = xr.Dataset(
@@ -204,7 +205,7 @@ def _extensions(data: xr.Dataset, joint: int) -> tuple[xr.DataArray, xr.DataArra
     if "own_extension" not in data:
         raise InputError("has no joint extensions", where="data", remedy="call sensitivity with places=True")
     count = data.sizes["joint"]
-    if not 0 <= joint < count:
+    if isinstance(joint, bool) or not isinstance(joint, int | np.integer) or not 0 <= joint < count:
         raise InputError("there is no such joint", where="joint", value=joint, remedy=f"use 0 to {count - 1}")
     at = data.isel(joint=joint).reset_coords(["joint_x", "joint_law"], drop=True)
     return at["sensor_extension"], at["force_extension"], at["own_extension"]
@@ -237,11 +238,19 @@ def _groups(line: Line, table: JointTable, by: By | ArrayLike) -> tuple[str, lis
             return "joint", [str(i) for i in range(count)], np.arange(count, dtype=np.int64), np.ones(count)
         raise InputError("unknown", where="by", value=by, remedy='use "law", "joint" or an array of groups')
     groups = np.asarray(by)
-    if groups.shape != (count,) or not np.issubdtype(groups.dtype, np.integer) or (groups < -1).any():
+    if groups.shape != (count,) or not np.issubdtype(groups.dtype, np.integer):
         raise InputError(
             f"must be {count} whole numbers from -1 on, a group for each joint",
             where="by",
             value=f"shape {groups.shape}, {groups.dtype}",
+        )
+    bad = np.flatnonzero((groups < -1) | (groups >= count))
+    if bad.size:
+        raise InputError(
+            f"a group of {count} joints is -1 for none, or 0 to {count - 1}",
+            where=f"by[{bad[0]}]",
+            value=int(groups[bad[0]]),
+            remedy="number the groups from 0 on",
         )
     labels = [str(i) for i in range(int(groups.max(initial=-1)) + 1)]
     return "group", labels, groups.astype(np.int64), np.ones(count)

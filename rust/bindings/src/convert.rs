@@ -1,7 +1,7 @@
 //! Tables of plain arrays to the core's line and points.
 
 use num_complex::Complex;
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray, PyReadonlyArray1, PyReadonlyArray2};
 use permway_core::{
     line::{Beam, Body, End, Joint, Line, Point, Shaft, Stretch},
     sensitivity::Sensitivity,
@@ -117,13 +117,22 @@ impl Wanted {
     }
 }
 
-/// What is to be derived; a negative group stands for none.
+/// What is to be derived; a group of -1 stands for none.
 pub fn derived(table: &Derived<'_>) -> PyResult<Wanted> {
     let places = |column: &PyReadonlyArray1<'_, i64>, what| {
         column.as_array().iter().map(|i| index(*i, what)).collect::<PyResult<Vec<_>>>()
     };
+    if table.n_groups > MOST_GROUPS {
+        let n = table.n_groups;
+        return Err(TablesError::new_err(format!("derived: {n} groups are more than {MOST_GROUPS}")));
+    }
     Ok(Wanted {
-        groups: table.groups.as_array().iter().map(|g| usize::try_from(*g).ok()).collect(),
+        groups: table
+            .groups
+            .as_array()
+            .iter()
+            .map(|g| index_or_none(*g, "derived: group", "no group"))
+            .collect::<PyResult<_>>()?,
         weights: table.weights.as_array().to_vec(),
         n_groups: table.n_groups,
         bodies: table.bodies,
@@ -136,6 +145,24 @@ pub fn derived(table: &Derived<'_>) -> PyResult<Wanted> {
 /// Most modes of one beam: more are a slip, and would be summed for hours.
 const MOST_MODES: i64 = 100_000;
 
+/// Most groups of joints: more than any line has joints, and so few that counting their members takes little.
+const MOST_GROUPS: usize = 10_000_000;
+
+/// Memory for an answer, zero: of pages that the system has zeroed already, touched by the threads that fill them.
+///
+/// numpy is asked as from Python, for an array too large is then an error, where its C interface ends in a panic.
+pub fn zeros<'py, D, const N: usize>(
+    py: Python<'py>,
+    shape: [usize; N],
+) -> PyResult<Bound<'py, PyArray<Complex<f64>, D>>>
+where
+    D: numpy::ndarray::Dimension,
+{
+    let made = py.import("numpy")?.call_method1("zeros", (shape.to_vec(), "complex128"));
+    let made = made.map_err(|e| TablesError::new_err(format!("no room for an answer of shape {shape:?}: {e}")))?;
+    Ok(made.cast_into()?)
+}
+
 /// Checks that the columns of a table have one length.
 fn same_length(table: &str, lengths: &[usize]) -> PyResult<usize> {
     let n = lengths.first().copied().unwrap_or(0);
@@ -147,6 +174,16 @@ fn same_length(table: &str, lengths: &[usize]) -> PyResult<usize> {
 
 fn index(value: i64, what: &str) -> PyResult<usize> {
     usize::try_from(value).map_err(|_| TablesError::new_err(format!("{what} {value} must not be negative")))
+}
+
+/// An index, or -1 for none; any other negative number is a slip, and would be solved as another line.
+fn index_or_none(value: i64, what: &str, none: &str) -> PyResult<Option<usize>> {
+    if value == -1 {
+        return Ok(None);
+    }
+    usize::try_from(value).map(Some).map_err(|_| {
+        TablesError::new_err(format!("{what} {value} must not be negative; -1 alone stands for {none}"))
+    })
 }
 
 /// A beam; a shear stiffness of zero stands for Euler-Bernoulli, a bending stiffness of zero for a shaft.
@@ -227,8 +264,7 @@ pub fn line(
             Ok(Joint {
                 x: x[i],
                 a: index(upper[i], "joints: upper body")?,
-                // A negative lower body stands for the ground.
-                b: usize::try_from(lower[i]).ok(),
+                b: index_or_none(lower[i], "joints: lower body", "the ground")?,
                 law: index(law[i], "joints: law")?,
                 scale: scale[i],
             })

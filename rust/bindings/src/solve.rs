@@ -100,11 +100,10 @@ pub fn solve_line<'py>(
     let (parameters, rows, columns) =
         wanted.as_ref().map_or((0, 0, 0), |w| (w.parameters(&line), w.sensors.len(), w.forces.len()));
     let own = wanted.as_ref().is_some_and(|w| w.own);
-    // Pages that numpy has of the system are zero already, and are touched by the threads that fill them.
-    let values = PyArray3::zeros(py, [n, sensors.len(), f], false);
-    let extension = PyArray3::zeros(py, [n, if extensions { joints } else { 0 }, f], false);
-    let derivatives = PyArray4::zeros(py, [n, parameters, rows, columns], false);
-    let flexibility = PyArray2::zeros(py, [n, if own { joints } else { 0 }], false);
+    let values: Bound<'py, PyArray3<_>> = convert::zeros(py, [n, sensors.len(), f])?;
+    let extension: Bound<'py, PyArray3<_>> = convert::zeros(py, [n, if extensions { joints } else { 0 }, f])?;
+    let derivatives: Bound<'py, PyArray4<_>> = convert::zeros(py, [n, parameters, rows, columns])?;
+    let flexibility: Bound<'py, PyArray2<_>> = convert::zeros(py, [n, if own { joints } else { 0 }])?;
     let failures = {
         let (mut a, mut b, mut c, mut d) =
             (values.readwrite(), extension.readwrite(), derivatives.readwrite(), flexibility.readwrite());

@@ -1,6 +1,6 @@
 //! Expected spectra: arrays checked, the interpreter released, arrays out.
 
-use crate::convert::TablesError;
+use crate::convert::{self, TablesError};
 use num_complex::Complex;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use permway_core::welch::{self, Weights};
@@ -24,7 +24,7 @@ pub fn spread<'py>(
     late: PyReadonlyArray2<'py, Complex<f64>>,
 ) -> PyResult<Bound<'py, PyArray2<Complex<f64>>>> {
     let (weights, channels) = (weights(&rows)?, values.as_array().shape()[1]);
-    let found = PyArray2::zeros(py, [weights.rows(), channels], false);
+    let found: Bound<'py, PyArray2<_>> = convert::zeros(py, [weights.rows(), channels])?;
     let (values, late) = (values.as_slice()?, late.as_slice()?);
     let mut memory = found.readwrite();
     let out = memory.as_slice_mut()?;
@@ -44,7 +44,8 @@ pub fn cross_spectra<'py>(
     fine: PyReadonlyArray2<'py, Complex<f64>>,
 ) -> PyResult<Bound<'py, PyArray2<Complex<f64>>>> {
     let (weights, channels) = (weights(&smear)?, fine.as_array().ncols());
-    let found = PyArray2::zeros(py, [weights.rows(), channels * (channels + 1) / 2], false);
+    let pairs = channels.saturating_mul(channels.saturating_add(1)) / 2;
+    let found: Bound<'py, PyArray2<_>> = convert::zeros(py, [weights.rows(), pairs])?;
     let fine = fine.as_slice()?;
     let mut memory = found.readwrite();
     let out = memory.as_slice_mut()?;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -111,7 +112,7 @@ def with_chain(campaign: Campaign, sensor: str, chain: Chain) -> Campaign:
     said = campaign.said
     sensors = tuple(s.model_copy(update={"chain": chain}) if s.name == sensor else s for s in said.sensors)
     changed = said.model_copy(update={"sensors": sensors})
-    return Campaign(changed, campaign.model, campaign.folder, campaign.parameters)
+    return replace(campaign, said=changed)
 
 
 def hung_mass(mass_kg: float, frequency_Hz: float, loss_factor: float) -> Law:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ def with_irregularity(campaign: Campaign, **parts: Any) -> Campaign:
     known = campaign.said.irregularity
     changed = IrregularityKnown(**{**dict(known), **parts})
     said = campaign.said.model_copy(update={"irregularity": changed})
-    return Campaign(said, campaign.model, campaign.folder, campaign.parameters)
+    return replace(campaign, said=said)
 
 
 def with_speed(campaign: Campaign, factor: float, condition: str | None = None) -> Campaign:
@@ -35,7 +36,7 @@ def with_speed(campaign: Campaign, factor: float, condition: str | None = None) 
         for c in said.conditions
     )
     changed = said.model_copy(update={"conditions": conditions})
-    return Campaign(changed, campaign.model, campaign.folder, campaign.parameters)
+    return replace(campaign, said=changed)
 
 
 def stays(

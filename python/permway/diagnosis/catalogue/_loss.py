@@ -36,6 +36,10 @@ LADDER = (0.001, 0.01, 0.05, 0.15, 0.3, 0.5, 0.7, 0.85)
 HALF, EVERY = 0.5, 2
 """What joints all along keep, and every which is looked at, where the scan may lead astray."""
 
+LONG, KEPT = 6, (0.4, 0.1, 0.01)
+"""Joints of the stretches that a search begins from, at most, and what they keep: a fit reaches twice as long
+ones, and shares between."""
+
 TELLING = 0.4
 """Share of the most telling spot's surplus that a joint of the law must have for a first look."""
 
@@ -67,6 +71,23 @@ def local_loss(
     telling = _telling(situation, situation.joints(law, most=1))
     for centre in [] if telling and looked else taken[:most]:
         yield _hypothesis(law, x, centre, None, entry, family)
+
+
+def stretches(law: str, x: Reals, entry: str, family: str) -> Iterator[Hypothesis]:
+    """Every stretch of up to :data:`LONG` neighbouring joints of a law, with each share of :data:`KEPT` left.
+
+    Parameters
+    ----------
+    law : str
+    x : ndarray, shape (J,)
+        Places of its joints, ascending.
+    entry, family : str
+    """
+    for first in range(x.size):
+        for last in range(first, min(first + LONG, x.size)):
+            ends = float(x[first]), float(x[last])
+            found = _hypothesis(law, x, 0.5 * (ends[0] + ends[1]), (*ends, KEPT[0]), entry, family)
+            yield replace(found, starts=tuple((0.0, 0.0, float(ndtri(left))) for left in KEPT))
 
 
 def first_look(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -92,4 +93,4 @@ def with_factors(campaign: Campaign, by_condition: Mapping[str, Mapping[str, flo
         merged = {**condition.factors, **{p: condition.factors.get(p, 1.0) * f for p, f in new.items()}}
         changed.append(condition.model_copy(update={"factors": merged}) if new else condition)
     said = campaign.said.model_copy(update={"conditions": tuple(changed)})
-    return Campaign(said, campaign.model, campaign.folder, campaign.parameters)
+    return replace(campaign, said=said)

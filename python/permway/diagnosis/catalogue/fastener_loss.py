@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from permway.diagnosis.catalogue._loss import local_loss
+from permway.diagnosis.catalogue._interval import stations_of
+from permway.diagnosis.catalogue._loss import local_loss, stretches
 from permway.diagnosis.catalogue._roles import laws_of, pads
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation
 
@@ -29,3 +30,10 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """At the most telling pads of each law."""
     for law in laws_of(pads(situation.campaign.model.line)):
         yield from local_loss(situation, law, ID, FAMILY)
+
+
+def everywhere(situation: Situation) -> Iterator[Hypothesis]:
+    """At every stretch of pads of each law."""
+    line = situation.campaign.model.line
+    for law in laws_of(pads(line)):
+        yield from stretches(law, stations_of(line, law), ID, FAMILY)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from permway.diagnosis.catalogue._interval import stations_of
-from permway.diagnosis.catalogue._loss import local_loss
+from permway.diagnosis.catalogue._loss import local_loss, stretches
 from permway.diagnosis.catalogue._roles import beds, carriers, laws_of
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation
 
@@ -38,3 +38,10 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         x = stations_of(line, law)
         coarse = np.quantile(x, [0.5, 0.2, 0.8]).tolist()
         yield from local_loss(situation, law, ID, FAMILY, places=coarse)
+
+
+def everywhere(situation: Situation) -> Iterator[Hypothesis]:
+    """At every stretch of the joints of each such bed."""
+    line = situation.campaign.model.line
+    for law in laws_of([bed for bed in beds(line) if bed.upper in carriers(line)]):
+        yield from stretches(law, stations_of(line, law), ID, FAMILY)

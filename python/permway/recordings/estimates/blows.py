@@ -61,7 +61,7 @@ def blow_spectra(
         raise InputError(
             "too small", where="blows", value=f"shape {record.shape}", remedy="give (blow, channel, sample)"
         )
-    if not -size <= force < size:
+    if isinstance(force, bool) or not isinstance(force, int | np.integer) or not -size <= force < size:
         raise InputError(f"there are {size} channels", where="force", value=force)
     time = np.arange(length) / rate - blow_at_s
     if not 0.0 <= blow_at_s < length / rate:

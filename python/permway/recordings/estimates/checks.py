@@ -8,13 +8,13 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from permway.arrays import Complexes, Reals
+from permway.arrays import Complexes, Reals, is_real, real_numbers
 from permway.errors import InputError
 
 
 def check_positive(value: float, where: str, remedy: str = "") -> float:
     """A finite number above zero."""
-    if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+    if not is_real(value):
         raise InputError("must be a number", where=where, value=value, remedy=remedy)
     if not (np.isfinite(value) and value > 0.0):
         raise InputError("must be finite and above zero", where=where, value=value, remedy=remedy)
@@ -47,15 +47,7 @@ def check_finite(values: Complexes | Reals, where: str, *, offset: int = 0) -> N
 
 def as_reals(values: ArrayLike, where: str, *, ndim: int | None = None) -> Reals:
     """Finite real numbers of a given number of dimensions."""
-    try:
-        array = np.asarray(values)
-        if np.iscomplexobj(array):
-            raise InputError("must be real", where=where, value=array.dtype.name)
-        array = array.astype(np.float64)
-    except (TypeError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError("not numbers", where=where, value=values) from error
+    array = np.array(real_numbers(values, where))
     if ndim is not None and array.ndim != ndim:
         raise InputError(f"must have {ndim} dimension(s)", where=where, value=f"shape {array.shape}")
     check_finite(array, where)

@@ -11,7 +11,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy import special
 
-from permway.arrays import Reals, check_frequency
+from permway.arrays import Reals, check_frequency, real_numbers
 from permway.errors import InputError
 from permway.recordings.estimates.bands import Bands, bands_between, bands_within
 from permway.recordings.estimates.checks import as_complexes, as_reals, check_level, check_positive
@@ -134,7 +134,7 @@ def track_decay_rate(
     square = np.zeros_like(modulus) if variance is None else as_reals(variance, "variance").reshape(modulus.shape)
     if np.any(square < 0.0):
         raise InputError("must not be negative", where="variance", value=float(square.min()))
-    freedom = np.broadcast_to(np.asarray(degrees_of_freedom, dtype=np.float64), modulus.shape)
+    freedom = np.broadcast_to(real_numbers(degrees_of_freedom, "degrees_of_freedom"), modulus.shape)
     if np.any(np.isnan(freedom) | (freedom <= 0.0)):
         raise InputError("must be above zero", where="degrees_of_freedom", value=float(freedom.min()))
     power, clean = modulus**2, modulus**2 * np.maximum(1.0 - 2.0 * square, 0.0)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from permway.arrays import Reals
+from permway.arrays import Reals, real_numbers
 from permway.errors import InputError
 from permway.recordings.estimates.checks import as_complexes, as_reals, check_finite, check_level
 
@@ -131,10 +131,7 @@ def phase_covered(interval: Interval, truth_rad: ArrayLike) -> np.ndarray[tuple[
 
 
 def _freedom(degrees_of_freedom: ArrayLike) -> Reals:
-    try:
-        freedom = np.asarray(degrees_of_freedom, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError("not numbers", where="degrees_of_freedom", value=degrees_of_freedom) from error
+    freedom = real_numbers(degrees_of_freedom, "degrees_of_freedom")
     check_finite(freedom, "degrees_of_freedom")
     if np.any(freedom <= 0.0):
         raise InputError(

@@ -11,7 +11,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike
 
 from permway import __version__
-from permway.arrays import Complexes, Reals
+from permway.arrays import Complexes, Reals, real_numbers
 from permway.errors import InputError
 from permway.recordings.estimates.checks import check_finite, check_names, check_positive, check_units
 from permway.recordings.estimates.windows import Segments, segments
@@ -107,10 +107,7 @@ def labelled(record: ArrayLike | Samples | xr.DataArray) -> tuple[Samples, list[
         samples, _, _ = labelled(array.values)
         return samples, names, [str(unit)] * samples.shape[0] if unit is not None else None
     if isinstance(record, list | tuple):
-        try:
-            record = np.asarray(record, dtype=np.float64)
-        except (TypeError, ValueError) as error:
-            raise InputError("not an array of numbers", where="record") from error
+        record = real_numbers(record, "record")
     shape = getattr(record, "shape", None)
     if shape is None or len(shape) not in (1, 2):
         raise InputError(
@@ -129,15 +126,7 @@ def transforms(samples: Samples, layout: Segments, *, detrend: bool) -> Iterator
     for first in range(0, layout.count, at_once):
         last = min(first + at_once, layout.count)
         start, stop = first * layout.step, (last - 1) * layout.step + layout.length
-        try:
-            piece = np.asarray(samples[:, start:stop])
-            if np.iscomplexobj(piece):
-                raise InputError("must be real", where="record", value=piece.dtype.name)
-            piece = piece.astype(np.float64)
-        except (TypeError, ValueError) as error:
-            if isinstance(error, InputError):
-                raise
-            raise InputError("not numbers", where="record") from error
+        piece = real_numbers(np.asarray(samples[:, start:stop]), "record")
         check_finite(piece, "record", offset=start)
         cut = sliding_window_view(piece, layout.length, axis=1)[:, :: layout.step]
         centred = cut - cut.mean(axis=2, keepdims=True) if detrend else cut

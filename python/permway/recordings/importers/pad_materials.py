@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import Any
 
 from permway.errors import InputError
+from permway.files import check_folder
 from permway.laws import law_to_dict
 from permway.laws.dma import read_modulus_pair
 from permway.laws.identify import identify
 from permway.recordings.campaign import Campaign
-from permway.recordings.importers.writing import write_campaign
+from permway.recordings.importers.writing import Draft, write_campaigns
 
 STORAGE, LOSS = "storage_modulus_MPa.tsv", "loss_factor.tsv"
 
@@ -34,14 +35,14 @@ def import_pad_materials(
     InputError
         For a folder without materials, or files that cannot be read.
     """
-    materials = sorted(path.parent for path in folder.glob(f"*/{STORAGE}"))
+    check_folder(output)
+    materials = sorted({path.parent for name in (STORAGE, LOSS) for path in folder.glob(f"*/{name}")})
     if not materials:
         raise InputError("holds no material", where=str(folder), remedy=f"it needs */{STORAGE} and */{LOSS}")
-    output.mkdir(exist_ok=True)
-    return [_material(path, output / path.name, copy=copy, law=law) for path in materials]
+    return write_campaigns(output, [_material(path, law) for path in materials], copy=copy)
 
 
-def _material(folder: Path, output: Path, *, copy: bool, law: str) -> Campaign:
+def _material(folder: Path, law: str) -> Draft:
     table = read_modulus_pair(folder / STORAGE, folder / LOSS)
     found = identify(table, law=law, shift="none")
     campaign: dict[str, Any] = {
@@ -92,9 +93,7 @@ def _material(folder: Path, output: Path, *, copy: bool, law: str) -> Campaign:
         "forces": [place],
         "sensors": [place],
     }
-    return write_campaign(
-        output, campaign=campaign, model=model, sources=[folder / STORAGE, folder / LOSS], copy=copy
-    )
+    return Draft(campaign, model, [folder / STORAGE, folder / LOSS], folder.name)
 
 
 def _numbers(law: dict[str, Any], before: str = "") -> list[tuple[str, str]]:

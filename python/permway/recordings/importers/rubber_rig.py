@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+import warnings
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from permway.errors import InputError
+from permway.files import check_folder
 from permway.laws import law_to_dict
 from permway.laws.dma import DmaTable, read_dma
 from permway.laws.identify import identify
 from permway.laws.transmissibility import ShearRig
 from permway.recordings.campaign import Campaign
-from permway.recordings.importers.writing import write_campaign
+from permway.recordings.importers.writing import Draft, write_campaigns
 
 RIG = ShearRig(
     outer_diameter_m=33.5e-3, inner_diameter_m=11.8e-3, thickness_m=6e-3, rings=2, moving_mass_kg=14.8e-3
@@ -50,9 +52,13 @@ def import_rubber_rig(
     """Turn every material of the folder into a campaign in a folder of its name.
 
     The model is the rubber's law as identified from the DMA table at the lowest strain, by WLF, and one mass on it
-    for each shaker record; nothing is fitted to the shaker. With the law "constant" it is what a data sheet says,
+    that was shaken; nothing is fitted to the shaker. With the law "constant" it is what a data sheet says,
     modulus and loss factor at 10 Hz and room temperature, and the campaign holds the shaker's records alone: what
     the DMA knows of frequency is withheld.
+
+    A shaker record is named by level and mass, as 01g_253g.csv. Records of one level are of one condition; a mass
+    that was shaken at several is one body with one sensor. Files that are no records of these are named in a
+    warning.
 
     Parameters
     ----------
@@ -69,35 +75,45 @@ def import_rubber_rig(
     InputError
         For a folder without materials, or files that cannot be read.
     """
+    check_folder(output)
     materials = sorted(path.parent.parent for path in folder.glob("*/dma/tf_015p.csv"))
     if not materials:
         raise InputError("holds no material", where=str(folder), remedy="it needs */dma/tf_015p.csv")
-    output.mkdir(exist_ok=True)
-    return [_material(path, output / path.name, copy=copy, law=law) for path in materials]
+    untested = sorted({path.parent for path in folder.glob("*/shaker")} - set(materials))
+    _left_aside(folder, untested, "without dma/tf_015p.csv")
+    return write_campaigns(output, [_material(path, law) for path in materials], copy=copy)
 
 
-def _material(folder: Path, output: Path, *, copy: bool, law: str) -> Campaign:
+def _material(folder: Path, law: str) -> Draft:
     sweep = folder / "dma" / "tf_015p.csv"
-    shaken = sorted((folder / "shaker").glob("*.csv"))
+    shaken = [path for path in _files(folder / "shaker") if path.suffix.lower() == ".csv"]
     if not shaken:
         raise InputError("holds no shaker record", where=str(folder / "shaker"))
     rubber, known = _constant(read_dma(sweep)) if law == CONSTANT else _identified(read_dma(sweep), law)
-    masses = {path: _mass(path) for path in shaken}
+    named = {path: _level_and_mass(path) for path in shaken}
+    masses = list(dict.fromkeys(mass for _, mass in named.values()))
     strains = sorted((folder / "dma").glob("sd_*.csv"))
     tested = [] if law == CONSTANT else [sweep, *strains]
+    _left_aside(folder / "shaker", set(_files(folder / "shaker")) - set(shaken), "no tables")
+    _left_aside(
+        folder / "dma", set(_files(folder / "dma")) - {sweep, *strains}, "neither tf_015p.csv nor sd_*.csv"
+    )
     records: list[dict[str, Any]] = [_dma(path) for path in tested]
     records += [
         {
             "name": path.stem,
             "file": path.name,
-            "condition": f"shaker_{path.stem.split('_')[0]}",
+            "condition": f"shaker_{level}",
             "statistic": "transmissibility",
-            "channels": {"mass": name},
+            "channels": {"mass": mass},
             "within_dB": WITHIN_DB,
         }
-        for path, (name, _) in masses.items()
+        for path, (level, (mass, _)) in named.items()
     ]
-    levels = sorted({path.stem.split("_")[0] for path in shaken})
+    levels = {
+        level: [path for path in shaken if named[path][0] == level]
+        for level in sorted({level for level, _ in named.values()})
+    }
     campaign = {
         "format": 1,
         "title": f"{folder.name}: two rings in shear, {'and their DMA' if tested else 'as a data sheet has it'}",
@@ -107,8 +123,7 @@ def _material(folder: Path, output: Path, *, copy: bool, law: str) -> Campaign:
             for name, unit, key in known
         ],
         "sensors": [
-            {"name": name, "body": name, "x_m": _place(i), "unit": "m/s2"}
-            for i, (name, _) in enumerate(masses.values())
+            {"name": name, "body": name, "x_m": _place(i), "unit": "m/s2"} for i, (name, _) in enumerate(masses)
         ],
         "conditions": [
             *([{"name": "dma", "kind": "table"}] if tested else []),
@@ -120,15 +135,20 @@ def _material(folder: Path, output: Path, *, copy: bool, law: str) -> Campaign:
         "records": records,
         "held_out": [
             {"name": name, "axis": "record", "members": [path.stem for path in left_out]}
-            for name, left_out in _held_out(shaken, strains, bool(tested))
+            for name, left_out in _held_out(levels, strains, bool(tested))
         ],
     }
-    model = _model(folder.name, rubber, list(masses.values()))
-    return write_campaign(output, campaign=campaign, model=model, sources=[*tested, *shaken], copy=copy)
+    model = _model(folder.name, rubber, masses)
+    return Draft(campaign, model, [*tested, *shaken], folder.name)
 
 
-def _held_out(shaken: list[Path], strains: list[Path], tested: bool) -> Iterator[tuple[str, list[Path]]]:
-    """All that was shaken, and all that was strained; without a DMA each mass by itself."""
+def _held_out(
+    levels: dict[str, list[Path]], strains: list[Path], tested: bool
+) -> Iterator[tuple[str, list[Path]]]:
+    """Each of several levels; all that was shaken, and all that was strained, or without a DMA each by itself."""
+    shaken = sorted(path for paths in levels.values() for path in paths)
+    if len(levels) > 1:
+        yield from ((f"level {level}", paths) for level, paths in levels.items())
     if not tested:
         yield from ((path.stem, [path]) for path in shaken)
         return
@@ -175,14 +195,30 @@ def _dma(path: Path) -> dict[str, Any]:
     }
 
 
-def _mass(path: Path) -> tuple[str, float]:
-    key = path.stem.split("_")[-1]
+def _level_and_mass(path: Path) -> tuple[str, tuple[str, float]]:
+    """The shaker's level as the file's name has it, and the mass's name and kg."""
+    remedy = "name it by level and mass, as 1g_253g.csv"
+    level, _, rest = path.stem.partition("_")
+    key = rest.split("_")[-1]
+    if not (level and rest):
+        raise InputError("says not both a level and a mass", where=str(path), value=path.stem, remedy=remedy)
     if key in MASSES_KG:
-        return f"mass_{key}", MASSES_KG[key]
+        return level, (f"mass_{key}", MASSES_KG[key])
     grams = re.fullmatch(r"(\d+(?:\.\d+)?)g", key)
     if grams is None:
-        raise InputError("says no mass", where=str(path), value=path.stem, remedy="name it as 1g_253g.csv")
-    return f"mass_{key.replace('.', '-')}", 1e-3 * float(grams[1])
+        raise InputError("says no mass", where=str(path), value=path.stem, remedy=remedy)
+    return level, (f"mass_{key.replace('.', '-')}", 1e-3 * float(grams[1]))
+
+
+def _files(folder: Path) -> list[Path]:
+    return sorted(path for path in folder.glob("*") if path.is_file() and not path.name.startswith("."))
+
+
+def _left_aside(folder: Path, others: Iterable[Path], why: str) -> None:
+    """Name what nobody will miss else."""
+    names = sorted(path.name for path in others)
+    if names:
+        warnings.warn(f"{folder}: left aside, {why}: {', '.join(names)}", stacklevel=4)
 
 
 def _place(index: int) -> float:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from permway.errors import InputError
+from permway.files import check_folder
 from permway.reading import inside
 from permway.recordings.campaign import Campaign
-from permway.recordings.importers.sheet_form import Sheet, Spot, read_sheet
+from permway.recordings.importers.sheet_form import Sheet, read_sheet
 from permway.recordings.importers.sheet_model import model_table
 from permway.recordings.importers.sheet_runs import UNITS, read_runs
-from permway.recordings.importers.writing import write_campaign
+from permway.recordings.importers.sheet_spots import matched, names_of
+from permway.recordings.importers.writing import Draft, write_campaigns
 from permway.recordings.readers import read_frf
 
 KEYS = {
@@ -50,7 +52,6 @@ NOISE_2SIGMA = 0.4
 """How far noise where the train is heard may be from what a quiet band tells, both of one recorder."""
 
 _SUFFIXES = (".uff", ".unv", ".mat", ".csv", ".npz", ".h5", ".nc", ".tdms", ".wav")
-_NODES = {1: "rail", 2: "slab", 3: "base", 4: "girder"}
 
 
 def import_sheet(folder: Path, output: Path, *, copy: bool = True) -> Campaign:
@@ -67,6 +68,7 @@ def import_sheet(folder: Path, output: Path, *, copy: bool = True) -> Campaign:
     InputError
         For a sheet or a record that cannot be read, or does not hold what the sheet says.
     """
+    check_folder(output)
     sheet = read_sheet(folder)
     unit = _unit(sheet.hammer.quantity)
     title = f"{folder.resolve().name}: {sheet.layout.spans} span(s) of {sheet.layout.span_m:g} m"
@@ -91,12 +93,13 @@ def import_sheet(folder: Path, output: Path, *, copy: bool = True) -> Campaign:
         "irregularity": {"knowledge": "within", "within_dB": 2.0} if runs else None,
         "parameters": [*_parameters(sheet), *(_train_parameters(sheet, names) if runs else [])],
         "sensors": [*_line_sensors(sheet, unit), *(runs.sensors() if runs else [])],
-        "forces": [{"name": _label(spot), "body": spot[0], "x_m": spot[1]} for spot in sheet.hammer.points],
+        "forces": _points(sheet),
         "conditions": conditions,
         "records": records,
         "held_out": _held_out(sheet),
     }
-    return write_campaign(output, campaign=campaign, model=model_table(sheet, title), sources=sources, copy=copy)
+    draft = Draft(campaign, model_table(sheet, title), sources)
+    return write_campaigns(output, [draft], copy=copy)[0]
 
 
 def _find(folder: Path, name: str) -> Path:
@@ -112,14 +115,17 @@ def _find(folder: Path, name: str) -> Path:
     raise InputError(f"there is no file {name}", where=str(folder), remedy=remedy)
 
 
-def _label(spot: Spot) -> str:
-    return f"{spot[0]}@{spot[1]:g}"
-
-
 def _line_sensors(sheet: Sheet, unit: str) -> list[dict[str, Any]]:
     return [
-        {"name": _label(spot), "body": spot[0], "x_m": spot[1], "quantity": "acceleration", "unit": unit}
-        for spot in sheet.hammer.sensors
+        {"name": name, "body": body, "x_m": x, "quantity": "acceleration", "unit": unit}
+        for name, (body, x) in zip(names_of(sheet.hammer.sensors), sheet.hammer.sensors, strict=True)
+    ]
+
+
+def _points(sheet: Sheet) -> list[dict[str, Any]]:
+    points = sheet.hammer.points
+    return [
+        {"name": name, "body": body, "x_m": x} for name, (body, x) in zip(names_of(points), points, strict=True)
     ]
 
 
@@ -139,8 +145,8 @@ def _unit(quantity: str) -> str:
 
 def _hammer_record(sheet: Sheet, name: str, source: Path) -> dict[str, Any]:
     file = read_frf(source)
-    responses = _matched(file.responses, sheet.hammer.sensors, source, "sensors")
-    references = _matched(file.references, sheet.hammer.points, source, "points")
+    responses = matched(file.responses, sheet.hammer.sensors, source, "sensors")
+    references = matched(file.references, sheet.hammer.points, source, "points")
     blows = re.search(r"of (\d+) blows", sheet.hammer.quantity)
     record: dict[str, Any] = {
         "name": name,
@@ -157,40 +163,6 @@ def _hammer_record(sheet: Sheet, name: str, source: Path) -> dict[str, Any]:
         remedy = "write it as 'H1 of 8 blows'"
         raise InputError("says no number of blows", where="sheet.json: hammer.quantity", remedy=remedy)
     return record
-
-
-def _matched(labels: Iterable[str], spots: tuple[Spot, ...], source: Path, what: str) -> dict[str, str]:
-    """The file's label of each place of the sheet.
-
-    Raises
-    ------
-    InputError
-        For a place that the file does not have.
-    """
-    found: dict[tuple[str, float], str] = {}
-    for label in dict.fromkeys(labels):
-        spot = _spot_of(label)
-        if spot is not None:
-            found.setdefault(spot, label)
-    matched = {}
-    for index, spot in enumerate(spots):
-        key = (spot[0], round(spot[1], 2))
-        if key not in found:
-            where = f"{source}: hammer.{what}[{index}]"
-            raise InputError("the file has no such place", where=where, value=list(spot))
-        matched[found[key]] = _label(spot)
-    return matched
-
-
-def _spot_of(label: str) -> tuple[str, float] | None:
-    """Body and x of a label: "rail@16.32", or a UFF node 10000 * body + x in cm."""
-    named = re.match(r"\s*([A-Za-z]\w*)\s*@\s*(-?\d+(?:\.\d+)?)", label)
-    if named is not None:
-        return named[1], round(float(named[2]), 2)
-    node = re.search(r"\d{5,}", label)
-    if node is None or int(node[0]) // 10000 not in _NODES:
-        return None
-    return _NODES[int(node[0]) // 10000], round(int(node[0]) % 10000 / 100.0, 2)
 
 
 def _parameters(sheet: Sheet) -> list[dict[str, Any]]:
@@ -272,7 +244,7 @@ def _held_out(sheet: Sheet) -> list[dict[str, Any]]:
     groups: list[dict[str, Any]] = [
         {"name": "second quarter", "axis": "place", "from_to_m": [0.25 * length, 0.5 * length - 0.01]},
         {"name": "upper band", "axis": "band", "band_Hz": [200.0, 260.0]},
-        {"name": "last sensor", "axis": "channel", "members": [_label(sheet.hammer.sensors[-1])]},
+        {"name": "last sensor", "axis": "channel", "members": names_of(sheet.hammer.sensors)[-1:]},
     ]
     if sheet.runs is not None and len(sheet.runs.speeds_kmh) > 1:
         groups.append({"name": "last speed", "axis": "speed", "members": [sheet.runs.speeds_kmh[-1] / 3.6]})

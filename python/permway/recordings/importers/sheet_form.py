@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
@@ -113,6 +114,15 @@ class Hammer(_Part):
     points: tuple[Spot, ...] = Field(min_length=1)
 
 
+def _position(value: object) -> object:
+    numbers = isinstance(value, list | tuple) and all(
+        isinstance(x, int | float) and not isinstance(x, bool) and math.isfinite(x) for x in value
+    )
+    if not (isinstance(value, str) or numbers):
+        raise fault("must be words, or a list of where each wheelset stands in m", value=value)
+    return value
+
+
 class Runs(_Part):
     """The train's runs."""
 
@@ -121,7 +131,7 @@ class Runs(_Part):
     unit: str
     speeds_kmh: tuple[PositiveFloat, ...] = Field(min_length=1)
     channels: tuple[str, ...] = Field(min_length=1)
-    position: str = ""
+    position: Annotated[str | tuple[Number, ...], BeforeValidator(_position)] = ""
     irregularity: str = ""
 
 

@@ -8,9 +8,8 @@ import numpy as np
 
 from permway.errors import InputError
 from permway.recordings.importers.sheet_form import BeamValues, LayerValues, Sheet
-
-WHEEL_GRID_M = 0.16
-"""Wheelsets stand at whole multiples of this, as the sheets' `position` says."""
+from permway.recordings.importers.sheet_layers import MEET_M, between
+from permway.recordings.importers.sheet_position import position
 
 _LAYERS = ("pad", "mortar", "sliding", "bearing")
 
@@ -20,20 +19,22 @@ def model_table(sheet: Sheet, title: str) -> dict[str, Any]:
 
     Sections, masses and stiffnesses are of one rail already. Vehicle masses are of the whole vehicle, of which the
     model carries the share `half`; suspensions are those of one side and stay, so the whole vehicle has 1/half of
-    them; the contact is one wheel's. Layers' totals go over the stations by length, half shares at the ends. The
+    them; the contact is one wheel's. Layers: :func:`permway.recordings.importers.sheet_layers.between`. The
     irregularity is the German spectrum of low disturbance down to 1 m, continued as W^-3.06.
 
     Raises
     ------
     InputError
-        For lengths that are no whole number of spacings.
+        For lengths that are no whole number of spacings, and for a sensor or hammer point where two beams meet.
     """
     layout, values = sheet.layout, sheet.values
     length = layout.spans * layout.span_m
     spacing = layout.fastener_spacing_m
-    deck = {"from_m": 0.0, "to_m": _whole(length, spacing, "span_m"), "spacing_m": spacing}
+    _whole(length, spacing, "span_m")
     _whole(length, layout.slab_length_m, "slab_length_m")
-    slabs = round(length / layout.slab_length_m)
+    slabs_m = _row(round(length / layout.slab_length_m), layout.slab_length_m)
+    spans_m = _row(layout.spans, layout.span_m)
+    _check_spots(sheet, {"slab": slabs_m, "girder": spans_m})
     rail = values.rail
     struck, struck_m = sheet.hammer.points[0]
     table: dict[str, Any] = {
@@ -50,50 +51,31 @@ def model_table(sheet: Sheet, title: str) -> dict[str, Any]:
                     "shear_modulus_Pa": rail.G,
                     "shear_coefficient": rail.kappa,
                 },
-                "slab": {"type": "beam", **_beam(values.slab), "intervals_m": _row(slabs, layout.slab_length_m)},
+                "slab": {"type": "beam", **_beam(values.slab), "intervals_m": slabs_m},
                 "base": {"type": "beam", **_beam(values.base), "intervals_m": _row(1, length)},
-                "girder": {
-                    "type": "beam",
-                    **_beam(values.girder),
-                    "intervals_m": _row(layout.spans, layout.span_m),
-                },
+                "girder": {"type": "beam", **_beam(values.girder), "intervals_m": spans_m},
             },
             "laws": {name: _law(getattr(values, name)) for name in _LAYERS},
             "joints": [
-                {"between": ["rail", "slab"], "law": "pad", "at": deck},
+                *between("rail", "slab", "pad", length, spacing, slabs_m, total=False),
                 *_approaches(sheet, length),
-                {"between": ["slab", "base"], "law": "mortar", "at": deck, "stiffness_is": "total"},
-                {"between": ["base", "girder"], "law": "sliding", "at": deck, "stiffness_is": "total"},
+                *between("slab", "base", "mortar", length, spacing, slabs_m, total=True),
+                *between("base", "girder", "sliding", length, spacing, spans_m, total=True),
                 {"between": ["girder", "ground"], "law": "bearing", "at": {"of": "girder"}},
             ],
         },
         "forces": [{"body": struck, "x_m": struck_m}],
-        "sensors": [{"body": body, "x_m": x} for body, x in sheet.hammer.sensors],
+        "sensors": [{"body": body, "x_m": x} for body, x in dict.fromkeys(sheet.hammer.sensors)],
     }
     if sheet.runs is not None:
         table["train"] = {
-            "centre_m": 0.5 * length,
+            "centre_m": position(sheet).centre_m,
             "speed_m_per_s": sheet.runs.speeds_kmh[0] / 3.6,
             "vehicle": _vehicle(sheet),
             "contact": {"type": "given", "stiffness_N_per_m": sheet.contact_stiffness_N_per_m},
         }
         table["irregularity"] = {"type": "german_sato", "continuous": True, "exponent": 3.06}
     return table
-
-
-def wheels_m(sheet: Sheet) -> list[float]:
-    """Where the wheelsets stand, the leading one first, each at the nearest whole multiple of 0.16 m.
-
-    Halfway between two the even multiple: of 26 and 6 m it makes 25.92 and 6.08 m, as the records' lags have it.
-    """
-    vehicle = sheet.values.vehicle
-    centre = 0.5 * sheet.layout.spans * sheet.layout.span_m
-    away = (
-        np.array([1.0, 1.0, -1.0, -1.0]) * 0.5 * vehicle.lc + np.array([1.0, -1.0, 1.0, -1.0]) * 0.5 * vehicle.lt
-    )
-    # Three spans of 31.4 m are 94.2 m but for a last digit, which must not tell what is halfway.
-    multiples = np.round(((centre + away) / WHEEL_GRID_M).round(9))
-    return [round(float(x), 6) for x in WHEEL_GRID_M * multiples]
 
 
 def _vehicle(sheet: Sheet) -> dict[str, Any]:
@@ -143,6 +125,20 @@ def _approaches(sheet: Sheet, length: float) -> list[dict[str, Any]]:
     before = {"from_m": -reach, "to_m": -spacing, "spacing_m": spacing}
     behind = {"from_m": length + spacing, "to_m": length + reach, "spacing_m": spacing}
     return [{"between": ["rail", "ground"], "law": "pad", "at": [before, behind]}]
+
+
+def _check_spots(sheet: Sheet, rows: dict[str, list[list[float]]]) -> None:
+    """Ask which of two beams is meant by a place where they meet."""
+    for what, spots in (("sensors", sheet.hammer.sensors), ("points", sheet.hammer.points)):
+        for index, (body, x) in enumerate(spots):
+            for number, (_, end) in enumerate(rows.get(body, [])[:-1], start=1):
+                if abs(x - end) < MEET_M:
+                    raise InputError(
+                        f"two of the {body}s meet there: which of them is it on?",
+                        where=f"sheet.json: hammer.{what}[{index}]",
+                        value=[body, x],
+                        remedy=f'write ["{body}[{number}]", {x:g}] or ["{body}[{number + 1}]", {x:g}]',
+                    )
 
 
 def _whole(length: float, part: float, name: str) -> float:

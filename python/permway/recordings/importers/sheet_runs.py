@@ -14,7 +14,7 @@ from permway.arrays import Reals
 from permway.errors import InputError
 from permway.recordings.estimates.welch import cross_spectra
 from permway.recordings.importers.sheet_form import Sheet
-from permway.recordings.importers.sheet_model import wheels_m
+from permway.recordings.importers.sheet_position import position
 from permway.recordings.readers import read_time
 
 DEGREES = {"carbody": "car1.body.bounce", "bogie1": "car1.bogie1.bounce", "bogie2": "car1.bogie2.bounce"} | {
@@ -86,8 +86,9 @@ class Runs:
         common: dict[str, Any] = {"kind": "train", "temperature_C": self.sheet.temperature_C[0]}
         if len(self.sheet.temperature_C) > 1:
             common["note"] = "the sheet does not say at which of its temperatures: the first is taken"
+        wheels = list(position(self.sheet).wheels_m)
         return [
-            {"name": name, **common, "speed_m_per_s": speed / 3.6, "wheels_m": wheels_m(self.sheet)}
+            {"name": name, **common, "speed_m_per_s": speed / 3.6, "wheels_m": wheels}
             for name, speed in zip(names, self.sheet.runs.speeds_kmh, strict=True)
         ]
 
@@ -158,7 +159,7 @@ def _is_interpolated(sheet: Sheet, values: Reals, sampling_Hz: float, speed_m_pe
     and one computed line by line, knows no whole hertz. Of all pairs the median counts: one odd wheel is outvoted.
     """
     assert sheet.runs is not None
-    wheels = wheels_m(sheet)
+    wheels = position(sheet).wheels_m
     spectrum = np.fft.rfft(values, axis=1)
     frequency = np.fft.rfftfreq(values.shape[1], 1.0 / sampling_Hz)
     shown = (frequency >= SHOWS_HZ[0]) & (frequency <= SHOWS_HZ[1])

@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from permway.errors import InputError
+from permway.files import check_folder
 from permway.laws.textfile import number, read_lines
 from permway.recordings.campaign import Campaign
-from permway.recordings.importers.writing import write_campaign
+from permway.recordings.importers.writing import Draft, write_campaigns
 
 TABLE = "tdr_reference_section.csv"
 COLUMNS = ("tdr_id", "messdatum", "temp", "rail", "dir")
@@ -60,6 +61,7 @@ def import_track_decay(folder: Path, output: Path, *, copy: bool = False, suppor
     """
     if support not in ("discrete", "continuous"):
         raise InputError("unknown", where="support", value=support, remedy='use "discrete" or "continuous"')
+    check_folder(output)
     source = folder / TABLE
     header, *rows = read_lines(source)
     missing = [name for name in COLUMNS if name not in header.cells]
@@ -67,6 +69,8 @@ def import_track_decay(folder: Path, output: Path, *, copy: bool = False, suppor
         raise InputError(
             f"no column {', '.join(missing)}", where=f"{source}: line {header.number}", value=header.cells
         )
+    if not rows:
+        raise InputError("holds no test", where=str(source), remedy="it needs a row for each, below its header")
     conditions, records = [], []
     for row in rows:
         if len(row.cells) != len(header.cells):
@@ -115,7 +119,7 @@ def import_track_decay(folder: Path, output: Path, *, copy: bool = False, suppor
         "records": records,
     }
     model = _model(SPACING_M if support == "discrete" else CONTINUOUS_M)
-    return write_campaign(output, campaign=campaign, model=model, sources=[source], copy=copy)
+    return write_campaigns(output, [Draft(campaign, model, [source])], copy=copy)[0]
 
 
 def _model(spacing_m: float) -> dict[str, Any]:

@@ -168,5 +168,5 @@ def solve(sweep: Sweep, model: Model, *, threads: int | None = None) -> Answer:
 
 
 def places_of(spots: Iterable[Spot]) -> tuple[Place, ...]:
-    """Places for the solver, named by what they are."""
-    return tuple(Place(body=body, x_m=x, name=f"{body}@{x!r}") for body, x in spots)
+    """Places for the solver, numbered: sensors of a campaign may share one, and have names of their own."""
+    return tuple(Place(body=body, x_m=x, name=str(i)) for i, (body, x) in enumerate(spots))

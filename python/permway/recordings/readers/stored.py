@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from permway.arrays import real_numbers
 from permway.errors import InputError
 from permway.recordings.readers.headers import clean_unit
 from permway.recordings.readers.limits import MOST_BYTES, MOST_CHANNELS, check_size
@@ -107,7 +108,7 @@ class Store:
 
     def _positive(self, name: str, value: object) -> float:
         try:
-            number = float(np.ravel(np.asarray(value, dtype=np.float64))[0])
+            number = float(np.ravel(real_numbers(np.asarray(value), name))[0])
         except (TypeError, ValueError, IndexError):
             number = float("nan")
         if not (np.isfinite(number) and number > 0.0):

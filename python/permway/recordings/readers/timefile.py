@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from permway.arrays import Reals
+from permway.arrays import Reals, is_real
 from permway.errors import InputError
 from permway.recordings.readers.limits import MOST_CHANNELS
 from permway.recordings.units import check_same
@@ -119,11 +119,7 @@ def agreed_rate(file: TimeFile, said: float | None) -> float | None:
     """
     if said is None:
         return file.sampling_Hz
-    if (
-        isinstance(said, bool)
-        or not isinstance(said, int | float | np.number)
-        or not (np.isfinite(said) and said > 0.0)
-    ):
+    if not is_real(said) or not (np.isfinite(said) and said > 0.0):
         raise InputError("must be finite and above 0 Hz", where="sampling_Hz", value=said)
     found = file.sampling_Hz
     if found is not None and abs(found / said - 1.0) > RATES_AGREE:

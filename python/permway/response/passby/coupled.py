@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from scipy.fft import irfft, next_fast_len, rfft
 
 from permway import _core
-from permway.arrays import Reals
+from permway.arrays import Reals, is_real, real_numbers
 from permway.errors import InputError
 from permway.model.irregularity_spectra import check_speed
 from permway.model.line import Line
@@ -233,7 +233,7 @@ def _march(
 def _surface(profile: tuple[ArrayLike, ArrayLike] | None, x: Reals) -> Reals:
     if profile is None:
         return np.zeros_like(x)
-    places, height = (np.asarray(part, dtype=np.float64) for part in profile)
+    places, height = (real_numbers(part, "profile") for part in profile)
     if places.ndim != 1 or places.shape != height.shape or places.size < 2:
         raise InputError("must be two lists of the same length, two points or more", where="profile")
     if not (np.isfinite(places).all() and np.isfinite(height).all() and (np.diff(places) > 0.0).all()):
@@ -254,7 +254,7 @@ def _check(
     ):
         if value is None:
             continue
-        number = isinstance(value, int | float | np.number) and not isinstance(value, bool) and np.isfinite(value)
+        number = is_real(value) and np.isfinite(value)
         if not number or value < 0.0 or (value == 0.0 and least == "above"):
             raise InputError(f"must be a number {least} 0", where=name, value=value)
     if isinstance(order, bool) or not isinstance(order, int) or not 3 <= order <= 16:

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 
-from permway.arrays import Complexes, Reals
+from permway.arrays import Complexes, Reals, is_real
 from permway.errors import InputError
 from permway.model.bodies import Beam, Shaft
 from permway.model.line import Line, Segment
@@ -221,7 +221,7 @@ def _given(name: str, value: float | None, otherwise: float) -> float:
                 remedy="give from_m and to_m",
             )
         return otherwise
-    if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not np.isfinite(value):
+    if not is_real(value) or not np.isfinite(value):
         raise InputError("must be a finite number", where=name, value=value, remedy="give it in m")
     return float(value)
 

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from permway import _core
-from permway.arrays import Complexes
+from permway.arrays import Complexes, is_real
 from permway.errors import InputError
 from permway.model.irregularity import AnyIrregularity
 from permway.model.line import Line
@@ -280,7 +280,7 @@ def _check(
     ):
         if value is None:
             continue
-        number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+        number = is_real(value)
         if not number or not (np.isfinite(value) and value > 0.0):
             raise InputError("must be a number above 0", where=name, value=value)
     if isinstance(order, bool) or not isinstance(order, int) or not 3 <= order <= 16:

@@ -18,7 +18,7 @@ from functools import partial
 import numpy as np
 from scipy.fft import next_fast_len
 
-from permway.arrays import Complexes, Reals
+from permway.arrays import Complexes, Reals, is_real, real_numbers
 from permway.errors import InputError
 from permway.model.bodies import Beam
 from permway.model.line import Line
@@ -99,9 +99,9 @@ def kernel(
         If the line cannot be solved.
     """
     for where, value in (("speed_m_per_s", speed_m_per_s), ("spacing_m", spacing_m), ("to_Hz", to_Hz)):
-        if not (np.isfinite(value) and value > 0.0):
+        if not (is_real(value) and np.isfinite(value) and value > 0.0):
             raise InputError("must be above zero", where=where, value=value)
-    wheels = np.asarray(wheels_m, dtype=np.float64)
+    wheels = real_numbers(wheels_m, "wheels_m")
     solved: Reals = STEP_HZ * np.arange(1.0, next_fast_len(int(np.ceil(to_Hz / TAPER / STEP_HZ)), real=True) + 1.0)
     kept = int(to_Hz / STEP_HZ) + 1
     answer = partial(

@@ -1,0 +1,1 @@
+"""One posterior over amendments of a model: its likelihood, one fit, one search, and what follows from them."""

@@ -1,0 +1,167 @@
+"""From posterior masses to the verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from permway.diagnosis.speak_effect import bands_of
+from permway.diagnosis.verdict import NOVEL, Status, Verdict
+from permway.diagnosis.verdict_parts import (
+    ClassMember,
+    Effect,
+    Estimate,
+    HeldOutGain,
+    Mechanics,
+    Moved,
+    Place,
+    Recalibrated,
+    Weight,
+)
+from permway.posterior.fit import Fit
+from permway.posterior.held_out import Gain
+from permway.posterior.masses import CLASS, Masses
+from permway.posterior.search import Member
+
+NAMED = 0.9
+"""Posterior probability from which an effect is named."""
+
+LIKELY = 0.5
+"""Posterior probability from which the records are said to lack nothing, or something of no catalogue."""
+
+OUTSIDE = 3.0
+"""Standard deviations from which a nominal parameter is outside its tolerance: one in 370 is there by chance."""
+
+WIDTH = 1.6449
+"""Half of a 90 % interval, in standard deviations."""
+
+
+def verdict_of(masses: Masses, held_out: Sequence[Gain]) -> Verdict:
+    """Put the verdict together.
+
+    Parameters
+    ----------
+    masses : Masses
+    held_out : sequence of Gain
+        Of the best set over the empty one; empty where nothing is missing.
+    """
+    best, empty = masses.best, masses.empty
+    effects = tuple(_effect(masses, index) for index in range(len(best.amendments)))
+    status = _status(masses, effects)
+    if status == "recalibrated":
+        effects = ()
+    elif status == "located":
+        effects = tuple(_anonymous(effect) for effect in effects[:1])
+    amended = best.fit if effects else None
+    return Verdict(
+        status=status,
+        effects=effects,
+        evidence=Weight(
+            log10_bayes_factor=(best.fit.log_evidence - empty.fit.log_evidence) / float(np.log(10.0)),
+            misfit_before=_misfit(empty.fit),
+            misfit_after=None if amended is None else _misfit(amended),
+            unmet=("misfit",) if status == "insufficient" else (),
+        ),
+        held_out={
+            f"{g.axis}: {g.name}": HeldOutGain(
+                gain_nats=g.nats,
+                db_before=g.before_dB if np.isfinite(g.before_dB) else None,
+                db_after=g.after_dB if np.isfinite(g.after_dB) else None,
+            )
+            for g in held_out
+        },
+        recalibrated=Recalibrated(before=moved(empty.fit), after={} if amended is None else moved(amended)),
+    )
+
+
+def _status(masses: Masses, effects: tuple[Effect, ...]) -> Status:
+    best = masses.best
+    if masses.nothing >= LIKELY:
+        known = best.fit.frame.evidence.campaign.parameters.known
+        fit = masses.empty.fit
+        outside = any(abs(z) > OUTSIDE for f, z in zip(fit.model.free, fit.z, strict=True) if f.name in known)
+        return "insufficient" if outside else "recalibrated"
+    if not best.amendments:
+        return "insufficient"
+    if best.fit.hyper.novel >= LIKELY:
+        return "located" if any(e.domain == "path" for e in effects) else "insufficient"
+    if any(effect.name is None for effect in effects):
+        return "ambiguous"
+    return "measurement" if all(effect.domain == "measurement" for effect in effects) else "named"
+
+
+def _effect(masses: Masses, index: int) -> Effect:
+    """Of one amendment of the best set: place, bands, class, parameters."""
+    best, empty = masses.best, masses.empty
+    hypothesis, own = best.amendments[index], best.own(index)
+    values = best.values(index)
+    sigma = np.sqrt(np.diag(best.fit.spread))[own]
+    estimates, ends = {}, list(hypothesis.locate(values).x_m or ())
+    for f, z, s in zip(hypothesis.free, best.fit.z[own], sigma, strict=True):
+        low, high = sorted(f.value(float(np.clip(z + side * WIDTH * s, *f.limits))) for side in (-1.0, 1.0))
+        estimates[f.name] = Estimate(value=values[f.name], unit=f.unit, low=low, high=high)
+        for end in (low, high):
+            ends.extend(hypothesis.locate({**values, f.name: end}).x_m or ())
+    where = hypothesis.locate(values)
+    members = _class(masses.names(index))
+    named = members[0].name != NOVEL and members[0].probability >= NAMED
+    line = best.fit.state.solved.campaign.model.line
+    gained = empty.fit.state.deviations**2 - best.fit.state.deviations**2
+    return Effect(
+        domain=hypothesis.domain,
+        place=Place.of(where, line, within=(min(ends), max(ends)) if ends else None),
+        bands=bands_of(best.fit.frame.evidence.rows.frequency_Hz, gained),
+        name=members[0].name if named else None,
+        class_=members,
+        law=Mechanics(words=hypothesis.law(values)),
+        parameters=estimates,
+    )
+
+
+def _class(names: Sequence[tuple[str, float]]) -> tuple[ClassMember, ...]:
+    """The smallest set of names that holds the posterior mass of a class."""
+    kept, held = [], 0.0
+    for name, probability in names:
+        kept.append(ClassMember(name=name, probability=min(float(probability), 1.0)))
+        held += probability
+        if held >= CLASS:
+            break
+    return tuple(kept)
+
+
+def _anonymous(effect: Effect) -> Effect:
+    """Where something acts, without what it was taken for."""
+    return Effect(
+        domain=effect.domain,
+        place=effect.place,
+        bands=effect.bands,
+        class_=(ClassMember(name=NOVEL, probability=1.0),),
+    )
+
+
+def moved(fit: Fit) -> dict[str, Moved]:
+    """The nominal parameters as a fit has them, by name."""
+    known = fit.frame.evidence.campaign.parameters.known
+    sigma = np.sqrt(np.diag(fit.spread))
+    found = {}
+    for f, z, s in zip(fit.model.free, fit.z, sigma, strict=True):
+        if f.name in known:
+            low, high = sorted(f.value(float(z + side * WIDTH * s)) for side in (-1.0, 1.0))
+            found[f.name] = Moved(
+                value=f.value(float(z)), prior=known[f.name].nominal, z=float(z), low=low, high=high
+            )
+    return found
+
+
+def _misfit(fit: Fit) -> float:
+    """Mean square of the residuals if the model lacked nothing."""
+    hyper = fit.hyper.exact()
+    covariance = fit.frame.covariance(hyper)
+    return covariance.square(fit.state.deviations) / fit.state.deviations.size
+
+
+def describe(member: Member) -> str:
+    """A set of amendments in a line."""
+    each = [f"{a.entry} ({a.locate(member.values(i)).label})" for i, a in enumerate(member.amendments)]
+    return " and ".join(each) or "nothing missing"

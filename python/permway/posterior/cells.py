@@ -1,0 +1,170 @@
+"""Where the search begins: hypotheses of the catalogue at every place, each start with its prior probability."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+
+from permway.arrays import Reals
+from permway.diagnosis.catalogue import entries
+from permway.diagnosis.evidence import Solved
+from permway.diagnosis.fit import Fit as Base
+from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
+from permway.diagnosis.spot import Found, Spot
+from permway.posterior import stated
+from permway.posterior.fit import Fit
+
+SPACING_M = 1.0
+"""Between places along a body, m: a third of what the places' priors span."""
+
+BAND_HZ, BANDS = (8.0, 200.0), 24
+"""What a place that was not scanned is handed on with: frequencies where nothing stands out."""
+
+SOMETHING = 0.5
+"""Prior probability that something is missing: shared by the entries, and in each by its places."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A start of the search.
+
+    Attributes
+    ----------
+    hypothesis : Hypothesis
+    z : ndarray
+        Of its parameters.
+    log_prior : float
+        Of the hypothesis among all, nats; beside that its parameters have priors of their own.
+    """
+
+    hypothesis: Hypothesis
+    z: Reals
+    log_prior: float
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Of its parameters, by name."""
+        return {f.name: f.value(float(v)) for f, v in zip(self.hypothesis.free, self.z, strict=True)}
+
+
+def cells(base: Fit, ruled_out: Collection[str] = ()) -> list[Cell]:
+    """All starts about a fitted model.
+
+    Parameters
+    ----------
+    base : Fit
+        Whose line says where joints and bodies are.
+    ruled_out : collection of str
+        Entries that are left out.
+    """
+    offered: dict[str, list[Hypothesis]] = {}
+    situations = list(_situations(base))
+    for name, entry in {**entries(), stated.ID: cast(Entry, stated)}.items():
+        if name not in ruled_out:
+            found = list(_offered(entry, situations))
+            if found:
+                offered[name] = found
+    found_cells = []
+    share = math.log(SOMETHING / max(len(offered), 1))
+    for hypotheses in offered.values():
+        forms: dict[tuple[str, ...], list[Hypothesis]] = defaultdict(list)
+        for hypothesis in hypotheses:
+            forms[hypothesis.form].append(hypothesis)
+        for alike in forms.values():
+            each = share - math.log(len(forms)) - math.log(len(alike) / _overlap(alike))
+            for hypothesis in alike:
+                for start in hypothesis.starts:
+                    found_cells.append(Cell(hypothesis, np.array(start, dtype=np.float64), each))
+    return found_cells
+
+
+def _overlap(alike: list[Hypothesis]) -> float:
+    """How many hypotheses of one form, at places side by side, share one place: their priors add up there."""
+    found = 1.0
+    for index, free in enumerate(alike[0].free):
+        if free.unit == "m" and len(alike) > 1:
+            sigma = free.value(1.0) - free.value(0.0)
+            centres = np.unique(np.round([h.free[index].value(0.0) for h in alike], 6))
+            if centres.size > 1 and sigma > 0.0:
+                apart = float(np.median(np.diff(centres)))
+                found *= max(1.0, min(sigma * math.sqrt(2.0 * math.pi) / apart, float(centres.size)))
+    return found
+
+
+def _offered(entry: Entry, situations: list[Situation]) -> Iterator[Hypothesis]:
+    """What an entry offers anywhere, each once."""
+    everywhere = getattr(entry, "everywhere", None)
+    if everywhere is not None:
+        yield from everywhere(situations[0])
+        return
+    seen = set()
+    for situation in situations if entry.DOMAIN == "path" else situations[:1]:
+        for hypothesis in entry.hypotheses(situation):
+            key = _key(hypothesis)
+            if key not in seen:
+                seen.add(key)
+                yield hypothesis
+
+
+def _key(hypothesis: Hypothesis) -> tuple[object, ...]:
+    """What tells two hypotheses apart: form, place and what their parameters are at some coordinates."""
+    places = []
+    for start in hypothesis.starts[:1]:
+        values = {f.name: f.value(float(z)) for f, z in zip(hypothesis.free, start, strict=True)}
+        where = hypothesis.locate(values)
+        places.append((where.what, where.x_m and tuple(round(x, 2) for x in where.x_m), where.channels))
+    spans = tuple(tuple(round(f.value(z), 6) for z in (0.0, 0.5)) for f in hypothesis.free)
+    return hypothesis.form, tuple(places), spans, hypothesis.starts
+
+
+def _situations(base: Fit) -> Iterator[Situation]:
+    """No place in particular, then every joint, then every place of every body."""
+    fit = _as_base(base)
+    line = fit.campaign.model.line
+    yield Situation(fit, ())
+    table, laws = line.joint_table(), list(line.laws)
+    for index in range(table.x.size):
+        yield Situation(fit, (_place("joint", laws[table.law[index]], float(table.x[index]), (index,)),))
+    if not table.x.size:
+        return
+    low, high = float(table.x.min()), float(table.x.max())
+    for _, segment in line.beams():
+        first, last = max(low, segment.start), min(high, segment.stop)
+        for x in np.arange(first + 0.5 * SPACING_M, last, SPACING_M):
+            yield Situation(fit, (_place("body", segment.name, float(x), ()),))
+
+
+def _place(kind: str, name: str, x: float, joints: tuple[int, ...]) -> Found:
+    """A place about which nothing is known."""
+    frequency = np.geomspace(*BAND_HZ, BANDS)
+    flat = np.full(BANDS, 1.0 / BANDS)
+    return Found(
+        Spot(kind, name, (x, x), joints), 1e6, BANDS, frequency, flat * (0.0 + 0.0j), np.ones(BANDS), flat, 1e6
+    )
+
+
+def _as_base(fit: Fit) -> Base:
+    """What entries of the catalogue are handed."""
+    residuals = fit.state.deviations
+    solved: Solved = fit.state.solved
+    return Base(
+        free=fit.model.free,
+        z=fit.z,
+        covariance=fit.spread,
+        campaign=solved.campaign,
+        evidence=fit.frame.evidence,
+        deviations=residuals,
+        clean=residuals,
+        chi2=float(residuals @ residuals),
+        prior=float(fit.z @ fit.z),
+        log_determinant=0.0,
+        jacobian=fit.jacobian,
+        heat=1.0,
+        evaluations=0,
+        build=fit.model.build,
+    )

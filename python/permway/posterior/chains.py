@@ -1,0 +1,229 @@
+"""How calibration errors of chains act on the residuals of records, as a sparse design over nodes of frequency."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg, sparse
+
+from permway.arrays import Complexes, Reals
+from permway.diagnosis.blocks import Block
+from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.blocks_spectra import SpectraBlock
+from permway.posterior.matern import Nodes
+
+
+@dataclass(frozen=True)
+class Entries:
+    """Which process moves which row: by its value at a line, and by its slope there.
+
+    Attributes
+    ----------
+    row, process : ndarray of int, shape (e,)
+    x : ndarray, shape (e,)
+        Octaves.
+    value, slope : ndarray, shape (e,)
+        Residual per neper, and per neper an octave.
+    """
+
+    row: np.ndarray
+    process: np.ndarray
+    x: Reals
+    value: Reals
+    slope: Reals
+
+
+class Chains:
+    """Calibration errors that act on some rows, independent a priori, each a Markov process over frequency.
+
+    Parameters
+    ----------
+    rows : ndarray of int, shape (n,) or (n, 2)
+        Of the residuals; with two columns, real and imaginary parts that the same design moves.
+    turn : ndarray of complex128, shape (n,), optional
+        By which complex rows are turned so that a gain moves the real part alone.
+    kinds : tuple of str
+        Of each process; what sizes are known by.
+    entries : Entries
+    """
+
+    def __init__(self, rows: np.ndarray, turn: Complexes | None, kinds: tuple[str, ...], entries: Entries) -> None:
+        self.rows, self.turn, self.kinds = rows, turn, kinds
+        self.nodes = Nodes.of(entries.x)
+        width = 2 * len(kinds)
+        self.size = width * self.nodes.x.size
+        before, value, slope = self.nodes.at(entries.x)
+        weights = value * entries.value[:, None] + slope * entries.slope[:, None]
+        first = before * width + 2 * entries.process
+        columns = np.stack([first, first + 1, first + width, first + width + 1], axis=1)
+        count = len(rows)
+        inside = columns < self.size
+        row = np.broadcast_to(entries.row[:, None], columns.shape)
+        self.design = sparse.csr_array((weights[inside], (row[inside], columns[inside])), shape=(count, self.size))
+        self.band = 2 * width if self.nodes.x.size > 1 else width
+        self._pairs()
+
+    def _pairs(self) -> None:
+        """Products of entries of one row, and where they stand in the banded normal matrix."""
+        design = self.design
+        row = np.repeat(np.arange(design.shape[0]), np.diff(design.indptr))
+        each = sparse.csr_array((np.ones(design.nnz, dtype=np.int64), (np.arange(design.nnz), row)))
+        meets = each @ each.T
+        first, second = meets.tocoo().coords
+        low = design.indices[first] >= design.indices[second]
+        first, second = first[low], second[low]
+        at, beside = design.indices[first], design.indices[second]
+        # Lower banded form: element (i, j) stands at row i - j, column j.
+        place = (at - beside).astype(np.int64) * self.size + beside
+        # Each place once: of all rows that add to it, only weights differ.
+        self._place, inverse = np.unique(place, return_inverse=True)
+        values = design.data[first] * design.data[second]
+        self._products = sparse.csr_array(
+            (values, (inverse, row[first])), shape=(self._place.size, design.shape[0])
+        )
+
+    def factor(self, sizes: Reals, length: float, weights: Reals) -> Factor:
+        """Factor the normal matrix of the processes.
+
+        Parameters
+        ----------
+        sizes : ndarray, shape (processes,)
+            Standard deviations, neper or rad.
+        length : float
+            Octaves.
+        weights : ndarray, shape (n,)
+            Precision of each row.
+        """
+        diagonal, below, log_prior = self.nodes.precision(length)
+        banded = np.zeros((self.band, self.size))
+        banded.reshape(-1)[self._place] = self._products @ weights
+        count, width = self.nodes.x.size, 2 * len(self.kinds)
+        precision = 1.0 / sizes**2
+        for i in range(2):
+            for j in range(2):
+                if i >= j:
+                    at = (np.arange(count)[:, None] * width + 2 * np.arange(len(self.kinds)) + j).reshape(-1)
+                    banded[i - j, at] += (diagonal[:, i, j, None] * precision).reshape(-1)
+                if count > 1:
+                    at = (np.arange(count - 1)[:, None] * width + 2 * np.arange(len(self.kinds)) + j).reshape(-1)
+                    banded[width + i - j, at] += (below[:, i, j, None] * precision).reshape(-1)
+        factor = linalg.cholesky_banded(banded, lower=True, overwrite_ab=True, check_finite=False)
+        prior = len(self.kinds) * log_prior - 2.0 * count * float(np.log(sizes**2).sum())
+        log_determinant = 2.0 * float(np.log(factor[0]).sum()) - prior
+        if self.turn is not None:
+            log_determinant *= 2.0
+        return Factor(self, factor, weights, log_determinant)
+
+
+@dataclass(frozen=True)
+class Factor:
+    """Applies the inverse of D + C K C', D diagonal, K that of the processes (Woodbury's identity)."""
+
+    chains: Chains
+    factor: Reals
+    weights: Reals
+    log_determinant: float
+    """Of I + C K C' D^-1."""
+
+    def apply(self, values: Reals) -> Reals:
+        """Inverse times columns, shape (n rows of the chains, k)."""
+        design = self.chains.design
+        weighted = values * self.weights[:, None]
+        pulled = np.asarray(design.T @ weighted)
+        if np.iscomplexobj(pulled):
+            both = np.concatenate([pulled.real, pulled.imag], axis=1)
+            solved = linalg.cho_solve_banded((self.factor, True), both, check_finite=False)
+            half = pulled.shape[1]
+            moved = solved[:, :half] + 1j * solved[:, half:]
+        else:
+            moved = linalg.cho_solve_banded((self.factor, True), pulled, check_finite=False)
+        return np.asarray(weighted - self.weights[:, None] * (design @ moved))
+
+
+def of_responses(blocks: list[tuple[int, FrfBlock]]) -> Chains:
+    """Errors of sensors and of the hammer at each point, of all frequency responses together.
+
+    Parameters
+    ----------
+    blocks : list of (int, FrfBlock)
+        Each with its first row.
+    """
+    names: dict[str, int] = {}
+    rows, turns, parts, start = [], [], [], 0
+    for first, block in blocks:
+        data = block.dataset.data
+        sensors = [f"sensor {name}" for name in data["sensor"].values.astype(str)]
+        points = [f"force {name}" for name in data["force"].values.astype(str)]
+        for name in (*sensors, *points):
+            names.setdefault(name, len(names))
+        shape = block.measured.shape
+        count = block.measured.size
+        index = np.arange(count).reshape(shape)
+        x = np.broadcast_to(np.log2(block.frequency), shape).reshape(-1)
+        relative = block.relative.reshape(-1)
+        for of, axis in ((sensors, 0), (points, 1)):
+            which = np.array([names[name] for name in of])
+            process = np.broadcast_to(np.moveaxis(which.reshape(-1, 1, 1), 0, axis), shape).reshape(-1)
+            parts.append(Entries(start + index.reshape(-1), process, x, relative, np.zeros(count)))
+        rows.append(first + np.stack([np.arange(count), count + np.arange(count)], axis=1))
+        turns.append(block.phase.conj().reshape(-1))
+        start += count
+    kinds = tuple(name.split(" ", 1)[0] for name in names)
+    return Chains(np.concatenate(rows), np.concatenate(turns), kinds, _joined(parts))
+
+
+def of_spectra(blocks: list[tuple[int, SpectraBlock]]) -> Chains:
+    """Errors of the channels of all runs together: log gain and phase of each."""
+    names: dict[tuple[str, complex], int] = {}
+    rows, parts, start = [], [], 0
+    for first, block in blocks:
+        channels = block.dataset.data["channel"].values.astype(str)
+        moved, count = block.moved, block.rows.channel.size
+        # From line to line, in octaves.
+        step = 1.0 / (block.dataset.record.segment_s * block.frequency * np.log(2.0))
+        nothing = np.zeros(channels.size, dtype=np.complex128)
+        for index, channel in enumerate(channels):
+            for part in (1.0 + 0.0j, 1.0j):
+                process = names.setdefault((channel, part), len(names))
+                one = nothing.copy()
+                one[index] = part
+                row = start
+                both = (moved.answers(one, nothing), moved.answers(nothing, one))
+                for (what, _, _, at, sigma), by_value, by_rate in zip(moved.parts, *both, strict=True):
+                    for take in (np.real, np.imag)[: 2 if what == "transfer" else 1]:
+                        value, slope = take(by_value) / sigma, take(by_rate) * step[at] / sigma
+                        acts = (np.abs(value) > 0.0) | (np.abs(slope) > 0.0)
+                        where = np.flatnonzero(acts)
+                        parts.append(
+                            Entries(
+                                row + where,
+                                np.full(where.size, process),
+                                np.log2(block.frequency[at][where]),
+                                value[where],
+                                slope[where],
+                            )
+                        )
+                        row += at.size
+        rows.append(first + np.arange(count))
+        start += count
+    return Chains(np.concatenate(rows), None, ("channel",) * len(names), _joined(parts))
+
+
+def _joined(parts: list[Entries]) -> Entries:
+    fields = ("row", "process", "x", "value", "slope")
+    return Entries(*(np.concatenate([getattr(part, name) for part in parts]) for name in fields))
+
+
+def chains_of(blocks: tuple[Block, ...]) -> list[Chains]:
+    """All chains of a campaign's blocks: those of hammer tests, those on board."""
+    starts = np.cumsum([0, *(block.rows.channel.size for block in blocks)])
+    placed = list(zip(starts[:-1].tolist(), blocks, strict=True))
+    responses = [(first, block) for first, block in placed if isinstance(block, FrfBlock)]
+    spectra = [(first, block) for first, block in placed if isinstance(block, SpectraBlock)]
+    found = []
+    if responses:
+        found.append(of_responses(responses))
+    if spectra:
+        found.append(of_spectra(spectra))
+    return found

@@ -1,0 +1,170 @@
+"""Covariance of all residuals: noise, discrepancy, calibration errors, and errors that a few columns span."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import linalg
+
+from permway.arrays import Reals
+from permway.diagnosis.blocks import Block
+from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.blocks_spectra import LEVEL, SpectraBlock
+from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.gather import first_size
+from permway.posterior.chains import Chains, Factor, chains_of
+from permway.posterior.hyper import Hyper
+
+NEPER_PER_DB = float(np.log(10.0)) / 20.0
+
+PAIR = 1e-9
+"""Neper: smooth errors of single pairs of sensor and point, which the discrepancy stands for."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """All of the covariance that no hyperparameter changes.
+
+    Attributes
+    ----------
+    evidence : Evidence
+        Records as residuals whitened by their noise.
+    chains : list of Chains
+    columns : ndarray, shape (n, b)
+        Errors of unit variance that act by few columns: an irregularity's level, tables.
+    sigma : ndarray, shape (n,)
+        Of each row's noise, neper.
+    statistic : ndarray of str, shape (n,)
+        Of each row's record.
+    """
+
+    evidence: Evidence
+    chains: tuple[Chains, ...]
+    columns: Reals
+    sigma: Reals
+    statistic: np.ndarray
+
+    @staticmethod
+    def of(evidence: Evidence) -> Frame:
+        """From the records."""
+        blocks = tuple(b.with_pair(PAIR) if isinstance(b, FrfBlock) else b for b in evidence.blocks)
+        evidence = evidence.with_blocks(blocks)
+        statistic = np.concatenate(
+            [np.full(b.rows.channel.size, b.dataset.record.statistic, dtype="U16") for b in blocks]
+        )
+        sigma = NEPER_PER_DB * np.concatenate([b.rows.scale_dB for b in blocks])
+        columns = _columns(evidence, blocks)
+        return Frame(evidence, tuple(chains_of(blocks)), columns, np.maximum(sigma, 1e-9), statistic)
+
+    def first(self) -> Hyper:
+        """Hyperparameters at the medians of their priors."""
+        kinds = dict.fromkeys(kind for chains in self.chains for kind in chains.kinds)
+        return Hyper.first(tuple(kinds), tuple(np.unique(self.statistic)))
+
+    def covariance(self, hyper: Hyper, keep: np.ndarray | None = None) -> Covariance:
+        """With these hyperparameters; of some rows only, if that is asked for: others then have no precision."""
+        weights = np.empty(self.sigma.size)
+        for name in np.unique(self.statistic):
+            mine = self.statistic == name
+            weights[mine] = 1.0 / (1.0 + (hyper.discrepancy(str(name)) / self.sigma[mine]) ** 2)
+        noise = -float(np.log(weights if keep is None else weights[keep]).sum())
+        if keep is not None:
+            weights = np.where(keep, weights, 0.0)
+        factors = []
+        for chains in self.chains:
+            sizes = np.array([hyper[kind] for kind in chains.kinds])
+            rows = chains.rows[:, 0] if chains.turn is not None else chains.rows
+            factors.append(chains.factor(sizes, hyper["length"], weights[rows]))
+        return Covariance(self, hyper, weights, noise, tuple(factors))
+
+
+def _columns(evidence: Evidence, blocks: tuple[Block, ...]) -> Reals:
+    """Columns of errors that are no chain's, scaled to unit variance; one origin met by two records is one."""
+    total = sum(b.rows.channel.size for b in blocks)
+    found: dict[str, Reals] = {}
+    start = 0
+    for block in blocks:
+        rows = slice(start, start + block.rows.channel.size)
+        start = rows.stop
+        for name, columns in _own(evidence, block).items():
+            whole = found.setdefault(name, np.zeros((total, columns.shape[1])))
+            whole[rows] += columns
+    return np.hstack(list(found.values())) if found else np.zeros((total, 0))
+
+
+def _own(evidence: Evidence, block: Block) -> dict[str, Reals]:
+    """Of one block, by origin."""
+    if isinstance(block, FrfBlock):
+        return {}
+    if isinstance(block, SpectraBlock):
+        speed = block.dataset.condition.speed_m_per_s
+        if speed is None:
+            return {}
+        half = np.full(block.dataset.data["channel"].size, 0.5, dtype=np.complex128)
+        step = 1.0 / (block.dataset.record.segment_s * speed)
+        level = block.moved.columns(half, LEVEL, block.frequency / speed, step)
+        return {"irregularity": first_size(evidence.campaign, "irregularity") * level}
+    whole, stop, found = block.smooth, 0, {}
+    for origin in whole.origins:
+        start, stop = stop, stop + origin.count
+        unit = np.zeros(sum(o.count for o in whole.origins))
+        columns = []
+        for index in range(start, stop):
+            unit[index] = 1.0
+            columns.append(whole.columns.push(unit))
+            unit[index] = 0.0
+        found[origin.name] = evidence.sizes[origin.name] * np.stack(columns, axis=1)
+    return found
+
+
+@dataclass(frozen=True)
+class Covariance:
+    """Of the residuals, for given hyperparameters; it applies its inverse and has its determinant."""
+
+    frame: Frame
+    hyper: Hyper
+    weights: Reals
+    noise: float
+    factors: tuple[Factor, ...]
+
+    def _chains(self, values: Reals) -> Reals:
+        """Inverse of all but the columns' part, times values (n, k)."""
+        found = values * self.weights[:, None]
+        for factor in self.factors:
+            chains = factor.chains
+            if chains.turn is None:
+                found[chains.rows] = factor.apply(values[chains.rows])
+            else:
+                real, imaginary = chains.rows.T
+                turned = (values[real] + 1j * values[imaginary]) * chains.turn[:, None]
+                solved = factor.apply(turned) * chains.turn.conj()[:, None]
+                found[real], found[imaginary] = solved.real, solved.imag
+        return found
+
+    @cached_property
+    def _spanned(self) -> tuple[Reals, Reals]:
+        solved = self._chains(self.frame.columns)
+        inner = self.frame.columns.T @ solved + np.eye(solved.shape[1])
+        return solved, linalg.cholesky(inner, lower=True)
+
+    def apply(self, values: Reals) -> Reals:
+        """Inverse times values, shape (n, k)."""
+        found = self._chains(values)
+        if self.frame.columns.shape[1]:
+            solved, lower = self._spanned
+            found -= solved @ linalg.cho_solve((lower, True), solved.T @ values)
+        return found
+
+    def square(self, values: Reals) -> float:
+        """Quadratic form of one vector."""
+        return float(values @ self.apply(values[:, None])[:, 0])
+
+    @cached_property
+    def log_determinant(self) -> float:
+        """Over that of the noise."""
+        found = self.noise + sum(f.log_determinant for f in self.factors)
+        if self.frame.columns.shape[1]:
+            found += 2.0 * float(np.log(np.diag(self._spanned[1])).sum())
+        return found

@@ -1,0 +1,134 @@
+"""A whole diagnosis by the posterior: read, search, weigh, hold out, answer."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from permway.diagnosis.catalogue import known
+from permway.diagnosis.clock import Clock, Progress
+from permway.diagnosis.compare import assemble
+from permway.diagnosis.fit import Fit as Base
+from permway.diagnosis.gather import gather, predictable
+from permway.diagnosis.labels import mislabelled
+from permway.diagnosis.result import Candidate, Diagnosis
+from permway.diagnosis.side_by_side import one_thread_of_blas
+from permway.diagnosis.speak_measurement import mixed_up, with_spoilt
+from permway.posterior.answer import verdict_of
+from permway.posterior.covariance import Frame
+from permway.posterior.fit import Fit, Fitter
+from permway.posterior.held_out import gains
+from permway.posterior.masses import Masses
+from permway.posterior.search import Member, explored
+from permway.recordings.campaign import Campaign
+
+WIDTH = 1.6449
+"""Half of a 90 % interval, in standard deviations."""
+
+
+@one_thread_of_blas()
+def diagnose(
+    campaign: Campaign,
+    *,
+    ruled_out: Collection[str] = (),
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """Say what a campaign's model leaves out.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    ruled_out : collection of str
+        Effects of the catalogue that cannot be.
+    threads : int, optional
+        Processes that share the work; the answer does not depend on how many.
+    progress : callable, optional
+        Called with the stage, how much of it is done, and of how much.
+
+    Raises
+    ------
+    InputError
+        If no record can be predicted, a file cannot be read, or what is ruled out is not in the catalogue.
+    """
+    ruled_out = known(ruled_out)
+    clock = Clock(progress)
+    clock("read")
+    kept, left_out, bad = predictable(campaign)
+    frame = Frame.of(gather(campaign, kept, threads=threads))
+    masses = Masses.of(explored(Fitter(frame), ruled_out=ruled_out, progress=clock))
+    base = as_base(masses.empty.fit)
+    mixed = mislabelled(base)
+    clock("hold out")
+    best, empty = masses.best, masses.empty
+    held_out = gains(empty.fit, best.fit) if best.amendments else []
+    verdict = mixed_up(base, mixed) if mixed is not None else verdict_of(masses, held_out)
+    clock("compare")
+    amended = as_base(best.fit) if verdict.effects and best.amendments else None
+    return Diagnosis(
+        verdict=with_spoilt(verdict, bad).model_copy(update={"ruled_out": ruled_out}),
+        base=base,
+        amended=amended,
+        found=(),
+        left=(),
+        candidates=tuple(candidate for m in masses.members for candidate in _candidates(m, empty)),
+        comparison=assemble(base.evidence, base, left_out=left_out),
+        after=None if amended is None else assemble(amended.evidence, amended, left_out=left_out),
+        law_dZ={},
+        seconds=clock.seconds(),
+    )
+
+
+def as_base(fit: Fit) -> Base:
+    """The fit in the form that comparisons and reports draw."""
+    sizes = {}
+    evidence = fit.frame.evidence
+    for origin in evidence.columns.origins:
+        kind = origin.name.split(" ", 1)[0]
+        sizes[origin.name] = fit.hyper[kind] if kind in fit.hyper.names else evidence.sizes[origin.name]
+    evidence = evidence.with_sizes(sizes, max(fit.hyper["length"], 0.5) if "length" in fit.hyper.names else None)
+    residuals, whitener = fit.state.deviations, evidence.whitener
+    clean = residuals - whitener.smooth(whitener.explained(residuals), residuals.size)
+    chi2 = fit.covariance.square(residuals)
+    return Base(
+        free=fit.model.free,
+        z=fit.z,
+        covariance=fit.spread,
+        campaign=fit.state.solved.campaign,
+        evidence=evidence,
+        deviations=residuals,
+        clean=clean,
+        chi2=chi2,
+        prior=float(fit.z @ fit.z),
+        log_determinant=fit.covariance.log_determinant,
+        jacobian=fit.jacobian,
+        heat=max(1.0, whitener.square(residuals) / max(1, residuals.size)),
+        evaluations=0,
+        build=fit.model.build,
+    )
+
+
+def _candidates(member: Member, empty: Member) -> list[Candidate]:
+    """Of a set with one amendment, a row of the report's table."""
+    if len(member.amendments) != 1:
+        return []
+    hypothesis, fit, values = member.amendments[0], member.fit, member.values(0)
+    own = member.own(0)
+    spans = {}
+    for f, z, s in zip(hypothesis.free, fit.z[own], fit.spread.diagonal()[own] ** 0.5, strict=True):
+        low, high = sorted(
+            f.value(min(max(float(z + side * WIDTH * s), f.limits[0]), f.limits[1])) for side in (-1, 1)
+        )
+        spans[f.name] = (values[f.name], low, high, f.unit)
+    return [
+        Candidate(
+            entry=hypothesis.entry,
+            family=hypothesis.family,
+            domain=hypothesis.domain,
+            place=hypothesis.locate(values),
+            law=hypothesis.law(values),
+            gain=empty.fit.objective - fit.objective,
+            log_evidence=fit.log_evidence - empty.fit.log_evidence,
+            parameters=spans,
+            stage="full",
+        )
+    ]

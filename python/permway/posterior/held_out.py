@@ -1,0 +1,91 @@
+"""What amended models predict of records that were left out: log density and decibels, group by group.
+
+The residuals of what is left out are predicted from all others: parameters, calibration errors and the discrepancy
+are conditioned on what is kept, the model taken as linear about its fit to all. The density of the left out given
+the kept is the ratio of two marginal likelihoods, each Gaussian.
+
+Source: Vehtari, Gelman and Gabry (2017), Statistics and Computing 27, 1413-1432, section 2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from permway.posterior.covariance import Covariance
+from permway.posterior.fit import Fit
+
+
+@dataclass(frozen=True)
+class Gain:
+    """What an amended model gains of one group that was left out.
+
+    Attributes
+    ----------
+    axis, name : str
+        Kind of group, and which.
+    nats : float
+        Gain of log predictive density.
+    before_dB, after_dB : float
+        Root mean square error of levels, no calibration error taken out; NaN without levels.
+    """
+
+    axis: str
+    name: str
+    nats: float
+    before_dB: float
+    after_dB: float
+
+
+def gains(base: Fit, amended: Fit) -> list[Gain]:
+    """Of every group of rows: sensors, hammer points, records, and thirds of the band."""
+    rows = base.frame.evidence.rows
+    block_of = base.frame.evidence.block_of
+    names = [b.dataset.record.name for b in base.frame.evidence.blocks]
+    groups: list[tuple[str, str, np.ndarray]] = []
+    for axis, labels in (("sensor", rows.sensor), ("force", rows.force), ("record", np.array(names)[block_of])):
+        values = [str(v) for v in np.unique(labels) if str(v)]
+        if len(values) > 1:
+            groups += [(axis, value, labels == value) for value in values]
+    edges = np.quantile(rows.frequency_Hz, [0.0, 1 / 3, 2 / 3, 1.0])
+    for low, high in pairwise(edges.tolist()):
+        mine = (rows.frequency_Hz >= low) & (rows.frequency_Hz <= high)
+        if mine.any() and not mine.all():
+            groups.append(("band", f"{low:.4g} to {high:.4g} Hz", mine))
+    found = []
+    for axis, name, out in groups:
+        before, after = _predicted(base, out), _predicted(amended, out)
+        found.append(Gain(axis, name, after[0] - before[0], before[1], after[1]))
+    return found
+
+
+def _predicted(fit: Fit, out: np.ndarray) -> tuple[float, float]:
+    """Log density of the rows left out given the others, and the error of their levels in dB."""
+    whole, _ = _marginal(fit, np.ones(out.size, dtype=bool))
+    kept, shift = _marginal(fit, ~out)
+    left = (fit.state.deviations + fit.jacobian @ shift) * fit.frame.evidence.rows.scale_dB
+    levels = fit.frame.evidence.levels_dB(fit.state.solved.datasets)
+    mine = out & np.isfinite(levels) & np.isfinite(left)
+    error = float(np.sqrt(np.mean(left[mine] ** 2))) if mine.any() else float("nan")
+    return whole - kept, error
+
+
+def _marginal(fit: Fit, keep: np.ndarray) -> tuple[float, np.ndarray]:
+    """Log marginal likelihood of some rows, and by how far the parameters are elsewhere without the others."""
+    covariance = _of_rows(fit.covariance, keep)
+    columns = np.column_stack([fit.state.deviations, fit.jacobian])
+    inner = columns.T @ covariance.apply(columns)
+    normal = inner[1:, 1:] + np.eye(fit.z.size)
+    slope = inner[1:, 0] + fit.z
+    shift = -np.linalg.solve(normal, slope) if fit.z.size else np.zeros(0)
+    least = inner[0, 0] + fit.z @ fit.z + slope @ shift
+    curvature = np.linalg.slogdet(normal)[1] if fit.z.size else 0.0
+    count = int(keep.sum())
+    return -0.5 * float(least + curvature + covariance.log_determinant + count * np.log(2.0 * np.pi)), shift
+
+
+def _of_rows(covariance: Covariance, keep: np.ndarray) -> Covariance:
+    """As if other rows had no precision: they then weigh nothing, and their noise is not counted."""
+    return covariance.frame.covariance(covariance.hyper, keep)

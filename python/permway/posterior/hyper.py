@@ -1,0 +1,125 @@
+"""What the likelihood does not know beforehand: sizes and length of calibration errors, and the discrepancy.
+
+The same hyperpriors hold for every set of amendments, and every set is given its own most probable values: what is
+estimated about the base alone would take an effect for an error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from permway.arrays import Reals
+
+SIZE, SIZE_FACTOR = 0.04, 3.0
+"""Calibration errors, neper or rad: median (0.35 dB) and the factor of one standard deviation (0.12 to 1 dB)."""
+
+LENGTH, LENGTH_FACTOR = 0.8, 2.5
+"""Their correlation length, octaves: median, and the factor of one standard deviation (0.32 to 2 octaves)."""
+
+SHORTEST, LONGEST = 0.15, 4.0
+"""Octaves: bounds of the length, as measured of real chains and of hammers that sit badly."""
+
+EXACT, EXACT_FACTOR = 0.003, 2.0
+"""Discrepancy of a model that lacks nothing, neper: of its idealisation (0.026 dB), and the factor of one standard
+deviation."""
+
+COARSEST = 2.0
+"""Neper: the largest discrepancy."""
+
+NOVEL = 0.05
+"""Prior probability that something of no catalogue acts: then the discrepancy is equally likely in its logarithm
+from :data:`EXACT` to :data:`COARSEST`."""
+
+
+@dataclass(frozen=True)
+class Hyper:
+    """Hyperparameters by their logarithms.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Kinds of chains, "length", and "discrepancy " of each statistic.
+    log : ndarray, shape (h,)
+    """
+
+    names: tuple[str, ...]
+    log: Reals
+
+    @staticmethod
+    def first(kinds: Sequence[str], statistics: Sequence[str]) -> Hyper:
+        """The medians of the priors."""
+        values = dict.fromkeys(kinds, SIZE)
+        if kinds:
+            values["length"] = LENGTH
+        values |= {f"discrepancy {name}": EXACT for name in statistics}
+        return Hyper(tuple(values), np.log(np.array(list(values.values()))))
+
+    def __getitem__(self, name: str) -> float:
+        return float(np.exp(self.log[self.names.index(name)]))
+
+    def discrepancy(self, statistic: str) -> float:
+        """Of a statistic, neper."""
+        return self[f"discrepancy {statistic}"]
+
+    def with_discrepancy(self, value: float) -> Hyper:
+        """The same with this discrepancy everywhere."""
+        log = np.where([n.startswith("discrepancy") for n in self.names], np.log(value), self.log)
+        return Hyper(self.names, log)
+
+    def exact(self) -> Hyper:
+        """The same of a model that lacks nothing."""
+        return self.with_discrepancy(EXACT)
+
+    def moved(self, log: Reals) -> Hyper:
+        """With other logarithms, kept within the bounds."""
+        low, high = self.bounds()
+        return Hyper(self.names, np.clip(log, low, high))
+
+    def bounds(self) -> tuple[Reals, Reals]:
+        """Of the logarithms."""
+        ends = np.array([_bounds(name) for name in self.names]).reshape(-1, 2)
+        return np.log(ends[:, 0]), np.log(ends[:, 1])
+
+    @property
+    def log_prior(self) -> float:
+        """Density of the logarithms."""
+        return float(sum(_log_prior(n, v) for n, v in zip(self.names, self.log, strict=True)))
+
+    @property
+    def novel(self) -> float:
+        """Probability that a discrepancy is more than that of an idealisation, given these values."""
+        known = 1.0
+        for name, log in zip(self.names, self.log, strict=True):
+            if name.startswith("discrepancy"):
+                exact, broad = _components(log)
+                known *= exact / (exact + broad)
+        return 1.0 - known
+
+
+def _bounds(name: str) -> tuple[float, float]:
+    if name == "length":
+        return SHORTEST, LONGEST
+    return (1e-4, COARSEST) if name.startswith("discrepancy") else (1e-3, 0.5)
+
+
+def _normal(log: float, median: float, factor: float) -> float:
+    sigma = np.log(factor)
+    return float(np.exp(-0.5 * ((log - np.log(median)) / sigma) ** 2) / (sigma * np.sqrt(2.0 * np.pi)))
+
+
+def _components(log: float) -> tuple[float, float]:
+    """Density of a discrepancy as an idealisation has it, and as something missing has it, each with its prior."""
+    inside = np.log(EXACT) <= log <= np.log(COARSEST)
+    broad = NOVEL / np.log(COARSEST / EXACT) if inside else 0.0
+    return (1.0 - NOVEL) * _normal(log, EXACT, EXACT_FACTOR), broad
+
+
+def _log_prior(name: str, log: float) -> float:
+    if name == "length":
+        return float(np.log(_normal(log, LENGTH, LENGTH_FACTOR)))
+    if name.startswith("discrepancy"):
+        return float(np.log(sum(_components(log)) + 1e-300))
+    return float(np.log(_normal(log, SIZE, SIZE_FACTOR)))

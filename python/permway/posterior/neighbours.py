@@ -1,0 +1,167 @@
+"""Discrete moves of a fit at rest: stretches by whole joints, places by metres, frequencies by parts of octaves.
+
+From a stretch to one that has a joint more there is no way that improves all along, and a resonance has a valley
+of its own at each frequency. A fit that rests is therefore compared with its neighbours, all other parameters
+moving along in a straight line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import product
+
+import numpy as np
+from scipy import linalg
+
+from permway.arrays import Reals
+from permway.diagnosis.catalogue._interval import spacing_of, stations_of
+from permway.diagnosis.fit import Free
+from permway.diagnosis.hypothesis import Hypothesis
+from permway.diagnosis.side_by_side import SMALL, each
+from permway.errors import InputError, SolveError
+from permway.posterior.fit import Fit, Fitter
+
+STRETCH = ("centre_m", "length_m")
+"""Parameters by which a hypothesis says where it begins and ends."""
+
+JOINTS = (-2, -1, 0, 1, 2)
+"""By which either end moves, or metres along a body. More are reached in several moves."""
+
+PLACES = (-4.0, -2.0, -1.0, 1.0, 2.0, 4.0)
+"""By which a place moves, in spacings of joints, or metres along a body."""
+
+OCTAVES = (-1.0, -0.5, -0.25, 0.25, 0.5, 1.0)
+"""By which a frequency moves."""
+
+WORTH = 2.0
+"""Of the objective, that a move has to promise before it is fitted."""
+
+MOVES = 6
+"""In a row, at most."""
+
+
+def rested(fitter: Fitter, fit: Fit, own: slice, hypothesis: Hypothesis, steps: int) -> Fit:
+    """A fit moved to better neighbours until none promises more.
+
+    Parameters
+    ----------
+    fitter : Fitter
+    fit : Fit
+    own : slice
+        Where the hypothesis's parameters stand among the fit's.
+    hypothesis : Hypothesis
+    steps : int
+        Of the fit after each move.
+    """
+    for _ in range(MOVES):
+        moved = list(_moves(fit, own, hypothesis))
+        if not moved:
+            return fit
+        promised = [score for score, _ in _scored(fit, moved)]
+        best = int(np.argmin(promised))
+        if not promised[best] < fit.objective - WORTH:
+            return fit
+        try:
+            start = fitter.begin(fit.model, moved[best][0], fit.hyper, fit.jacobian)
+            new = fitter.fit(fitter.settled(start, fixed=own.start), steps=steps)
+        except (InputError, SolveError):
+            return fit
+        if not new.objective < fit.objective:
+            return fit
+        fit = new
+    return fit
+
+
+def _moves(fit: Fit, own: slice, hypothesis: Hypothesis) -> Iterator[tuple[Reals, tuple[int, ...]]]:
+    """Coordinates of neighbours, and which of them are set."""
+    free = hypothesis.free
+    names = [f.name for f in free]
+    values = {f.name: f.value(float(z)) for f, z in zip(free, fit.z[own], strict=True)}
+    line = fit.state.solved.campaign.model.line
+    what = hypothesis.locate(values).what
+    step = spacing_of(line, what) if what in line.laws else 1.0
+
+    def changed(to: dict[str, float]) -> Iterator[tuple[Reals, tuple[int, ...]]]:
+        z, places = fit.z.copy(), []
+        for name, value in to.items():
+            index = names.index(name)
+            at = own.start + index
+            found = _coordinate(free[index], value)
+            if found is None:
+                return
+            z[at] = found
+            places.append(at)
+        yield z, tuple(places)
+
+    if all(name in names for name in STRETCH):
+        for low, high in _stretches(values, stations_of(line, what) if what in line.laws else None, hypothesis):
+            yield from changed({"centre_m": 0.5 * (low + high), "length_m": high - low})
+    elif "x_m" in names:
+        for away in PLACES:
+            yield from changed({"x_m": values["x_m"] + away * step})
+    for name, one in zip(names, free, strict=True):
+        if one.unit == "Hz":
+            for octaves in OCTAVES:
+                yield from changed({name: values[name] * 2.0**octaves})
+
+
+def _stretches(
+    values: Mapping[str, float], stations: Reals | None, hypothesis: Hypothesis
+) -> Iterator[tuple[float, float]]:
+    """Ends of stretches near one: of whole joints where there are any, itself brought to joints among them."""
+    where = hypothesis.locate(values).x_m
+    half = 0.5 * values["length_m"]
+    low, high = where or (values["centre_m"] - half, values["centre_m"] + half)
+    if stations is None or not stations.size:
+        for left, right in product(JOINTS, repeat=2):
+            if (left or right) and low + left <= high + right:
+                yield low + left, high + right
+        return
+    first, last = (int(np.argmin(np.abs(stations - x))) for x in (low, high))
+    for left, right in product(JOINTS, repeat=2):
+        a, b = first + left, last + right
+        if 0 <= a <= b < stations.size:
+            yield float(stations[a]), float(stations[b])
+
+
+def _coordinate(free: Free, value: float) -> float | None:
+    """Z of a value; None outside the parameter's limits."""
+    low, high = free.limits
+    ends = free.value(low), free.value(high)
+    if not min(ends) <= value <= max(ends):
+        return None
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if (free.value(middle) < value) == (ends[0] < ends[1]):
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+def _scored(fit: Fit, moved: list[tuple[Reals, tuple[int, ...]]]) -> list[tuple[float, int]]:
+    """The least objective of each neighbour while all that was not set moves along, and its index."""
+    evidence = fit.frame.evidence
+    rest = fit.objective - fit.covariance.square(fit.state.deviations) - float(fit.z @ fit.z)
+    solved = fit.covariance.apply(fit.jacobian)
+
+    def residuals(one: tuple[Reals, tuple[int, ...]]) -> Reals | None:
+        try:
+            campaign = fit.model.build(fit.model.values(one[0]))
+            found = evidence.deviations(evidence.predicted(campaign, fit.state.solved).datasets)
+        except (InputError, SolveError):
+            return None
+        return found if np.isfinite(found).all() else None
+
+    found = []
+    for index, values in enumerate(each(residuals, moved, threads=evidence.threads, least=SMALL)):
+        if values is None:
+            found.append((np.inf, index))
+            continue
+        z, places = moved[index]
+        moving = np.setdiff1d(np.arange(z.size), places)
+        slope = solved[:, moving].T @ values + z[moving]
+        normal = fit.normal[np.ix_(moving, moving)]
+        gain = float(slope @ linalg.solve(normal, slope, assume_a="pos")) if moving.size else 0.0
+        found.append((fit.covariance.square(values) + float(z @ z) - gain + rest, index))
+    return found

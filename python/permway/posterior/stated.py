@@ -1,0 +1,68 @@
+"""What is stated wrongly: a nominal parameter that is farther off than its tolerance says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from permway.diagnosis.fit import Free
+from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where
+from permway.recordings.campaign import Campaign
+
+ID = "owner_value"
+DOMAIN: Domain = "path"
+FAMILY = "stated value"
+SUMMARY = "A nominal parameter is farther from its stated value than its tolerance says."
+PARAMETERS = {"deviations": "1: standard deviations by which the stated value is off"}
+SIGNATURE = "All records at once, as a change of that parameter has it."
+CONFUSED_WITH = {"support_scatter": "hammer points at every fastener"}
+SOURCE = "Kennedy and O'Hagan (2001), J. R. Stat. Soc. B 63, 425-464, section 2"
+
+WIDER = 5.0
+"""Standard deviation of how far off a wrongly stated value is, in standard deviations of its tolerance. Twice as
+much lowers the evidence of a wrong value by at most ln 2 nats."""
+
+BEGUN = (-1.0, 1.0)
+"""Where a fit begins, in standard deviations of that."""
+
+
+def everywhere(situation: Situation) -> Iterator[Hypothesis]:
+    """One for each nominal parameter."""
+    for known in situation.campaign.parameters.known.values():
+        paths = known.parameter.paths
+        first = paths[0] if isinstance(paths, tuple) else paths
+        yield _of(known.name, _domain(first))
+
+
+hypotheses = everywhere
+
+
+def _of(name: str, domain: Domain) -> Hypothesis:
+    def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
+        # The nominal parameter itself is moved, before the campaign is built.
+        del values
+        return campaign
+
+    return Hypothesis(
+        entry=ID,
+        domain=domain,
+        family=FAMILY,
+        free=(Free("deviations", "1", lambda z: WIDER * z, (-8.0, 8.0)),),
+        amend=amend,
+        locate=lambda _: Where(what=name),
+        starts=tuple((start,) for start in BEGUN),
+        law=lambda v: (
+            f"{name} is {v['deviations']:.1f} standard deviations of its tolerance from its stated value"
+        ),
+        size="deviations",
+        none=0.0,
+        variant=name,
+        moves=name,
+    )
+
+
+def _domain(path: str) -> Domain:
+    if path.startswith("train"):
+        return "vehicle"
+    if path.startswith(("irregularity", "campaign.irregularity")):
+        return "irregularity"
+    return "measurement" if path.startswith("campaign") else "path"

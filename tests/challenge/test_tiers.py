@@ -1,0 +1,96 @@
+"""Seeds of a tier depend on its own name: another tier in the list, or another order, changes no campaign."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import Any
+
+import pytest
+from permway.challenge import case as drawing
+from permway.challenge import suite
+from permway.challenge.case import TIERS, draw
+from permway.challenge.suite import CASES, suite_of
+from permway.challenge.tiers import HASHED, NUMBERS, number_of
+
+SEED_7: dict[Any, tuple[str, str]] = {
+    "null": (
+        "e69b3355d3d53d16029de96eec0a79616a6fa5a95206335fa0c92beb10af1a5e",
+        "2dcb807d5f728766c8161629b7572640ae21136a8d1a68849f12d7e77c60e0e3",
+    ),
+    "single": (
+        "8c111087ec85dc2a2095a27474ff190cf920beec28b61478c75ea90694d4ceaa",
+        "b921ab7af365a951ed28d86d7cbd5efc71cf91c7b05460b96b9826de5e589c6b",
+    ),
+    "twin": (
+        "7ed752d8bb664fbdd6d95884f796644a8b037fe1e079f9060076636936dbc35b",
+        "86d01eb7b96918e70bb5733ef3320e68966e2d728060e44ab03f63666d4eb89e",
+    ),
+    "multiple": (
+        "0dc8de56a87063b8befa3ae0c0d8d53d51a2805160747e3e96b9a70f42ecf605",
+        "aa46dab6010a4b294d5856cf88ecf28e1a57b189f0d9988f044e90f334a6f810",
+    ),
+    "outside": (
+        "d4b00eaaccc0084df46c630df3b5b163f48a96c0dd603b47f8267c05ff378565",
+        "80ab62cddb32cc9c644d3acda730b04d2f149760f30d5a641fe17e9375eb2016",
+    ),
+    "nonlinear": (
+        "6c6174bfbbbdfef5d4e21b2e08cdd11e1b18da811bf07d0822bb85cb5e582fcc",
+        "2233d3ab83b6688fdeb5d313efe121d4f8e603e14cf55835378f28a5fcd74bb7",
+    ),
+    "graded": (
+        "307afbcbcae930004c664f6f91e8893d35f0783aaf803d97c41f4c11f9cba32d",
+        "228541c6c4137a6df24b6a9701e9222c6b58e0b6714b5e508436585d059c0ce2",
+    ),
+    "sparse": (
+        "78ccb124ec1f14af1026072609b0a9b70fc5a1c1e2ae3578deadddb44ab62301",
+        "f50de3eb655923e891a35d9a8aa1c5f2d54ba6133b776dbb8aac068e9e66a4b3",
+    ),
+    "running": (
+        "654226bbd1af8f06971c933305e67e9bda5e0df5abd37c91900805511d098cbb",
+        "4b2494df5680ae0c6f6830657328c766f26564b54251524499ea3a599ce5fc4a",
+    ),
+}
+"""SHA-256 of `truth.json` and of `sheet.json` of seed 7, of each tier that has a number by hand."""
+
+SUITE_700000 = "ea5e680bdaf08a2a39c7d9f2d39c8c8c9308ed744f47b0edcf245896aa000f15"
+"""SHA-256 of the tiers and seeds of the suite 700000, in their order."""
+
+FIRST_TIERS: tuple[Any, ...] = ("null", "single", "twin", "multiple", "outside", "nonlinear", "graded")
+
+
+def hashed(content: Any) -> str:
+    return hashlib.sha256((json.dumps(content, indent=1) + "\n").encode()).hexdigest()
+
+
+@pytest.mark.parametrize("tier", SEED_7)
+def test_a_seed_makes_the_campaign_that_it_made(tier: Any) -> None:
+    made = draw(7, tier)
+    assert (hashed(made.truth), hashed(made.sheet)) == SEED_7[tier]
+
+
+def test_a_suite_has_the_seeds_that_it_had(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(suite, "CASES", {tier: CASES[tier] for tier in FIRST_TIERS})
+    found = [(one.tier, one.seed) for one in suite_of(700000)]
+    assert hashlib.sha256(repr(found).encode()).hexdigest() == SUITE_700000
+
+
+def test_another_tier_or_another_order_changes_no_campaign(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = [draw(3, tier).truth for tier in SEED_7]
+    monkeypatch.setattr(drawing, "TIERS", ("invented", *reversed(TIERS)))
+    assert [draw(3, tier).truth for tier in SEED_7] == before
+
+
+def test_another_tier_or_another_order_changes_no_seed_of_a_suite(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = suite_of(10)
+    more: dict[Any, int] = {"invented": 50, **dict(reversed(CASES.items()))}
+    monkeypatch.setattr(suite, "CASES", more)
+    assert [one for one in suite_of(10) if one.tier in CASES] == before
+
+
+def test_every_tier_has_a_number_of_its_own() -> None:
+    numbers = [number_of(tier) for tier in TIERS]
+    assert len(set(numbers)) == len(numbers)
+    assert number_of("invented") == number_of("invented")
+    assert HASHED[0] <= number_of("invented") < HASHED[1]
+    assert max(NUMBERS.values()) < HASHED[0]
