@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from permway.diagnosis.hypothesis import Where
+from permway.diagnosis.tolerances import limit
 from permway.diagnosis.verdict import (
     ClassMember,
     Effect,
@@ -28,6 +29,7 @@ from permway.diagnosis.verdict_parts import Condition, Moved, Recalibrated
 from permway.diagnosis.verdict_words import smallest, span
 from permway.errors import InputError
 from permway.model.line import Line
+from scipy.special import ndtr
 from simulated import MODEL
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -249,12 +251,40 @@ def test_a_parameter_that_nobody_would_believe_is_said() -> None:
         "; level has to be 7 for it, 7 standard deviations from the owner's 0"
         " and pad.k has to be 2e7 for it, 4.4 standard deviations from the owner's 6e7."
     )
-    found = verdict("recalibrated", recalibrated=Recalibrated(before={"slab.E": near, **far})).sentence
+    told = Recalibrated(before={"slab.E": near, **far})
+    found = verdict("located", effects=(LOST,), recalibrated=told).sentence
     assert found.endswith(words)
     assert "slab.E" not in found
     # What an amendment brings back is off no more.
     back = Recalibrated(before=far, after=dict.fromkeys(far, near))
     assert "has to be" not in verdict("named", effects=(LOST,), recalibrated=back).sentence
+
+
+def test_a_model_that_fits_outside_a_tolerance_says_so() -> None:
+    far = Moved(value=2.1e7, prior=3e7, z=-4.4, low=2e7, high=2.2e7)
+    near = Moved(value=1.05e9, prior=1e9, z=1.2)
+    told = Recalibrated(before={"slab.E": near, "pad.k": far, "level": Moved(value=7.0, prior=0.0, z=7.0)})
+    assert verdict("outside_tolerance", recalibrated=told).sentence == (
+        "The model fits only with level at 7, in place of the stated 0 and 7 standard deviations of its tolerance "
+        "away and pad.k at 2.1e7 (90 %: 2e7 to 2.2e7), 30 % below the stated 3e7 and 4.4 standard deviations of "
+        "its tolerance away: what is stated there is wrong, or something is missing that acts like it."
+    )
+    with pytest.raises(InputError, match="has no effects"):
+        Verdict(status="outside_tolerance", effects=(LOST,))
+    # Nor is physics ruled out where a measurement is at fault beside it.
+    faulty = LOST.model_copy(update={"domain": "measurement"})
+    for moved, said in ((near, True), (far, False)):
+        words = verdict(
+            "measurement", effects=(faulty,), recalibrated=Recalibrated(after={"pad.k": moved})
+        ).sentence
+        assert ("no physics is missing" in words) is said
+
+
+def test_the_tolerance_of_one_parameter_is_two_deviations() -> None:
+    assert limit(1) == pytest.approx(2.0, abs=1e-3)
+    # As often of many parameters as of one, some lies beyond: exactly, and not only by the bound that is used.
+    for count in (2, 5, 36):
+        assert 1.0 - (2.0 * ndtr(limit(count)) - 1.0) ** count == pytest.approx(0.045, abs=0.001)
 
 
 def test_nothing_missing_in_one_sentence() -> None:

@@ -12,7 +12,7 @@ import numpy as np
 
 from permway.challenge.case import SLOW_OR_FAST, WARMER_K, Case, Tier, draw, write, write_truth
 from permway.challenge.run import VERDICT
-from permway.challenge.score import FOUND
+from permway.challenge.score import FITS, FOUND
 from permway.challenge.weigh import whole
 from permway.errors import InputError
 
@@ -20,7 +20,7 @@ FOLLOWED, ADVICE = "followed", "advice"
 """Folder of the campaigns that were measured again, and in it that of what was advised."""
 
 NOTHING = "recalibrated"
-"""The rival of a suspicion, and the status of a verdict that calls nothing."""
+"""The rival of a suspicion: that nothing is missing."""
 
 
 @dataclass(frozen=True)
@@ -195,7 +195,7 @@ def _judged(name: str, said: dict[str, Any], truth: dict[str, Any], verdict: dic
     true = tuple(str(one["id"]) for one in truth["effects"]) or (NOTHING,)
     called = verdict["effects"] if verdict["status"] in FOUND else []
     classes = [{m["name"] for m in effect["class"]} | {effect["name"]} - {None} for effect in called]
-    if verdict["status"] == NOTHING:
+    if verdict["status"] in FITS:
         classes = [{NOTHING}]
     left = {one for found in classes for one in found} & set(rivals)
     known = set(true) & set(rivals)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from permway.challenge.score import Scored
+from permway.challenge.score import FITS, Scored
 
 WIDTH = 1.6449
 """Standard deviations to either end of a 90 % interval."""
@@ -49,7 +49,7 @@ def pulls(folder: Path, scored: Iterable[Scored], verdicts: Path | None = None) 
     """
     found = []
     for one in scored:
-        right = one.status == "recalibrated" if one.found is None else one.family and one.all_found in (None, True)
+        right = one.status in FITS if one.found is None else one.family and one.all_found in (None, True)
         if not right or one.false_name:
             continue
         true = json.loads((Path(folder) / "truth" / f"{one.name}.json").read_text())

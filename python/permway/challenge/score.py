@@ -17,6 +17,9 @@ from permway.errors import InputError
 FOUND = ("named", "ambiguous", "described", "located", "measurement")
 """Statuses that call something missing or at fault."""
 
+FITS = ("recalibrated", "outside_tolerance")
+"""Statuses of a model that fits without any effect."""
+
 DIFFICULTY = {"easy": 200.0, "medium": 50.0, "hard": 15.0, "too small": -np.inf}
 """Least deviance against the best recalibrated base; too small is what the records do not tell."""
 

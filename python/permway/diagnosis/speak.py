@@ -23,7 +23,8 @@ from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.search import Finalist, Round
 from permway.diagnosis.speak_effect import bands_of, effect_of, of_another_form
 from permway.diagnosis.spot import Found
-from permway.diagnosis.verdict import NOVEL, Status, Verdict
+from permway.diagnosis.tolerances import outside
+from permway.diagnosis.verdict import NOVEL, RIGHT, Status, Verdict
 from permway.diagnosis.verdict_parts import (
     Condition,
     Effect,
@@ -44,7 +45,7 @@ LEFT, LITTLE = 1.3, 0.1
 """Mean square of the deviations from which something is left, and the share of what is too much that an effect has
 to explain then."""
 
-RIGHT = 1.05
+WEIGHS_RIGHTLY = 1.05
 """The same, up to which an amended model weighs records rightly."""
 
 CREDITED = 1.1
@@ -110,7 +111,7 @@ def verdict_of(
         )
     if not accepted or proof is None:
         status, effects = _nothing(base, first, found)
-        level = beyond(base, first.threshold) if status == "recalibrated" else None
+        level = beyond(base, first.threshold) if status in RIGHT else None
         if level is not None:
             status, effects = "named", (level,)
         return Verdict(
@@ -174,7 +175,7 @@ def _told(base: Fit, accepted: Sequence[Finalist], proof: Proof | None) -> Fit:
 
     What does not fit, as noise that stands for impacts, makes lines less coherent, and so hides that they scatter.
     """
-    if proof is not None and proof.weighed.heat < RIGHT:
+    if proof is not None and proof.weighed.heat < WEIGHS_RIGHTLY:
         return proof.weighed
     return accepted[-1].fit if accepted else base
 
@@ -235,7 +236,9 @@ def _nothing(base: Fit, first: Round, found: Sequence[Found]) -> tuple[Status, t
             return "located", (
                 Effect(domain="path", place=place, bands=bands_of(best.frequency_Hz, best.by_band)),
             )
-    return ("insufficient" if base.heat > UNFIT else "recalibrated"), ()
+    if base.heat > UNFIT:
+        return "insufficient", ()
+    return ("outside_tolerance" if outside(recalibrated_of(base)) else "recalibrated"), ()
 
 
 def _alike(found: Sequence[Found]) -> tuple[float, float]:

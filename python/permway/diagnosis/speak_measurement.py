@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.labels import Mislabelled
 from permway.diagnosis.recalibrated_values import recalibrated_of
-from permway.diagnosis.verdict import Status, Verdict
+from permway.diagnosis.verdict import RIGHT, Status, Verdict
 from permway.diagnosis.verdict_parts import Effect, Mechanics, Place, Recalibrated
 from permway.recordings.spoilt import Spoilt
 
@@ -44,7 +44,7 @@ def with_spoilt(said: Verdict, spoilt: Sequence[Spoilt]) -> Verdict:
         )
         for (channel, kind), ones in faults.items()
     )
-    status: Status = "measurement" if said.status == "recalibrated" else said.status
+    status: Status = "measurement" if said.status in RIGHT else said.status
     # Through a check: a copy would not be.
     return Verdict.model_validate(
         said.model_dump(by_alias=True) | {"status": status, "effects": [*said.effects, *effects]}

@@ -34,8 +34,20 @@ FORMAT: Final = 1
 NOVEL = "novel"
 """The member of a class that stands for physics that the catalogue does not hold."""
 
-Status = Literal["recalibrated", "measurement", "named", "ambiguous", "described", "located", "insufficient"]
-UNPROVED: tuple[Status, ...] = ("recalibrated", "insufficient")
+Status = Literal[
+    "recalibrated",
+    "outside_tolerance",
+    "measurement",
+    "named",
+    "ambiguous",
+    "described",
+    "located",
+    "insufficient",
+]
+RIGHT: tuple[Status, ...] = ("recalibrated", "outside_tolerance")
+"""Statuses of a model that fits without any effect."""
+
+UNPROVED: tuple[Status, ...] = (*RIGHT, "insufficient")
 """Statuses that call nothing missing."""
 
 
@@ -67,8 +79,8 @@ class Verdict(VerdictPart):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if self.status == "recalibrated" and self.effects:
-            raise fault('the status "recalibrated" has no effects', "effects")
+        if self.status in RIGHT and self.effects:
+            raise fault(f'the status "{self.status}" has no effects', "effects")
         if self.status not in UNPROVED and not self.effects:
             raise fault(f'the status "{self.status}" needs an effect', "effects")
         if self.evidence.unmet and self.status != "insufficient":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
+from permway.diagnosis.tolerances import outside
 from permway.diagnosis.verdict import NOVEL, Effect, Estimate, HeldOutGain, Moved, Smallest, Verdict
 from permway.diagnosis.verdict_parts import E_VALUE, RECALIBRATED, Condition
 
@@ -16,11 +17,12 @@ MOST_DIGITS = 7
 INCOMPLETE = 1.5
 """Misfit from which an amended model is said not to be all of it."""
 
-BEYOND, MOST_BEYOND = 4.0, 2
-"""Standard deviations of its tolerance from which a parameter is said to be off, and how many at most."""
+MOST_OUTSIDE = 2
+"""Parameters outside their tolerance that a sentence names, at most."""
 
 STATUS = {
     "recalibrated": "nothing missing",
+    "outside_tolerance": "parameter outside its tolerance",
     "measurement": "fault in the measurement",
     "named": "effect named",
     "ambiguous": "effect found, several names possible",
@@ -44,6 +46,8 @@ def sentence(verdict: Verdict) -> str:
     match verdict.status:
         case "recalibrated":
             parts = ["Nothing is missing beyond what the stated tolerances allow", _seen(verdict)]
+        case "outside_tolerance":
+            parts = [_outside(verdict), _seen(verdict)]
         case "insufficient":
             # What screening found is no suspicion: it has no class.
             suspects = [effect for effect in verdict.effects if effect.class_]
@@ -55,7 +59,7 @@ def sentence(verdict: Verdict) -> str:
         case "named":
             parts = [_named(verdict.effects[0]), _more(verdict), _better(verdict), _open(verdict)]
         case "measurement":
-            sure = "" if _open(verdict) else " and no physics is missing"
+            sure = "" if _open(verdict) or outside(_moved(verdict)) else " and no physics is missing"
             words = f"The measurement is at fault{sure}: {_named(verdict.effects[0])}"
             parts = [words, _more(verdict), _better(verdict), _open(verdict)]
         case "ambiguous":
@@ -71,7 +75,8 @@ def sentence(verdict: Verdict) -> str:
             words = f"{_at(effect)} physics is missing that these records cannot describe"
             words += f" ({effect.law.words})" if effect.law.words else ""
             parts = [words, _more(verdict), _better(verdict), _advice(verdict)]
-    parts.append(_beyond(verdict))
+    if verdict.status != "outside_tolerance":
+        parts.append(_beyond(verdict))
     if verdict.ruled_out:
         parts.append(f"not considered, for somebody had ruled it out: {', '.join(verdict.ruled_out)}")
     text = "; ".join(part for part in parts if part)
@@ -205,16 +210,44 @@ def _open(verdict: Verdict) -> str:
     return f"this is not all of it: what is left has {quantity(left)} times the mean square that errors explain"
 
 
+def _moved(verdict: Verdict) -> dict[str, Moved]:
+    """The campaign's parameters as the last of the fits has them."""
+    return verdict.recalibrated.after or verdict.recalibrated.before
+
+
 def _beyond(verdict: Verdict) -> str:
-    """Parameters of the owner's that stand where nobody would believe them, the farthest first."""
-    known = verdict.recalibrated.after or verdict.recalibrated.before
-    off = {name: abs(one.z) for name, one in known.items() if abs(one.z) >= BEYOND}
+    """Parameters outside their tolerances beside what else is said, the farthest first."""
+    known = _moved(verdict)
     said = [
-        f"{name} has to be {quantity(known[name].value)} for it, {quantity(off[name])} standard deviations from "
-        f"the owner's {quantity(known[name].prior)}"
-        for name in sorted(off, key=lambda name: -off[name])[:MOST_BEYOND]
+        f"{name} has to be {quantity(known[name].value)} for it, {quantity(abs(known[name].z))} standard "
+        f"deviations from the owner's {quantity(known[name].prior)}"
+        for name in outside(known)[:MOST_OUTSIDE]
     ]
     return " and ".join(said)
+
+
+def _outside(verdict: Verdict) -> str:
+    """That the model fits with values only that the tolerances do not allow."""
+    known, names = _moved(verdict), outside(_moved(verdict))
+    said = " and ".join(_off(name, known[name]) for name in names[:MOST_OUTSIDE])
+    more = f" (and {len(names) - MOST_OUTSIDE} more)" if len(names) > MOST_OUTSIDE else ""
+    return (
+        f"The model fits only with {said or 'a value outside its tolerance'}{more}: what is stated there is "
+        "wrong, or something is missing that acts like it"
+    )
+
+
+def _off(name: str, one: Moved) -> str:
+    """A parameter's value, and how far from the stated one."""
+    ends = f" (90 %: {text})" if (text := interval(one)) else ""
+    share = one.value / one.prior - 1.0 if one.prior else 0.0
+    percent = (
+        f"{quantity(100.0 * abs(share))} % {'below' if share < 0.0 else 'above'} " if share else "in place of "
+    )
+    return (
+        f"{name} at {quantity(one.value)}{ends}, {percent}the stated {quantity(one.prior)} and "
+        f"{quantity(abs(one.z))} standard deviations of its tolerance away"
+    )
 
 
 def _seen(verdict: Verdict) -> str:

@@ -120,6 +120,7 @@ def simulate(
     *,
     noise: float = 0.05,
     smooth: float = 0.02,
+    octaves: float = 1.0,
     amend: Callable[[Campaign], Campaign] = lambda campaign: campaign,
     model: dict[str, Any] = MODEL,
     campaign: dict[str, Any] = CAMPAIGN,
@@ -134,7 +135,9 @@ def simulate(
     noise : float
         Standard deviation of a blow's noise, real and imaginary, over the median modulus of its pair.
     smooth : float
-        Standard deviation of sensors' and points' smooth errors, neper and rad, at each octave.
+        Standard deviation of sensors' and points' smooth errors, neper and rad, at each knot.
+    octaves : float
+        From knot to knot.
     amend : callable
         What is concealed in the records.
     model, campaign : dict
@@ -153,7 +156,7 @@ def simulate(
     read = read_campaign(path)
     truth = {k.name: k.value(float(random.standard_normal())) for k in read.parameters.known.values()}
     (right,) = predict(amend(read.with_values(truth)), read.load(), threads=1)
-    gains = [np.exp(_smooth(random, frequency_Hz, count, smooth)) for count in shape[1:]]
+    gains = [np.exp(_smooth(random, frequency_Hz, count, smooth, octaves)) for count in shape[1:]]
     values = np.moveaxis(right["frf"].values, -1, 0) * gains[0][:, :, None] * gains[1][:, None, :]
     size = noise * np.median(np.abs(values), axis=0)
     blows = (BLOWS, *shape)
@@ -164,13 +167,15 @@ def simulate(
     return Simulated(path, read, truth, size / np.sqrt(BLOWS))
 
 
-def _smooth(random: np.random.Generator, frequency_Hz: Reals, count: int, size: float) -> np.ndarray:
-    """Straight over the logarithm of frequency from octave to octave, (F, count)."""
-    octaves = np.log2(frequency_Hz / frequency_Hz[0])
-    knots = np.linspace(0.0, octaves[-1], round(octaves[-1]) + 1)
+def _smooth(
+    random: np.random.Generator, frequency_Hz: Reals, count: int, size: float, octaves: float
+) -> np.ndarray:
+    """Straight over the logarithm of frequency from knot to knot, (F, count)."""
+    place = np.log2(frequency_Hz / frequency_Hz[0]) / octaves
+    knots = np.linspace(0.0, place[-1], round(place[-1]) + 1)
     draw = random.standard_normal((2, count, knots.size)) * size
     found = np.array(
-        [np.interp(octaves, knots, a) + 1j * np.interp(octaves, knots, b) for a, b in zip(*draw, strict=True)]
+        [np.interp(place, knots, a) + 1j * np.interp(place, knots, b) for a, b in zip(*draw, strict=True)]
     )
     return found.T
 
