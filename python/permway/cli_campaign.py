@@ -72,6 +72,13 @@ def diagnose(
             "By default from curvature.",
         ),
     ] = 0,
+    posterior: Annotated[
+        bool,
+        typer.Option(
+            "--posterior",
+            help="By one posterior over sets of effects: fast, for hammer tests above all; without --seed, --draws.",
+        ),
+    ] = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Without report.html.")] = False,
     allow_outside: Outside = False,
     threads: Threads = None,
@@ -87,12 +94,18 @@ def diagnose(
     from permway.diagnosis.diagnose import diagnose as run
     from permway.diagnosis.journal import FOLDER, keeping, key_of
     from permway.files import prepare_folder
+    from permway.posterior.diagnose import diagnose as explain
     from permway.recordings.campaign import read_campaign
     from permway.report.diagnosis import write_diagnosis
 
     ruled_out = known(rule_out or ())
     described = read_campaign(campaign, allow_outside=allow_outside)
     folder = prepare_folder(output or campaign.parent / "diagnosis")
+    if posterior:
+        with stage_bar("diagnosing", as_json) as progress:
+            by_posterior = explain(described, ruled_out=ruled_out, threads=threads, progress=progress)
+        say(write_diagnosis(by_posterior, folder, page=not no_report), as_json)
+        return
     with keeping(folder / FOLDER, key_of(described, seed, ruled_out)) as journal:
         with stage_bar("diagnosing", as_json) as progress:
             result = run(

@@ -190,6 +190,9 @@ def challenge_suite(
             help="Of small campaigns: another installation's `permway`, or a command that ends in `-m permway`.",
         ),
     ] = None,
+    posterior: Annotated[
+        bool, typer.Option("--posterior", help="Of small campaigns: by `permway diagnose --posterior`.")
+    ] = False,
     limit: Annotated[
         float, typer.Option(min=1.0, help="Of small campaigns: processor time of one diagnosis, s.")
     ] = 120.0,
@@ -212,8 +215,10 @@ def challenge_suite(
     from permway.diagnosis.rivals import of_file
 
     if tiers is not None:
-        say(_small(output, tiers, seed, cases, workers, method, limit, as_json), as_json)
+        say(_small(output, tiers, seed, cases, workers, method, posterior, limit, as_json), as_json)
         return
+    if posterior:
+        raise InputError("goes with --tiers", where="--posterior")
     if method is not None:
         raise InputError("goes with --tiers", where="--diagnose", value=method)
     with progress_bar("suite", as_json) as progress:
@@ -242,11 +247,13 @@ def _small(
     cases: int | None,
     workers: int,
     method: str | None,
+    posterior: bool,
     limit: float,
     as_json: bool,
 ) -> dict[str, object]:
     """The suite of small campaigns and its table."""
     from permway import __version__
+    from permway.challenge.small.diagnose import FIRST
     from permway.challenge.small.judge import judged
     from permway.challenge.small.suite import run_small
     from permway.challenge.small.table import as_json as lines_of
@@ -264,10 +271,12 @@ def _small(
             workers=workers,
             method=method,
             limit_s=limit,
+            module="permway.posterior.diagnose" if posterior else FIRST,
             progress=progress,
         )
     count = "" if cases is None else f" --cases {cases}"
     command = f"permway challenge suite -o suite --tiers {tiers} --seed {seed}{count}"
+    command += " --posterior" if posterior else ""
     found = table(judged(folder, names, {name: entry.FAMILY for name, entry in entries().items()}))
     scores = {"version": __version__, "command": command, **found}
     whole(folder / "score.json", lines_of(scores))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from permway.diagnosis.speak_effect import bands_of
-from permway.diagnosis.verdict import NOVEL, Status, Verdict
+from permway.diagnosis.tolerances import outside
+from permway.diagnosis.verdict import NOVEL, RIGHT, Status, Verdict
 from permway.diagnosis.verdict_parts import (
     ClassMember,
     Effect,
@@ -30,14 +31,13 @@ NAMED = 0.9
 LIKELY = 0.5
 """Posterior probability from which the records are said to lack nothing, or something of no catalogue."""
 
-OUTSIDE = 3.0
-"""Standard deviations from which a nominal parameter is outside its tolerance: one in 370 is there by chance."""
-
 WIDTH = 1.6449
 """Half of a 90 % interval, in standard deviations."""
 
 
-def verdict_of(masses: Masses, held_out: Sequence[Gain]) -> Verdict:
+def verdict_of(
+    masses: Masses, held_out: Sequence[Gain], before: Mapping[str, Moved], after: Mapping[str, Moved]
+) -> Verdict:
     """Put the verdict together.
 
     Parameters
@@ -45,11 +45,13 @@ def verdict_of(masses: Masses, held_out: Sequence[Gain]) -> Verdict:
     masses : Masses
     held_out : sequence of Gain
         Of the best set over the empty one; empty where nothing is missing.
+    before, after : mapping of str to Moved
+        Nominal parameters as the empty set and as the best one has them.
     """
     best, empty = masses.best, masses.empty
     effects = tuple(_effect(masses, index) for index in range(len(best.amendments)))
-    status = _status(masses, effects)
-    if status == "recalibrated":
+    status = _status(masses, effects, before)
+    if status in RIGHT:
         effects = ()
     elif status == "located":
         effects = tuple(_anonymous(effect) for effect in effects[:1])
@@ -71,17 +73,14 @@ def verdict_of(masses: Masses, held_out: Sequence[Gain]) -> Verdict:
             )
             for g in held_out
         },
-        recalibrated=Recalibrated(before=moved(empty.fit), after={} if amended is None else moved(amended)),
+        recalibrated=Recalibrated(before=dict(before), after={} if amended is None else dict(after)),
     )
 
 
-def _status(masses: Masses, effects: tuple[Effect, ...]) -> Status:
+def _status(masses: Masses, effects: tuple[Effect, ...], before: Mapping[str, Moved]) -> Status:
     best = masses.best
     if masses.nothing >= LIKELY:
-        known = best.fit.frame.evidence.campaign.parameters.known
-        fit = masses.empty.fit
-        outside = any(abs(z) > OUTSIDE for f, z in zip(fit.model.free, fit.z, strict=True) if f.name in known)
-        return "insufficient" if outside else "recalibrated"
+        return "outside_tolerance" if outside(before) else "recalibrated"
     if not best.amendments:
         return "insufficient"
     if best.fit.hyper.novel >= LIKELY:
@@ -138,20 +137,6 @@ def _anonymous(effect: Effect) -> Effect:
         bands=effect.bands,
         class_=(ClassMember(name=NOVEL, probability=1.0),),
     )
-
-
-def moved(fit: Fit) -> dict[str, Moved]:
-    """The nominal parameters as a fit has them, by name."""
-    known = fit.frame.evidence.campaign.parameters.known
-    sigma = np.sqrt(np.diag(fit.spread))
-    found = {}
-    for f, z, s in zip(fit.model.free, fit.z, sigma, strict=True):
-        if f.name in known:
-            low, high = sorted(f.value(float(z + side * WIDTH * s)) for side in (-1.0, 1.0))
-            found[f.name] = Moved(
-                value=f.value(float(z)), prior=known[f.name].nominal, z=float(z), low=low, high=high
-            )
-    return found
 
 
 def _misfit(fit: Fit) -> float:

@@ -26,8 +26,8 @@ BAND_HZ, BANDS = (8.0, 200.0), 24
 """What a place that was not scanned is handed on with: frequencies where nothing stands out."""
 
 WIDER = 2.5
-"""Times the standard deviation that an entry states of the logarithm of its size: with a factor of 2.5 to one, two of
-them then reach a hundredth. Twice as much costs every effect ln 2 nats."""
+"""Times the standard deviation that an entry states of the logarithm of its size: with a factor of 2.5 to one, two
+of them then reach a hundredth. Twice as much costs every effect ln 2 nats."""
 
 SOMETHING = 0.5
 """Prior probability that something is missing: shared by the entries, and in each by its places."""
@@ -103,7 +103,8 @@ def widened(hypothesis: Hypothesis) -> Hypothesis:
         low, high = one.limits
         value = one.value
         free.append(
-            replace(one, value=lambda z, v=value: v(WIDER * z), limits=(min(low, -high), high / WIDER))  # type: ignore[misc]
+            replace(one, value=lambda z, v=value: v(WIDER * z), limits=(min(low, -high), high / WIDER))  # type:
+            ignore[misc]
         )
         starts[:, index] /= WIDER
     return replace(hypothesis, free=tuple(free), starts=tuple(tuple(map(float, row)) for row in starts))

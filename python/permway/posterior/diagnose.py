@@ -10,6 +10,7 @@ from permway.diagnosis.compare import assemble
 from permway.diagnosis.fit import Fit as Base
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.labels import mislabelled
+from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.result import Candidate, Diagnosis
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.speak_measurement import mixed_up, with_spoilt
@@ -61,9 +62,14 @@ def diagnose(
     clock("hold out")
     best, empty = masses.best, masses.empty
     held_out = gains(empty.fit, best.fit) if best.amendments else []
-    verdict = mixed_up(base, mixed) if mixed is not None else verdict_of(masses, held_out)
+    after = as_base(best.fit) if best.amendments else base
+    verdict = (
+        mixed_up(base, mixed)
+        if mixed is not None
+        else verdict_of(masses, held_out, recalibrated_of(base), recalibrated_of(after))
+    )
     clock("compare")
-    amended = as_base(best.fit) if verdict.effects and best.amendments else None
+    amended = after if verdict.effects and best.amendments else None
     return Diagnosis(
         verdict=with_spoilt(verdict, bad).model_copy(update={"ruled_out": ruled_out}),
         base=base,

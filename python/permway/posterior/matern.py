@@ -1,9 +1,9 @@
 """Calibration errors over frequency as a Markov process: value, slope and curvature at each node.
 
-The error of a measuring chain is a Gaussian process of the logarithm of frequency with Matern's covariance of order
-5/2, s^2 (1 + u + u^2 / 3) exp(-u), u = sqrt(5) |x - x'| / l. Together with its first two derivatives it is a Markov
-process, so that its precision over nodes is block tridiagonal whatever the length: rough errors cost no more than
-smooth ones.
+The error of a measuring chain is a Gaussian process of the logarithm of frequency with Matern's covariance of
+order 5/2, s^2 (1 + u + u^2 / 3) exp(-u), u = sqrt(5) |x - x'| / l. Together with its first two derivatives it is a
+Markov process, so that its precision over nodes is block tridiagonal whatever the length: rough errors cost no
+more than smooth ones.
 
 Source: Hartikainen and Sarkka (2010), Kalman filtering and smoothing solutions to temporal Gaussian process
 regression models, section 4; Rasmussen and Williams (2006), equation 4.17.
@@ -21,8 +21,8 @@ STATES = 3
 """Of a process at a node: value, slope, curvature."""
 
 CLOSEST = 0.05
-"""Octaves between nodes at least: a third of the shortest length. Interpolation loses 6e-5 of the variance there, and
-2e-3 at twice the spacing."""
+"""Octaves between nodes at least: a third of the shortest length. Interpolation loses 6e-5 of the variance there,
+and 2e-3 at twice the spacing."""
 
 _DRIFT = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, -3.0, -3.0]])
 _NILPOTENT = _DRIFT + np.eye(STATES)

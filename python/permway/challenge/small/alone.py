@@ -1,6 +1,6 @@
 """Diagnoses campaigns one after the other, in an interpreter that has permway: this installation, or another.
 
-    python alone.py LIMIT_S
+    python alone.py LIMIT_S MODULE
 
 Reads lines `campaign.toml <tab> output folder`, answers each with one line, and ends with its input. It uses only
 `read_campaign`, `diagnose` and the verdict's `write`, which every version from b291bce on has, so that a frozen
@@ -9,6 +9,7 @@ method can be run on the same campaigns.
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import resource
@@ -26,7 +27,7 @@ class TimeUp(BaseException):
 def main() -> None:
     """Answer line by line."""
     sys.stdin.reconfigure(encoding="utf-8")  # type: ignore[union-attr]
-    limit = float(sys.argv[1])
+    limit, module = float(sys.argv[1]), sys.argv[2]
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     signal.signal(signal.SIGPROF, _up)
     # Whatever a library prints must not be taken for an answer.
@@ -34,7 +35,7 @@ def main() -> None:
     os.dup2(2, 1)
     for line in sys.stdin:
         campaign, out = line.rstrip("\n").split("\t")
-        answers.write(_diagnosed(Path(campaign), Path(out), limit) + "\n")
+        answers.write(_diagnosed(Path(campaign), Path(out), limit, module) + "\n")
         answers.flush()
 
 
@@ -42,9 +43,8 @@ def _up(*_: object) -> None:
     raise TimeUp
 
 
-def _diagnosed(campaign: Path, out: Path, limit: float) -> str:
+def _diagnosed(campaign: Path, out: Path, limit: float, module: str) -> str:
     """Write the verdict, or why there is none, and what it cost."""
-    from permway.diagnosis.diagnose import diagnose
     from permway.recordings.campaign import read_campaign
 
     out.mkdir(parents=True, exist_ok=True)
@@ -52,7 +52,7 @@ def _diagnosed(campaign: Path, out: Path, limit: float) -> str:
     _forget_peak()
     signal.setitimer(signal.ITIMER_PROF, limit)
     try:
-        verdict = diagnose(read_campaign(campaign), threads=1).verdict
+        verdict = importlib.import_module(module).diagnose(read_campaign(campaign), threads=1).verdict
         signal.setitimer(signal.ITIMER_PROF, 0.0)
         verdict.write(out / "verdict.json")
     except TimeUp:

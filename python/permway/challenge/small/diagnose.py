@@ -26,6 +26,9 @@ EACH = 40
 SILENT_S = 20.0 * LIMIT_S
 """Wall time without an answer after which a process is taken for dead: the machine may have much else to do."""
 
+FIRST = "permway.diagnosis.diagnose"
+"""Module of the method that `permway diagnose` uses by default."""
+
 Progress = Callable[[int, int], object]
 
 
@@ -69,6 +72,7 @@ def diagnose_all(
     method: str | None = None,
     workers: int = 1,
     limit_s: float = LIMIT_S,
+    module: str = FIRST,
     progress: Progress | None = None,
 ) -> None:
     """Diagnose campaigns that have neither verdict nor failure yet.
@@ -82,6 +86,8 @@ def diagnose_all(
         Processes.
     limit_s : float
         Processor time of each.
+    module : str
+        Of the installation, that has `diagnose`.
     progress : callable, optional
         Called with campaigns done and how many there are.
     """
@@ -108,7 +114,7 @@ def diagnose_all(
                 if process is None or process.left == 0:
                     if process is not None:
                         process.end()
-                    process = _Process(command, limit_s, own=method is None)
+                    process = _Process(command, limit_s, module, own=method is None)
                     running.append(process)
                 if not process.answered(campaign, out):
                     process = None
@@ -146,14 +152,14 @@ def diagnose_all(
 class _Process:
     """An interpreter that diagnoses one campaign after the other."""
 
-    def __init__(self, command: Sequence[str], limit_s: float, *, own: bool) -> None:
+    def __init__(self, command: Sequence[str], limit_s: float, module: str, *, own: bool) -> None:
         environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
         if not own:
             # Of this installation; another's is in its own command.
             environment.pop("PYTHONPATH", None)
         self.left = EACH
         self._process = subprocess.Popen(
-            [*command, "-P", str(Path(alone.__file__)), f"{limit_s:g}"],
+            [*command, "-P", str(Path(alone.__file__)), f"{limit_s:g}", module],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

@@ -1,0 +1,53 @@
+"""What the posterior's search names on small campaigns of the tool's own model, by rates over seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from permway.diagnosis.catalogue._change import with_chain
+from permway.diagnosis.catalogue._interval import weakened
+from permway.posterior.diagnose import diagnose
+from permway.recordings.campaign import Campaign
+from simulated import simulate
+
+Amend = Callable[[Campaign], Campaign]
+
+
+def lost(campaign: Campaign) -> Campaign:
+    """Three pads about the drive point keep 0.3."""
+    return weakened(campaign, "pad", 6.0, 1.2, 0.3)
+
+
+def loud(campaign: Campaign) -> Campaign:
+    """A sensor reads 1.4 times what is there."""
+    chain = campaign.sensor("deck@3").chain
+    return with_chain(campaign, "deck@3", chain.model_copy(update={"gain": 1.4}))
+
+
+def nothing(campaign: Campaign) -> Campaign:
+    """As the nominal model has it, within its tolerances."""
+    return campaign
+
+
+@pytest.mark.parametrize(
+    ("amend", "names"),
+    [(lost, {"fastener_loss"}), (loud, {"sensor_gain"}), (nothing, set())],
+    ids=["lost", "gain", "none"],
+)
+def test_two_of_three_seeds_are_named_rightly_and_no_other_name_is_given(
+    tmp_path: Path, amend: Amend, names: set[str]
+) -> None:
+    right = 0
+    for seed in (31, 32, 33):
+        verdict = diagnose(simulate(tmp_path / str(seed), seed, amend=amend).campaign, threads=1).verdict
+        found = {effect.name for effect in verdict.effects if effect.name is not None}
+        assert found <= names
+        right += found == names
+    assert right >= 2
+
+
+def test_the_answer_does_not_depend_on_how_many_processes_share_the_work(tmp_path: Path) -> None:
+    campaign = simulate(tmp_path / "c", 34, amend=loud).campaign
+    assert diagnose(campaign, threads=2).verdict == diagnose(campaign, threads=1).verdict
