@@ -13,7 +13,8 @@ const SPACING: f64 = 0.625;
 const FASTENERS: usize = 51;
 
 /// Names that [`layout`] knows; the number of spans is free.
-pub const NAMES: &str = "rail, sleepers, viaduct-modes, viaduct-N (N spans)";
+pub const NAMES: &str =
+    "rail, sleepers, viaduct-modes, viaduct-N (N spans), regular-N and irregular-N (a rail on N supports)";
 
 /// A line with all that a request needs but the frequencies.
 #[derive(Debug, Clone)]
@@ -86,7 +87,16 @@ pub fn layout(name: &str) -> Option<Case> {
         "rail" => Some(rail_on_supports()),
         "sleepers" => Some(rail_on_sleepers()),
         "viaduct-modes" => Some(viaduct(1, Some(60))),
-        _ => name.strip_prefix("viaduct-")?.parse().ok().filter(|n| *n > 0).map(|spans| viaduct(spans, None)),
+        _ => {
+            let (kind, number) = name.rsplit_once('-')?;
+            let n = number.parse().ok().filter(|n| *n > 0)?;
+            match kind {
+                "viaduct" => Some(viaduct(n, None)),
+                "regular" => Some(rail_on_many(n, 0.0)),
+                "irregular" => Some(rail_on_many(n, 0.05)),
+                _ => None,
+            }
+        }
     }
 }
 
@@ -113,6 +123,17 @@ pub fn rail_on_supports() -> Case {
         (-120..=120).map(|i| Joint { x: 0.6 * f64::from(i), a: 0, b: None, law: 0, scale: 1.0 }).collect();
     let line = Line { bodies: vec![uic60()], joints, names: vec!["rail".into()], ..Line::default() };
     Case { line, laws: vec![c64::new(300e6, 75e6)], points: vec![Point { body: 0, x: 0.0 }], spans: 1 }
+}
+
+/// The same rail on `n` pads, 0.6 m apart but for up to `off` m either way, no two spacings alike unless `off` is 0; driven
+/// at the middle one.
+pub fn rail_on_many(n: usize, off: f64) -> Case {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    let place = |i: usize| 0.6 * i as f64 + off * (2.0 * (GOLDEN * (i * i) as f64).fract() - 1.0);
+    let at = |i: usize| Joint { x: place(i), a: 0, b: None, law: 0, scale: 1.0 };
+    let (bodies, names) = (vec![uic60()], vec!["rail".into()]);
+    let line = Line { bodies, joints: (0..n).map(at).collect(), names, ..Line::default() };
+    Case { line, laws: vec![c64::new(300e6, 75e6)], points: vec![Point { body: 0, x: place(n / 2) }], spans: 1 }
 }
 
 /// The same on sleepers of 162 kg, each on ballast.

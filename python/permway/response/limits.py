@@ -21,7 +21,11 @@ MOST_ELEMENTS = 250_000
 """Elements of the chain formulation, over all beams."""
 
 MOST_BODIES = 100_000
-"""Beams and masses of the chain formulation, each counted: compiling the march grows as their square."""
+"""Beams and masses of the chain formulation, each counted: sleepers of 60 km, set up in a third of a second.
+
+Time and memory are linear in them: half as many would refuse lines that are solved in seconds, twice as many take
+twice the time.
+"""
 
 _ELEMENT = 4.0
 """Longest element of the core as a multiple of the steepest wave's length scale."""

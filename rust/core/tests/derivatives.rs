@@ -3,10 +3,10 @@
 
 mod common;
 
-use common::{laws, points, varied as line};
+use common::{irregular, laws, points, varied as line};
 use permway_core::{
     c64,
-    line::{Body, Line, Point},
+    line::{Body, Joint, Line, Point},
     sensitivity::Sensitivity,
     sweep::{Answer, Control, Formulation, Request, sweep, sweep_with},
 };
@@ -157,10 +157,32 @@ fn derivatives_by_bodies_are_those_of_differences() {
 /// All stiffness and all mass times s make the response 1/s: the sum of p dH/dp over all parameters is -H (Euler).
 #[test]
 fn derivatives_sum_to_the_response() {
-    let line = line();
-    let answer = derived(&line);
+    derivatives_sum_to_that_of(&line());
+}
+
+/// Where no two lengths are alike each is integrated in its turn.
+#[test]
+fn derivatives_sum_to_the_response_on_irregular_spacing() {
+    let mut line = irregular(25);
+    line.bodies.insert(1, common::line().bodies[1]);
+    line.bodies.insert(2, common::line().bodies[2]);
+    line.bodies.insert(3, common::line().bodies[3]);
+    let moved = |body: usize| if body == 1 { 4 } else { body };
+    for joint in &mut line.joints {
+        (joint.a, joint.b) = (moved(joint.a), joint.b.map(moved));
+    }
+    for (i, below) in [(1, 2), (2, 3)] {
+        let at = (0..9).map(|k| 1.2 * k as f64 + common::scattered(k + 7 * i, 0.1) + 0.2);
+        line.joints.extend(at.map(|x| Joint { x, a: i, b: (below < 3).then_some(below), law: 0, scale: 1.0 }));
+    }
+    line.joints.push(Joint { x: -3.0, a: 0, b: Some(3), law: 0, scale: 0.5 });
+    derivatives_sum_to_that_of(&line);
+}
+
+fn derivatives_sum_to_that_of(line: &Line) {
+    let answer = derived(line);
     let (laws, n) = (laws(&FREQUENCIES), line.joints.len());
-    let h = response(&line, &laws);
+    let h = response(line, &laws);
     let per = answer.derivatives.len() / FREQUENCIES.len();
     for i in 0..FREQUENCIES.len() {
         let block = &answer.derivatives[i * per..(i + 1) * per];

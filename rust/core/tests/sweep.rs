@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{laws, line, points};
+use common::{irregular, laws, line, points};
 use permway_core::{
     c64,
     chain::{Engine, Group, Job, Response, Tape, Wanted},
@@ -51,6 +51,49 @@ fn formulations_agree() {
         for (c, d) in chain.joints[part.clone()].iter().zip(&dense.joints[part]) {
             assert!((c - d).norm() <= 1e-9 * size, "{f} Hz: {c} {d}");
         }
+    }
+}
+
+/// Lengths that are all different are marched over in memory for two transfers, one a body, whatever the line's length.
+#[test]
+fn transfers_of_irregular_lengths_share_memory() {
+    for n in [20, 400] {
+        let line = irregular(n);
+        let middle = [Point { body: 0, x: 0.3 * n as f64 }];
+        for wanted in [Wanted::Sensors, Wanted::Everywhere, Wanted::States] {
+            let tape = Tape::new(&line, &middle, &middle, 500.0, wanted);
+            let halves = [Some(&tape), tape.right.as_deref()];
+            let pieces: usize = halves.into_iter().flatten().map(|t| t.pieces.len()).sum();
+            assert!(2 * pieces > 5 * n, "{pieces} lengths of {n} joints");
+            assert!(halves.into_iter().flatten().all(|t| t.slots <= 2), "{:?}", tape.slots);
+        }
+    }
+}
+
+#[test]
+fn formulations_agree_on_irregular_spacing() {
+    let (line, frequencies) = (irregular(30), [1.0, 55.0, 480.0, 2000.0]);
+    let points: Vec<Point> = [(0, 1.3), (0, 8.0), (1, 4.4)].map(|(body, x)| Point { body, x }).to_vec();
+    let laws = laws(&frequencies);
+    let run = |formulation| {
+        let request = Request {
+            line: &line,
+            frequencies: &frequencies,
+            laws: &laws,
+            n_laws: 2,
+            forces: &points,
+            sensors: &points,
+            formulation,
+            joints: false,
+            threads: 1,
+        };
+        sweep(&request, &Control::default()).unwrap().sensors
+    };
+    let (chain, dense) = (run(Formulation::Chain), run(Formulation::Receptance));
+    for (k, (c, d)) in chain.iter().zip(&dense).enumerate() {
+        let at = |place: usize| dense[k / 9 * 9 + 4 * place].norm();
+        let scale = (at(k % 9 / 3) * at(k % 3)).sqrt();
+        assert!((c - d).norm() <= 1e-11 * scale, "{k}: {c} {d}");
     }
 }
 

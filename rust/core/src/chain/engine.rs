@@ -75,7 +75,7 @@ impl<F: Fuse> Work<F> {
         match (&mut self.sums, derived) {
             (Some(sums), Some(wanted)) => {
                 let derivatives = (std::mem::take(&mut out.derivatives), out.used);
-                let mut gradient = sums.begin(wanted, line, tape, &self.factor, derivatives);
+                let mut gradient = sums.begin(wanted, line, &self.factor, derivatives);
                 self.loads.respond(tape, &mut self.factor, out, &mut gradient);
                 out.derivatives = gradient.write();
             }

@@ -1,6 +1,9 @@
 //! The march of several frequencies side by side: impedance forward, records for the way back.
 
-use super::tape::{Op, Rows, Tape};
+use super::{
+    pieces::Piece,
+    tape::{Op, Rows, Tape},
+};
 use crate::{
     c64,
     element::{Section, Transfer},
@@ -29,12 +32,15 @@ pub struct Factor<F> {
     right: Vec<Lanes<F>>,
     /// Rows of the front at its widest.
     pub width: usize,
-    pieces: Vec<Transfer<Lanes<F>>>,
+    /// Transfers by slot, each from the first march over its piece to the last.
+    transfers: Vec<Transfer<Lanes<F>>>,
     laws: Vec<Lanes<F>>,
     /// Impedance of what runs on without end, by body.
     ends: Vec<(usize, [Option<M2>; LANES])>,
     /// The frequencies at hand, Hz.
     pub frequencies: [f64; LANES],
+    /// Squared angular frequencies, rad2/s2.
+    pub omega2: [f64; LANES],
 }
 
 /// The frequencies, Hz, and the stiffness of each law at each of them, N/m: `laws[lane * n_laws + law]`.
@@ -51,16 +57,19 @@ pub struct Group<'a> {
 impl<F: Fuse> Factor<F> {
     /// Room for the factor of a tape.
     pub fn new(tape: &Tape) -> Self {
+        let zero = [[Lanes::ZERO; 2]; 2];
+        let none = Transfer { a: zero, b: zero, c: zero, d: zero };
         Self {
             records: vec![Lanes::ZERO; tape.record_len],
             failed: [const { None }; LANES],
             z: vec![Lanes::ZERO; tape.width * tape.width],
             right: vec![Lanes::ZERO; tape.right.as_ref().map_or(0, |_| tape.width * tape.width)],
             width: tape.width,
-            pieces: Vec::with_capacity(tape.pieces.len()),
+            transfers: vec![none; tape.slots.max(tape.right.as_ref().map_or(0, |right| right.slots))],
             laws: Vec::new(),
             ends: Vec::new(),
             frequencies: [0.0; LANES],
+            omega2: [0.0; LANES],
         }
     }
 
@@ -77,7 +86,6 @@ impl<F: Fuse> Factor<F> {
 
     #[inline(always)]
     fn run_tape(&mut self, tape: &Tape, line: &Line) {
-        self.transfers(tape, line);
         for op in &tape.ops {
             match op {
                 Op::StartBeam { own, body, endless, pinned } => {
@@ -97,11 +105,15 @@ impl<F: Fuse> Factor<F> {
                         }
                     }
                 }
-                Op::March { rows, piece } => {
+                Op::March { rows, piece, first, .. } => {
+                    let piece = &tape.pieces[*piece];
+                    if *first {
+                        self.transfer(line, piece);
+                    }
                     if tape.states {
                         self.keep_impedance(rows);
                     }
-                    self.march(line, rows, *piece);
+                    self.march(line, rows, piece.slot);
                 }
                 Op::Join { a, b, law, scale, .. } => {
                     let k = self.laws[*law].scale(*scale);
@@ -130,6 +142,7 @@ impl<F: Fuse> Factor<F> {
     fn prepare(&mut self, tape: &Tape, group: &Group<'_>) {
         self.failed = [const { None }; LANES];
         self.frequencies = group.frequencies;
+        self.omega2 = group.frequencies.map(|f| (std::f64::consts::TAU * f).powi(2));
         self.ends.clear();
         let rows = group.laws.len().checked_div(group.n_laws).unwrap_or(0);
         self.laws.clear();
@@ -140,17 +153,15 @@ impl<F: Fuse> Factor<F> {
         }
     }
 
+    /// Computes the transfer over a piece, before the first march over it: kept for all pieces of a line whose spacings
+    /// differ, they would not fit the cache.
     #[inline(always)]
-    fn transfers(&mut self, tape: &Tape, line: &Line) {
-        let omega2 = self.frequencies.map(|f| (std::f64::consts::TAU * f).powi(2));
-        self.pieces.clear();
-        for p in &tape.pieces {
-            match line.section(p.body, p.stretch) {
-                Body::Beam(beam) => self.pieces.push(Transfer::over(&section(beam, &omega2), p.length, p.terms)),
-                Body::Shaft(shaft) => self.pieces.push(shaft_transfer(shaft, &omega2, p.length, p.terms)),
-                Body::Mass(_) => {}
-            }
-        }
+    fn transfer(&mut self, line: &Line, p: &Piece) {
+        self.transfers[p.slot] = match line.section(p.body, p.stretch) {
+            Body::Beam(beam) => Transfer::over(&section(beam, &self.omega2), p.length, p.terms),
+            Body::Shaft(shaft) => shaft_transfer(shaft, &self.omega2, p.length, p.terms),
+            Body::Mass(_) => return,
+        };
     }
 
     /// Notes the lanes in which a law that some joint has is not finite.
@@ -233,10 +244,10 @@ impl<F: Fuse> Factor<F> {
 
     /// The beam advances: u' = A u + B f, f' = C u + D f with f = Z u (Pestel and Leckie 1963, ch. 3).
     #[inline(always)]
-    fn march(&mut self, line: &Line, rows: &Rows, piece: usize) {
+    fn march(&mut self, line: &Line, rows: &Rows, slot: usize) {
         let (own, w) = (rows.own, self.width);
         let zbb = self.own(own);
-        let t = &self.pieces[piece];
+        let t = &self.transfers[slot];
         let g = plus(&t.a, &t.b, &zbb);
         let forces = plus(&t.c, &t.d, &zbb);
         let b = t.b;
@@ -251,7 +262,7 @@ impl<F: Fuse> Factor<F> {
         self.z[(own + 1) * w + own] = (new[0][1] + new[1][0]).scale(0.5);
         self.z[(own + 1) * w + own + 1] = new[1][1];
         // Symplectic transfer: the coupling to the others only turns, Z'bo = G^-T Zbo.
-        for &o in &rows.others {
+        for &o in rows.others.iter() {
             let (first, second) = (at(w, own, o), at(w, own + 1, o));
             let (z0, z1) = (self.z[first], self.z[second]);
             self.z[first] = (gi[0][0] * z0).plus(gi[1][0], z1);

@@ -2,6 +2,7 @@
 
 use super::{
     factor::Factor,
+    pieces::Piece,
     solve::{Length, Watch},
     tape::Tape,
 };
@@ -26,7 +27,7 @@ pub struct Sums<F> {
     slots: Vec<Option<usize>>,
     /// Sensors x forces of one joint.
     single: Vec<Lanes<F>>,
-    /// Of each distinct piece, by the parameters of its beam.
+    /// By slot: of a piece, by the parameters of its beam.
     pieces: Vec<[M4<Lanes<F>>; OF_A_BEAM]>,
     /// Index of each body's first parameter.
     first: Vec<usize>,
@@ -52,12 +53,12 @@ impl<F: Fuse> Sums<F> {
             })
         });
         let slots: Vec<Option<usize>> = slots.collect();
-        let pieces = Vec::with_capacity(if wanted.bodies { tape.pieces.len() } else { 0 });
+        let slots_of_pieces = if wanted.bodies { tape.slots } else { 0 };
         Self {
             values: vec![Lanes::ZERO; next],
             slots,
             single: vec![Lanes::ZERO; wanted.pairs()],
-            pieces,
+            pieces: vec![[[[Lanes::ZERO; 4]; 4]; OF_A_BEAM]; slots_of_pieces],
             first: of_bodies.into_iter().map(|i| wanted.n_groups + i).collect(),
             states: vec![[Lanes::ZERO; 4]; columns],
             extensions: vec![Lanes::ZERO; columns],
@@ -70,24 +71,12 @@ impl<F: Fuse> Sums<F> {
         &'a mut self,
         wanted: &'a Sensitivity<'a>,
         line: &'a Line,
-        tape: &Tape,
         factor: &Factor<F>,
         out: (&'o mut [c64], usize),
     ) -> Gradient<'a, 'o, F> {
         self.values.fill(Lanes::ZERO);
-        let omega2 = factor.frequencies.map(|f| (std::f64::consts::TAU * f).powi(2));
-        self.pieces.clear();
-        if wanted.bodies {
-            for p in &tape.pieces {
-                let (here, base) = (line.section(p.body, p.stretch), &line.bodies[p.body]);
-                let mut n = [[[Lanes::ZERO; 4]; 4]; OF_A_BEAM];
-                for (lane, squared) in omega2.iter().enumerate() {
-                    fill(&mut n, lane, &over_piece(here, base, *squared, p.length, p.terms));
-                }
-                self.pieces.push(n);
-            }
-        }
-        Gradient { sums: self, wanted, line, frequencies: factor.frequencies, omega2, out: out.0, used: out.1 }
+        let (frequencies, omega2) = (factor.frequencies, factor.omega2);
+        Gradient { sums: self, wanted, line, frequencies, omega2, out: out.0, used: out.1 }
     }
 }
 
@@ -108,7 +97,7 @@ fn share(here: &Body, base: &Body, property: usize) -> c64 {
 }
 
 /// The integrals over a piece by the properties of its body. One frequency at a time, and once for all kinds of processor:
-/// pieces are few, and the code is long.
+/// where spacings are alike pieces are few, and the code is long.
 #[inline(never)]
 fn over_piece(here: &Body, base: &Body, omega2: f64, length: f64, terms: usize) -> [M4<c64>; OF_A_BEAM] {
     let mu = |mass: f64| c64::new(omega2 * mass, 0.0);
@@ -173,6 +162,15 @@ impl<'o, F: Fuse> Gradient<'_, 'o, F> {
         self.out
     }
 
+    /// The integrals over a piece, before its first march on the way back.
+    fn integrate(&mut self, p: &Piece) {
+        let (here, base) = (self.line.section(p.body, p.stretch), &self.line.bodies[p.body]);
+        let of_piece = &mut self.sums.pieces[p.slot];
+        for (lane, squared) in self.omega2.iter().enumerate() {
+            fill(of_piece, lane, &over_piece(here, base, *squared, p.length, p.terms));
+        }
+    }
+
     /// Where the sum of a body's parameter stands.
     #[inline(always)]
     fn block(&mut self, body: usize, parameter: usize) -> &mut [Lanes<F>] {
@@ -228,6 +226,9 @@ impl<F: Fuse> Watch<F> for Gradient<'_, '_, F> {
     #[inline(always)]
     fn length(&mut self, at: &Length<'_, F>, columns: usize) {
         let (rows, z, n) = (at.rows, at.impedance, at.rows.others.len());
+        if at.fresh {
+            self.integrate(at.piece);
+        }
         let Sums { states, values, pieces, first, slots, .. } = &mut *self.sums;
         for (c, state) in states.iter_mut().enumerate() {
             let (u0, u1) = (at.front[rows.own * columns + c], at.front[(rows.own + 1) * columns + c]);
@@ -245,7 +246,7 @@ impl<F: Fuse> Watch<F> for Gradient<'_, '_, F> {
         }
         let (pairs, forces) = (self.wanted.pairs(), self.wanted.forces);
         let body = &self.line.bodies[rows.body];
-        for (p, matrix) in pieces[at.piece].iter().enumerate() {
+        for (p, matrix) in pieces[at.piece.slot].iter().enumerate() {
             if !has(body, p) {
                 continue;
             }

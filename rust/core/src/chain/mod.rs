@@ -12,14 +12,15 @@
 //! two fronts meet there: only between the first and the last force or sensor is anything kept for
 //! the way back.
 //!
-//! [`tape`] compiles a line to a list of operations that all frequencies share, [`factor`] runs
-//! it forward for several frequencies side by side, [`solve`] runs loads forward and displacements
+//! [`tape`] compiles a line to a list of operations that all frequencies share ([`pieces`] finds the
+//! lengths between joints that are alike), [`factor`] runs it forward for several frequencies side by side, [`solve`] runs loads forward and displacements
 //! backward; [`gradient`] sums derivatives on that way back, and [`own`] finds each joint's own flexibility. [`engine`] chooses the code for the processor at hand.
 
 mod engine;
 mod factor;
 mod gradient;
 mod own;
+mod pieces;
 mod solve;
 mod tape;
 

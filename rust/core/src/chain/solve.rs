@@ -2,6 +2,7 @@
 
 use super::{
     factor::Factor,
+    pieces::Piece,
     tape::{Op, Rows, Tape},
 };
 use crate::{
@@ -45,8 +46,10 @@ pub trait Watch<F: Fuse> {
 /// The start of a length of beam on the way back.
 #[derive(Debug)]
 pub struct Length<'a, F> {
-    /// Which distinct piece.
-    pub piece: usize,
+    /// The piece.
+    pub piece: &'a Piece,
+    /// Whether this is the first time on the way back that this piece is met.
+    pub fresh: bool,
     /// Its rows.
     pub rows: &'a Rows,
     /// The front.
@@ -119,13 +122,14 @@ impl<F: Fuse> Loads<F> {
         for (k, op) in tape.ops.iter().enumerate().skip(first_read).rev() {
             let loaded = k >= tape.first_force;
             match op {
-                Op::March { rows, piece } => {
+                Op::March { rows, piece, last, .. } => {
                     let saved = self.backward::<true>(&factor.records, rows, f, loaded);
                     if W::READS && tape.states {
                         let at = rows.record + 8 + 2 * rows.others.len();
                         let impedance = &factor.records[at..at + 3 + 2 * rows.others.len()];
                         let (front, loads) = (&self.front[..], &self.saved[saved..]);
-                        watch.length(&Length { piece: *piece, rows, front, impedance, loads }, f);
+                        let piece = &tape.pieces[*piece];
+                        watch.length(&Length { piece, fresh: *last, rows, front, impedance, loads }, f);
                     }
                     self.saved.truncate(saved);
                 }

@@ -1,32 +1,21 @@
 //! A line compiled to the operations of one march from left to right.
 
+use super::pieces::{Piece, Pieces};
 use crate::{
     element::{LONGEST, terms},
     line::{Body, End, Line, Point, SAME_PLACE},
     shaft::Twist,
     waves::Waves,
 };
-
-/// A length of a beam or shaft for which the transfer is computed once per frequency.
-#[derive(Debug, Clone, Copy)]
-pub struct Piece {
-    /// Index of the body.
-    pub body: usize,
-    /// The stretch of the body whose section it has; `None` for the body's own.
-    pub stretch: Option<usize>,
-    /// Length in m.
-    pub length: f64,
-    /// Terms of the series that it needs at the highest frequency.
-    pub terms: usize,
-}
+use std::sync::Arc;
 
 /// Degrees of freedom of one body in the front, and of the others beside it.
 #[derive(Debug, Clone)]
 pub struct Rows {
     /// First row of the body.
     pub own: usize,
-    /// Rows of all other bodies in the front.
-    pub others: Vec<usize>,
+    /// Rows of all other bodies in the front; operations between which none enters or leaves share them.
+    pub others: Arc<[usize]>,
     /// Where the operation's record lies in the factor.
     pub record: usize,
     /// The body, for messages.
@@ -40,8 +29,8 @@ pub enum Op {
     StartBeam { own: usize, body: usize, endless: bool, pinned: bool },
     /// A mass enters; weightless where its other half, marched from the other side, brings the weight.
     StartMass { own: usize, body: usize, weightless: bool },
-    /// The beam advances by a piece.
-    March { rows: Rows, piece: usize },
+    /// The beam advances by a piece: whether no operation before, and none after, advances by the same one.
+    March { rows: Rows, piece: usize, first: bool, last: bool },
     /// A joint between two rows, or a row and the ground.
     Join { joint: usize, a: usize, b: Option<usize>, law: usize, scale: f64 },
     /// A unit force acts on a row.
@@ -81,6 +70,8 @@ pub struct Tape {
     pub ops: Vec<Op>,
     /// Distinct pieces of beam.
     pub pieces: Vec<Piece>,
+    /// Places for what is computed of a piece once, from its first march to its last.
+    pub slots: usize,
     /// Rows of the front at its widest.
     pub width: usize,
     /// Complex numbers a factor holds.
@@ -123,6 +114,8 @@ struct Front {
     rows: Vec<Vec<usize>>,
     /// Bodies in the front, ascending.
     live: Vec<usize>,
+    /// Rows of the others beside each live body, once asked for.
+    others: Vec<Option<Arc<[usize]>>>,
 }
 
 impl Front {
@@ -132,6 +125,7 @@ impl Front {
             self.next += 2;
             self.next - 2
         });
+        self.forget_others();
         self.rows[body] = (own..own + slots).collect();
         if let Err(place) = self.live.binary_search(&body) {
             self.live.insert(place, body);
@@ -139,8 +133,25 @@ impl Front {
         own
     }
 
-    fn others(&self, body: usize) -> Vec<usize> {
-        self.live.iter().filter(|i| **i != body).flat_map(|i| self.rows[*i].iter().copied()).collect()
+    /// Takes a body out that no longer reaches the present place.
+    fn leave(&mut self, body: usize) {
+        self.forget_others();
+        let own = self.rows[body][0];
+        self.rows[body].clear();
+        self.live.retain(|other| *other != body);
+        self.free.push(own);
+    }
+
+    fn forget_others(&mut self) {
+        for body in &self.live {
+            self.others[*body] = None;
+        }
+    }
+
+    fn others(&mut self, body: usize) -> Arc<[usize]> {
+        let (live, rows) = (&self.live, &self.rows);
+        let list = || live.iter().filter(|i| **i != body).flat_map(|i| rows[*i].iter().copied()).collect();
+        self.others[body].get_or_insert_with(list).clone()
     }
 }
 
@@ -150,6 +161,9 @@ struct Compiler<'a> {
     front: Front,
     place: Vec<f64>,
     tape: Tape,
+    pieces: Pieces,
+    /// Of each body's own section, then of each stretch's, once asked for.
+    steepest: Vec<Option<f64>>,
     /// Whether the march goes from the right end leftwards, places then being mirrored.
     mirrored: bool,
     /// Whether records will be read again.
@@ -178,12 +192,14 @@ impl Compiler<'_> {
         Rows { own: self.front.rows[body][0], others, record, body }
     }
 
-    fn piece(&mut self, body: usize, stretch: Option<usize>, length: f64, steepest: f64) -> usize {
-        // Lengths that differ by rounding of the coordinates are one piece.
-        let same = |p: &Piece| p.body == body && p.stretch == stretch && (p.length - length).abs() < 1e-12;
-        self.tape.pieces.iter().position(same).unwrap_or_else(|| {
-            self.tape.pieces.push(Piece { body, stretch, length, terms: terms(steepest * length) });
-            self.tape.pieces.len() - 1
+    /// The exponent of the steepest wave of a section at the highest frequency, 1/m; worked out once for each section.
+    fn steepest_of(&mut self, body: usize, stretch: Option<usize>) -> f64 {
+        let (line, omega) = (self.line, std::f64::consts::TAU * self.highest);
+        let known = &mut self.steepest[stretch.map_or(body, |k| line.bodies.len() + k)];
+        *known.get_or_insert_with(|| match line.section(body, stretch) {
+            Body::Beam(beam) => Waves::new(beam, omega).steepest(),
+            Body::Shaft(shaft) => Twist::new(shaft, omega).exponent().norm(),
+            Body::Mass(_) => 0.0,
         })
     }
 
@@ -195,22 +211,18 @@ impl Compiler<'_> {
         // The march stops wherever the section changes, so the middle tells for all of it.
         let middle = self.place[body] + 0.5 * length;
         let stretch = self.line.stretch_at(body, if self.mirrored { -middle } else { middle });
-        let omega = std::f64::consts::TAU * self.highest;
-        let steepest = match self.line.section(body, stretch) {
-            Body::Beam(beam) => Waves::new(beam, omega).steepest(),
-            Body::Shaft(shaft) => Twist::new(shaft, omega).exponent().norm(),
-            Body::Mass(_) => return,
-        };
+        let steepest = self.steepest_of(body, stretch);
         let mut parts = (steepest * length / LONGEST).ceil().max(1.0);
         if parts - 1.0 > MOST_ADDED.saturating_sub(self.added) as f64 {
             self.tape.too_long = true;
             parts = 1.0;
         }
         self.added += parts as usize - 1;
-        let piece = self.piece(body, stretch, length / parts, steepest);
+        let each = length / parts;
+        let piece = self.pieces.find(body, stretch, each, || terms(steepest * each));
         for _ in 0..parts as usize {
             let rows = self.record(body, 8, self.tape.states);
-            self.tape.ops.push(Op::March { rows, piece });
+            self.tape.ops.push(Op::March { rows, piece, first: false, last: false });
         }
         self.place[body] = x;
     }
@@ -245,10 +257,7 @@ impl Compiler<'_> {
             },
         };
         self.tape.ops.push(op);
-        let own = self.front.rows[body][0];
-        self.front.rows[body].clear();
-        self.front.live.retain(|other| *other != body);
-        self.front.free.push(own);
+        self.front.leave(body);
     }
 
     fn perform(&mut self, event: Event, forces: &[Point], sensors: &[Point]) {
@@ -299,13 +308,15 @@ impl<'a> Compiler<'a> {
     fn new(line: &'a Line, highest: f64, crossing: Vec<bool>, mirrored: bool, keep: bool) -> Self {
         let n = line.bodies.len();
         let tape = Tape { joints: line.joints.len(), ..Tape::default() };
-        let front = Front { rows: vec![vec![]; n], ..Front::default() };
+        let front = Front { rows: vec![vec![]; n], others: vec![None; n], ..Front::default() };
         Self {
             line,
             highest,
             front,
             place: vec![f64::NAN; n],
             tape,
+            pieces: Pieces::default(),
+            steepest: vec![None; n + line.stretches.len()],
             mirrored,
             keep,
             scratch: 0,
@@ -353,6 +364,7 @@ impl<'a> Compiler<'a> {
         let mut tape = self.tape;
         tape.width = self.front.next;
         tape.record_len += self.scratch;
+        (tape.pieces, tape.slots) = self.pieces.placed(&mut tape.ops);
         for op in &mut tape.ops {
             if let Op::March { rows, .. } | Op::EndBeam { rows, .. } | Op::EndMass { rows } = op {
                 rows.record = if rows.record == SCRATCH { 0 } else { rows.record + self.scratch };

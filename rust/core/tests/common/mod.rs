@@ -85,3 +85,27 @@ pub fn laws(frequencies: &[f64]) -> Vec<c64> {
 pub fn points() -> Vec<Point> {
     [(0, -3.0), (0, 4.1), (1, 7.0), (2, 6.3), (0, 40.0), (3, -3.0)].map(|(body, x)| Point { body, x }).to_vec()
 }
+
+/// Irregular places: `off` times a number from -1 to 1 that no two `i` share.
+pub fn scattered(i: usize, off: f64) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    off * (2.0 * (GOLDEN * (i * i) as f64).fract() - 1.0)
+}
+
+/// A rail without end, and a shaft beside it, on `n` springs each, no two lengths between them alike.
+pub fn irregular(n: usize) -> Line {
+    let endless = [f64::NEG_INFINITY, f64::INFINITY];
+    let shaft = Shaft { stiffness: c64::new(3e8, 1.5e7), mass: 90.0, interval: endless, ends: [End::Free; 2] };
+    let bodies = vec![beam(6.7e6, Some(2.4e8), 60.8, endless, End::Free), Body::Shaft(shaft)];
+    let joints = (0..n).flat_map(|i| {
+        let x = 0.6 * i as f64 + scattered(i, 0.05);
+        let low = Joint { x: x + 0.2 + scattered(i + n, 0.05), a: 1, b: None, law: 1, scale: 0.01 };
+        [Joint { x, a: 0, b: Some(1), law: 0, scale: 1.0 }, low]
+    });
+    Line {
+        bodies,
+        joints: joints.collect(),
+        names: ["rail", "shaft"].map(String::from).to_vec(),
+        ..Line::default()
+    }
+}
