@@ -72,14 +72,16 @@ impl<F: Fuse> Work<F> {
     fn run(&mut self, job: &Job<'_>, out: &mut Response<'_>) {
         let Job { tape, line, group, derived } = *job;
         self.factor.run(tape, line, group);
-        match (&mut self.sums, derived) {
+        let mut gradient = match (&mut self.sums, derived) {
             (Some(sums), Some(wanted)) => {
                 let derivatives = (std::mem::take(&mut out.derivatives), out.used);
-                let mut gradient = sums.begin(wanted, line, &self.factor, derivatives);
-                self.loads.respond(tape, &mut self.factor, out, &mut gradient);
-                out.derivatives = gradient.write();
+                Some(sums.begin(wanted, line, &self.factor, derivatives))
             }
-            _ => self.loads.respond(tape, &mut self.factor, out, &mut ()),
+            _ => None,
+        };
+        self.loads.respond(tape, &mut self.factor, out, &mut gradient);
+        if let Some(gradient) = gradient {
+            out.derivatives = gradient.write();
         }
         if let Some(own) = &mut self.own {
             own.run(tape, &self.factor, out.own, out.used);
@@ -88,16 +90,36 @@ impl<F: Fuse> Work<F> {
     }
 }
 
+// All of the march is compiled into each of the three functions below. A module for each lets the compiler work at them
+// side by side: it divides a crate by modules.
+
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma")]
-fn run_avx512(w: &mut Work<Fused>, job: &Job<'_>, out: &mut Response<'_>) {
-    w.run(job, out);
+mod avx512 {
+    use super::{Fused, Job, Response, Work};
+
+    #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma")]
+    pub fn run(w: &mut Work<Fused>, job: &Job<'_>, out: &mut Response<'_>) {
+        w.run(job, out);
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn run_avx2(w: &mut Work<Fused>, job: &Job<'_>, out: &mut Response<'_>) {
-    w.run(job, out);
+mod avx2 {
+    use super::{Fused, Job, Response, Work};
+
+    #[target_feature(enable = "avx2,fma")]
+    pub fn run(w: &mut Work<Fused>, job: &Job<'_>, out: &mut Response<'_>) {
+        w.run(job, out);
+    }
+}
+
+mod portable {
+    use super::{Job, PortableFuse, Response, Work};
+
+    #[inline(never)]
+    pub fn run(w: &mut Work<PortableFuse>, job: &Job<'_>, out: &mut Response<'_>) {
+        w.run(job, out);
+    }
 }
 
 /// Vector instructions that the march uses.
@@ -168,7 +190,7 @@ impl Engine {
                 // SAFETY: `new` chose this kind after it found the features on this processor.
                 #[allow(unsafe_code)]
                 unsafe {
-                    run_avx512(w, job, out);
+                    avx512::run(w, job, out);
                 }
                 &w.factor.failed
             }
@@ -177,12 +199,12 @@ impl Engine {
                 // SAFETY: as above.
                 #[allow(unsafe_code)]
                 unsafe {
-                    run_avx2(w, job, out);
+                    avx2::run(w, job, out);
                 }
                 &w.factor.failed
             }
             Kind::Portable(w) => {
-                w.run(job, out);
+                portable::run(w, job, out);
                 &w.factor.failed
             }
         }

@@ -190,7 +190,10 @@ fn has(body: &Body, property: usize) -> bool {
 }
 
 impl<F: Fuse> Watch<F> for Gradient<'_, '_, F> {
-    const READS: bool = true;
+    #[inline(always)]
+    fn reads(&self) -> bool {
+        true
+    }
 
     #[inline(always)]
     fn joint(&mut self, joint: usize, front: &[Lanes<F>], a: usize, b: Option<usize>, columns: usize) {

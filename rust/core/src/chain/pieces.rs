@@ -45,7 +45,8 @@ impl Pieces {
         #[allow(clippy::cast_possible_truncation)]
         // Of a length beyond 9,000 km, which no piece has, the last cell.
         let cell = (length / SAME_LENGTH).floor() as i64;
-        let near = self.known.range((body, stretch, cell - 1)..=(body, stretch, cell + 1));
+        let [below, above] = [cell.saturating_sub(1), cell.saturating_add(1)];
+        let near = self.known.range((body, stretch, below)..=(body, stretch, above));
         #[cfg(test)]
         let near = near.inspect(|_| self.compared += 1);
         let same = near.map(|(_, i)| *i).filter(|i| (self.list[*i].length - length).abs() < SAME_LENGTH);
@@ -119,5 +120,14 @@ mod tests {
         assert_eq!(pieces.find(0, None, edge + 2.0 * SAME_LENGTH, || 1), 2);
         assert_eq!(pieces.find(0, Some(0), edge, || 1), 3);
         assert_eq!(pieces.find(1, None, edge, || 1), 4);
+    }
+
+    #[test]
+    fn absurd_lengths_are_pieces_too() {
+        let mut pieces = Pieces::default();
+        for (i, length) in [1e7, 1e15, 1e300, f64::INFINITY, f64::NAN, -1e300].into_iter().enumerate() {
+            assert_eq!(pieces.find(0, None, length, || 1), i);
+        }
+        assert_eq!(pieces.find(0, None, 1e7, || 1), 0);
     }
 }

@@ -32,7 +32,7 @@ pub struct Response<'a> {
 /// What else is read on the way back: told every displacement, one column per force.
 pub trait Watch<F: Fuse> {
     /// Whether anything is: then the way back goes through the whole line.
-    const READS: bool;
+    fn reads(&self) -> bool;
     /// A joint between two rows of the front, or a row and the ground.
     fn joint(&mut self, joint: usize, front: &[Lanes<F>], a: usize, b: Option<usize>, columns: usize);
     /// A length of beam: the front at its start, and the loads there, a pair per column (none if nothing is loaded).
@@ -60,17 +60,36 @@ pub struct Length<'a, F> {
     pub loads: &'a [Lanes<F>],
 }
 
-/// Nothing more.
-impl<F: Fuse> Watch<F> for () {
-    const READS: bool = false;
+/// Something, or nothing more: decided when it runs, for the way back is compiled once for each kind of processor.
+impl<F: Fuse, W: Watch<F>> Watch<F> for Option<W> {
     #[inline(always)]
-    fn joint(&mut self, _: usize, _: &[Lanes<F>], _: usize, _: Option<usize>, _: usize) {}
+    fn reads(&self) -> bool {
+        self.is_some()
+    }
     #[inline(always)]
-    fn length(&mut self, _: &Length<'_, F>, _: usize) {}
+    fn joint(&mut self, joint: usize, front: &[Lanes<F>], a: usize, b: Option<usize>, columns: usize) {
+        if let Some(watch) = self {
+            watch.joint(joint, front, a, b, columns);
+        }
+    }
     #[inline(always)]
-    fn endless(&mut self, _: usize, _: bool, _: &[Lanes<F>], _: usize) {}
+    fn length(&mut self, at: &Length<'_, F>, columns: usize) {
+        if let Some(watch) = self {
+            watch.length(at, columns);
+        }
+    }
     #[inline(always)]
-    fn mass(&mut self, _: usize, _: &[Lanes<F>], _: usize) {}
+    fn endless(&mut self, body: usize, left: bool, ends: &[Lanes<F>], columns: usize) {
+        if let Some(watch) = self {
+            watch.endless(body, left, ends, columns);
+        }
+    }
+    #[inline(always)]
+    fn mass(&mut self, body: usize, displacement: &[Lanes<F>], columns: usize) {
+        if let Some(watch) = self {
+            watch.mass(body, displacement, columns);
+        }
+    }
 }
 
 /// Loads and displacements at the front, kept from one set of frequencies to the next.
@@ -118,13 +137,14 @@ impl<F: Fuse> Loads<F> {
             }
         }
         self.front.fill(Lanes::ZERO);
-        let first_read = if wants_joints || W::READS { 0 } else { tape.first_sensor };
+        let reads = watch.reads();
+        let first_read = if wants_joints || reads { 0 } else { tape.first_sensor };
         for (k, op) in tape.ops.iter().enumerate().skip(first_read).rev() {
             let loaded = k >= tape.first_force;
             match op {
                 Op::March { rows, piece, last, .. } => {
                     let saved = self.backward::<true>(&factor.records, rows, f, loaded);
-                    if W::READS && tape.states {
+                    if reads && tape.states {
                         let at = rows.record + 8 + 2 * rows.others.len();
                         let impedance = &factor.records[at..at + 3 + 2 * rows.others.len()];
                         let (front, loads) = (&self.front[..], &self.saved[saved..]);
@@ -153,7 +173,7 @@ impl<F: Fuse> Loads<F> {
                         scatter(&self.front[row * f + c], out.sensors, index * f + c, stride, out.used);
                     }
                 }
-                Op::Join { joint, a, b, .. } if wants_joints || W::READS => {
+                Op::Join { joint, a, b, .. } if wants_joints || reads => {
                     watch.joint(*joint, &self.front, *a, *b, f);
                     if !wants_joints {
                         continue;
