@@ -23,6 +23,7 @@ from permway.challenge.small.strength import Blows, Part, Ride, Scale
 from permway.challenge.small.write import write_arrays, write_tables, write_truth
 from permway.challenge.weigh import keep
 from permway.diagnosis.catalogue import entries
+from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.recordings.campaign import Campaign, read_campaign
 
 
@@ -71,8 +72,11 @@ def name_of(seed: int, index: int) -> str:
     return f"{TIER}-{seed}-{index:04d}"
 
 
+@one_thread_of_blas()
 def make_small(seed: int, index: int, folder: Path) -> str:
     """Write one campaign and its truth, unless they are there; its name.
+
+    With one thread of BLAS: sums in another order would be other bytes.
 
     Parameters
     ----------
