@@ -39,7 +39,7 @@ def drawn(name: str, seed: int) -> tuple[Layout, places.Tests]:
     raise AssertionError(name)
 
 
-@pytest.mark.parametrize("index", range(8))
+@pytest.mark.parametrize("index", range(5))
 def test_a_seed_and_a_number_give_the_same_bytes_whatever_was_made_before(tmp_path: Path, index: int) -> None:
     make_small(11, index, tmp_path / "one")
     make_small(11, index + 1, tmp_path / "other")
@@ -86,7 +86,7 @@ def test_the_two_makers_agree_where_nothing_is_concealed(tmp_path: Path, name: s
 
 def test_every_kind_is_drawn_and_deviances_are_spread(tmp_path: Path) -> None:
     kinds, deviances = set(), []
-    for index in range(40):
+    for index in range(24):
         small = draw_small(31, index, tmp_path / str(index))
         kinds.add((small.maker.name, len(small.chosen)))
         deviances += [one for effect, _, one in small.chosen if effect.scales]
@@ -94,8 +94,8 @@ def test_every_kind_is_drawn_and_deviances_are_spread(tmp_path: Path) -> None:
     assert any(count > 1 for _, count in kinds)
     assert min(deviances) > 3.0
     assert max(deviances) < 1.6e4
-    assert sum(one < 50.0 for one in deviances) > 4
-    assert sum(one > 500.0 for one in deviances) > 4
+    assert sum(one < 50.0 for one in deviances) > 2
+    assert sum(one > 500.0 for one in deviances) > 2
 
 
 def test_the_fixture_is_made_again_byte_for_byte(tmp_path: Path) -> None:

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from permway.challenge.beams import Complexes
 from permway.challenge.small.errors import root
+from permway.challenge.small.make import draw_small
+from permway.challenge.small.recalibrated import best_deviance
 from permway.challenge.small.strength import SURE, Blows, Ride, Scale
 
 FREQUENCY = np.linspace(10.0, 100.0, 9)
 STEP = 1e-3
+
+FEW = (0, 29, 57)
+"""Campaigns of one seed with few pairs and lines, one effect and no run."""
 
 
 def normal(random: np.random.Generator, *shape: int) -> Complexes:
@@ -18,22 +25,18 @@ def normal(random: np.random.Generator, *shape: int) -> Complexes:
 
 def of_blows(blows: Blows, changes: list[Complexes]) -> tuple[np.ndarray, np.ndarray]:
     """Standardised differences, one column each, and their covariance pair by pair."""
-    tests, sensors, points, lines = blows.base.shape
     relative = blows.sigma / np.abs(blows.base)
     ratio = [np.asarray(change / blows.base) for change in changes]
-    sure = relative < SURE
-    off = np.stack([np.where(sure, np.log(r), r - 1.0) / relative for r in ratio], axis=-1)
+    off = np.stack([np.where(relative < SURE, np.log(r), r - 1.0) / relative for r in ratio], axis=-1)
     rows = np.concatenate([off.real.reshape(-1, len(changes)), off.imag.reshape(-1, len(changes))])
+    _, sensor, point, line = (at.reshape(-1) for at in np.indices(blows.base.shape))
+    shared = blows.sizes[0] ** 2 * (sensor[:, None] == sensor) + blows.sizes[1] ** 2 * (point[:, None] == point)
     kernel = blows.functions @ blows.functions.T
-    size = tests * sensors * points * lines
-    half = np.zeros((size, size))
-    for a, (t, s, p, f) in enumerate(np.ndindex(blows.base.shape)):
-        for b, (u, q, r, g) in enumerate(np.ndindex(blows.base.shape)):
-            shared = blows.sizes[0] ** 2 * (s == q) + blows.sizes[1] ** 2 * (p == r)
-            half[a, b] = shared * kernel[f, g] / (relative[t, s, p, f] * relative[u, q, r, g])
-    covariance = np.eye(2 * size)
-    covariance[:size, :size] += half
-    covariance[size:, size:] += half
+    flat = relative.reshape(-1)
+    half = shared * kernel[line[:, None], line] / (flat[:, None] * flat)
+    covariance = np.eye(2 * flat.size)
+    covariance[: flat.size, : flat.size] += half
+    covariance[flat.size :, flat.size :] += half
     return rows, covariance
 
 
@@ -58,6 +61,35 @@ def test_of_hammer_tests_it_is_that_of_the_whole_covariance(seed: int, length: f
     rows, covariance = of_blows(blows, [changed, *slopes])
     rows[:, 1:] /= STEP
     assert found == pytest.approx(least(rows, covariance), rel=1e-6)
+
+
+@pytest.mark.parametrize("index", FEW)
+def test_of_drawn_campaigns_it_is_that_of_the_whole_covariance(tmp_path: Path, index: int) -> None:
+    small = draw_small(7, index, tmp_path)
+    (blows,) = small.scale.parts
+    assert isinstance(blows, Blows)
+    (changed,) = small.maker.responses(small.effects)
+    rows, covariance = of_blows(blows, [changed, *(slope for (slope,) in small.maker.slopes())])
+    rows[:, 1:] /= STEP
+    (_, _, linear) = small.chosen[0]
+    assert linear == pytest.approx(least(rows, covariance), rel=1e-4)
+    # A fit that takes slopes anew comes out no higher, but for where it rests.
+    assert small.deviances()[0] < 1.1 * linear
+
+
+def test_a_stiffness_that_moves_a_sharp_resonance_is_taken_up_by_a_fit_alone() -> None:
+    def responses(z: float) -> Complexes:
+        stiffness = 0.3 * z
+        return np.asarray(1.0 / (np.exp(stiffness) * (1.0 + 0.02j) - (FREQUENCY / 50.0) ** 2))[None, None, None]
+
+    base = responses(0.0)
+    blows = Blows(base, np.abs(base) * 0.05, root(FREQUENCY, 1.0), (1e-3, 1e-3))
+    linear = Scale([blows], [[responses(STEP)]], STEP).deviance([responses(2.0)])
+    found = best_deviance([blows], [responses(2.0)], lambda z: [responses(float(z[0]))], 1)
+    # Twice the standard deviation of the prior costs 4 and explains everything.
+    assert found == pytest.approx(4.0, rel=0.02)
+    assert linear > 50.0
+    assert best_deviance([blows], [responses(0.0)], lambda z: [responses(float(z[0]))], 1) == pytest.approx(0.0)
 
 
 def test_of_a_run_a_gain_within_its_tolerance_costs_next_to_nothing() -> None:

@@ -13,7 +13,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from permway.challenge.score import Claim
+from permway.challenge.recalibrated import pulls
+from permway.challenge.score import Claim, Scored, score
 from permway.challenge.small.diagnose import diagnose_all, interpreter_of
 from permway.challenge.small.judge import Judged, judged
 from permway.challenge.small.suite import names_of, run_small
@@ -210,6 +211,15 @@ def test_a_score_of_a_thousand_campaigns_is_small_and_adds_up() -> None:
     ]
 
 
+def null_of(folder: Path) -> Scored:
+    """A campaign of the fixture as if nothing were concealed in it, and one parameter were stated."""
+    (one, *_) = score(folder, {})
+    path = folder / "verdicts" / one.name / "verdict.json"
+    moved = {"pad.k": {"value": 3e7, "low": 1e6, "high": 1e9}}
+    path.write_text(json.dumps({**json.loads(path.read_text()), "recalibrated": {"before": moved, "after": {}}}))
+    return replace(one, found=None)
+
+
 def test_the_suite_writes_its_table(tmp_path: Path, stub: str, monkeypatch: pytest.MonkeyPatch) -> None:
     verdict = {"status": "recalibrated", "effects": [], "held_out": {}}
     verdict["recalibrated"] = {"before": {}, "after": {}}
@@ -222,4 +232,7 @@ def test_the_suite_writes_its_table(tmp_path: Path, stub: str, monkeypatch: pyte
     assert (said["verdicts"], said["failed"]) == (2, 0)
     scores = json.loads(Path(said["scores"]).read_text())
     assert scores["rows"][0]["found"][:2] == [0, 2]
+    # The other score reads such truths, too, whose parameters are not by part.
+    assert pulls(tmp_path / "s", score(tmp_path / "s", {})) == []
+    assert [p.inside for p in pulls(tmp_path / "s", [null_of(tmp_path / "s")])] == [True]
     assert "| all | 2 | 0 |" in Path(said["table"]).read_text()

@@ -9,6 +9,7 @@ Source: Cook, Malkus, Plesha and Witt, Concepts and Applications of Finite Eleme
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,9 @@ DOUBLINGS = 28
 
 FINE_M = 0.0125
 """Longest element of a body whose shear matters."""
+
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+"""Gauss's rule of an element, exact for its polynomials."""
 
 
 @dataclass(frozen=True)
@@ -52,12 +56,15 @@ class Section:
     loss: float = 0.0
 
 
+@lru_cache(maxsize=4096)
 def element(section: Section, length: float) -> tuple[Reals, Reals]:
-    """Stiffness and consistent mass of an element, each (4, 4), for deflection and rotation of its two nodes."""
+    """Stiffness and consistent mass of an element, each (4, 4), for deflection and rotation of its two nodes.
+
+    Most elements of a mesh are alike, so that they are kept, and cannot be written to.
+    """
     soft, polynomial = _polynomial(section, length)
-    points, weights = np.polynomial.legendre.leggauss(4)
-    x = 0.5 * length * (points + 1.0)
-    weights = 0.5 * length * weights
+    x = 0.5 * length * (_POINTS + 1.0)
+    weights = 0.5 * length * _WEIGHTS
     one, zero = np.ones_like(x), np.zeros_like(x)
     deflection = np.stack([one, x, x**2, x**3], axis=1) @ polynomial
     rotation = np.stack([zero, one, 2.0 * x, 3.0 * x**2 + 6.0 * soft], axis=1) @ polynomial
@@ -68,7 +75,10 @@ def element(section: Section, length: float) -> tuple[Reals, Reals]:
         stiffness = stiffness + section.shear * np.einsum("p,pi,pj->ij", weights, strain, strain)
     mass = section.mass * np.einsum("p,pi,pj->ij", weights, deflection, deflection)
     mass = mass + section.rotary * np.einsum("p,pi,pj->ij", weights, rotation, rotation)
-    return np.asarray(stiffness), np.asarray(mass)
+    found = np.asarray(stiffness), np.asarray(mass)
+    for matrix in found:
+        matrix.flags.writeable = False
+    return found
 
 
 def shape(section: Section, length: float, x: Reals) -> Reals:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -55,12 +55,20 @@ def pulls(folder: Path, scored: Iterable[Scored], verdicts: Path | None = None) 
         true = json.loads((Path(folder) / "truth" / f"{one.name}.json").read_text())
         said = json.loads(((verdicts or Path(folder) / "verdicts") / one.name / "verdict.json").read_text())
         moved = said.get("recalibrated", {}).get("before" if one.found is None else "after", {})
-        for part, values in true.get("parameters", {}).items():
-            for key, value in values.items():
-                estimate = moved.get(f"{part}.{key}")
-                if estimate is not None and estimate.get("low") is not None:
-                    found.append(_pull(one.name, f"{part}.{key}", float(value), estimate))
+        for name, value in _by_name(true.get("parameters", {})):
+            estimate = moved.get(name)
+            if estimate is not None and estimate.get("low") is not None:
+                found.append(_pull(one.name, name, value, estimate))
     return found
+
+
+def _by_name(parameters: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """True values by the names of a campaign's parameters; large campaigns have them by part."""
+    for name, value in parameters.items():
+        if isinstance(value, Mapping):
+            yield from ((f"{name}.{key}", float(one)) for key, one in value.items())
+        else:
+            yield name, float(value)
 
 
 def _pull(case: str, parameter: str, true: float, said: Mapping[str, Any]) -> Pull:

@@ -69,6 +69,10 @@ class ByModel:
         """Hammer tests (tests, sensors, points, F), and the run's densities (F, channels, channels) if any."""
         return self._predicted(self._amended(effects)) if effects else self.base
 
+    def at(self, values: Mapping[str, float]) -> list[Complexes]:
+        """Responses with other values of the parameters and nothing concealed."""
+        return self._predicted(self.campaign.with_values(values))
+
     def slopes(self) -> list[list[Complexes]]:
         """Responses one step away in each parameter."""
         found = []

@@ -128,13 +128,20 @@ def _bare(name: str, truth: Mapping[str, Any], out: Path) -> Judged:
         maker=truth["maker"],
         layout=truth["layout"],
         kind=_kind(effects),
-        family=effects[0]["family"] if effects else "",
+        family=_strongest(truth)["family"] if effects else "",
         rough=truth["errors"]["length_octaves"] < ROUGH_OCTAVES,
         deviance=truth.get("deviance") if effects else None,
         truth=", ".join(effect["id"] or effect["mechanical"] for effect in effects) or "nothing",
         seconds=float(cost.get("processor_s", nan)),
         peak_MB=float(cost.get("peak_MB", nan)),
     )
+
+
+def _strongest(truth: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The effect that shows most alone."""
+    alone = truth.get("linear_deviances") or [0.0]
+    found: Mapping[str, Any] = truth["effects"][alone.index(max(alone))]
+    return found
 
 
 def _kind(effects: list[Mapping[str, Any]]) -> str:

@@ -14,15 +14,18 @@ from permway.challenge.beams import Complexes, Reals
 from permway.challenge.small import errors as measured
 from permway.challenge.small.by_elements import STEP, ByElements
 from permway.challenge.small.by_model import LINES_HZ, ByModel
+from permway.challenge.small.concealed import Concealed
 from permway.challenge.small.draws import TIER, generator
 from permway.challenge.small.elements_effects import PATH
 from permway.challenge.small.kinds import FAULTS, Chosen, Maker, NoiseTells, conceal, draw_kind
 from permway.challenge.small.layouts import Layout, draw_layout
 from permway.challenge.small.places import BLOWS, RUN_S, SAMPLING_HZ, Tests, draw_tests
+from permway.challenge.small.recalibrated import best_deviance
 from permway.challenge.small.strength import Blows, Part, Ride, Scale
 from permway.challenge.small.write import write_arrays, write_tables, write_truth
 from permway.challenge.weigh import keep
 from permway.diagnosis.catalogue import entries
+from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.recordings.campaign import Campaign, read_campaign
 
 
@@ -32,6 +35,8 @@ class Small:
 
     Attributes
     ----------
+    campaign : Campaign
+        As its file has it.
     layout : Layout
     tests : Tests
     errors : Errors
@@ -42,6 +47,7 @@ class Small:
         True parameters.
     """
 
+    campaign: Campaign
     layout: Layout
     tests: Tests
     errors: measured.Errors
@@ -51,19 +57,27 @@ class Small:
     values: Mapping[str, float]
 
     @property
-    def effects(self) -> list[tuple[Any, float]]:
+    def effects(self) -> list[tuple[Concealed, float]]:
         """Effects with their shares."""
         return [(effect, share) for effect, share, _ in self.chosen]
 
-    def deviance(self) -> float:
-        """Of all effects together."""
-        if not self.chosen:
-            return 0.0
-        if len(self.chosen) == 1:
-            return self.chosen[0][2]
+    def deviances(self) -> list[float]:
+        """Of all effects together, and of each alone if there are several, against the best recalibrated base."""
+        groups = [self.effects] + ([[one] for one in self.effects] if len(self.effects) > 1 else [])
+        return [self._deviance(group) for group in groups] if self.effects else [0.0]
+
+    def _deviance(self, effects: list[tuple[Concealed, float]]) -> float:
         told = _noise_tells(self.tests)
-        noise = sum(told(dict(effect.noise(share))) for effect, share in self.effects)
-        return self.scale.deviance(self.maker.responses(self.effects)) + noise
+        noise = sum(told(dict(effect.noise(share))) for effect, share in effects)
+        known = list(self.campaign.parameters.known.items())
+        # The base is the tool's own for both makers: what a mesh differs by is left out.
+        base = ByModel(self.campaign, self.tests, self.layout, self.values)
+
+        def predicted(z: Reals) -> list[Complexes]:
+            at = {name: k.value(k.z(self.values[name]) + float(v)) for (name, k), v in zip(known, z, strict=True)}
+            return base.at(at)
+
+        return best_deviance(self.scale.parts, self.maker.responses(effects), predicted, len(known)) + noise
 
 
 def name_of(seed: int, index: int) -> str:
@@ -71,8 +85,11 @@ def name_of(seed: int, index: int) -> str:
     return f"{TIER}-{seed}-{index:04d}"
 
 
+@one_thread_of_blas()
 def make_small(seed: int, index: int, folder: Path) -> str:
     """Write one campaign and its truth, unless they are there; its name.
+
+    With one thread of BLAS: sums in another order would be other bytes.
 
     Parameters
     ----------
@@ -86,9 +103,9 @@ def make_small(seed: int, index: int, folder: Path) -> str:
         return name
     small = draw_small(seed, index, Path(folder) / name)
     _measure(small, generator(seed, index, "noise"), Path(folder) / name)
-    deviance = small.deviance()
+    deviance, *each = small.deviances()
     if small.chosen:
-        keep(Path(folder), name, deviance, [one for _, _, one in small.chosen] if len(small.chosen) > 1 else ())
+        keep(Path(folder), name, deviance, each)
     write_truth(truth, _truth(small, seed, index, deviance))
     return name
 
@@ -117,7 +134,7 @@ def draw_small(seed: int, index: int, folder: Path) -> Small:
     kind = draw_kind(random)
     names = [*PATH, *FAULTS] if by_elements else _possible(tests)
     chosen = conceal(random, maker, scale, kind, names, _noise_tells(tests))
-    return Small(layout, tests, errors, maker, scale, chosen, values)
+    return Small(campaign, layout, tests, errors, maker, scale, chosen, values)
 
 
 def _possible(tests: Tests) -> list[str]:
@@ -231,6 +248,7 @@ def _truth(small: Small, seed: int, index: int, deviance: float) -> dict[str, An
             "noise": small.errors.noise,
         },
         "deviance": round(deviance, 4),
+        "linear_deviances": [round(one, 4) for _, _, one in small.chosen],
         "effects": effects,
         "parameters": {name: float(value) for name, value in small.values.items()},
     }

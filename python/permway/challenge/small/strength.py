@@ -33,6 +33,9 @@ class Part(Protocol):
     def reduced(self, values: Reals) -> Reals:
         """Of columns (n, k), what smooth errors explain, shape (c, k): squares are taken off."""
 
+    def wrapped(self, values: Reals) -> Reals:
+        """A difference of differences, its phases within half a turn."""
+
 
 @dataclass(frozen=True)
 class Blows:
@@ -67,6 +70,14 @@ class Blows:
             off = np.where(self.weight * SURE > 1.0, np.log(ratio), ratio - 1.0)
         parts = (self.weight * off).reshape(-1)
         return np.concatenate([parts.real, parts.imag])
+
+    def wrapped(self, values: Reals) -> Reals:
+        """See :class:`Part`."""
+        half = values.size // 2
+        weight = self.weight.reshape(-1)
+        turns = values[half:] / (2.0 * np.pi * weight)
+        whole = np.where(weight * SURE > 1.0, np.round(turns), 0.0)
+        return np.concatenate([values[:half], values[half:] - 2.0 * np.pi * weight * whole])
 
     @cached_property
     def _factor(self) -> Reals:
@@ -139,6 +150,10 @@ class Ride:
         values, vectors = np.linalg.eigh(inverse @ responses @ inverse)
         logs = np.log(np.maximum(values, 1e-12))[:, None, :]
         return self._rows(np.asarray(vectors * logs @ vectors.conj().swapaxes(1, 2))).reshape(-1)
+
+    def wrapped(self, values: Reals) -> Reals:
+        """See :class:`Part`; a matrix' logarithm has no turns."""
+        return values
 
     @cached_property
     def _columns(self) -> Reals:
