@@ -76,7 +76,7 @@ def diagnose(
         bool,
         typer.Option(
             "--posterior",
-            help="By one posterior over sets of effects: fast, for hammer tests above all; without --seed, --draws.",
+            help="By one posterior over sets of effects; --seed and --draws do not act.",
         ),
     ] = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Without report.html.")] = False,

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import cast
 
 import numpy as np
@@ -101,13 +102,13 @@ def widened(hypothesis: Hypothesis) -> Hypothesis:
             free.append(one)
             continue
         low, high = one.limits
-        value = one.value
-        free.append(
-            replace(one, value=lambda z, v=value: v(WIDER * z), limits=(min(low, -high), high / WIDER))  # type:
-            ignore[misc]
-        )
+        free.append(replace(one, value=partial(_wider, one.value), limits=(min(low, -high), high / WIDER)))
         starts[:, index] /= WIDER
     return replace(hypothesis, free=tuple(free), starts=tuple(tuple(map(float, row)) for row in starts))
+
+
+def _wider(value: Callable[[float], float], z: float) -> float:
+    return value(WIDER * z)
 
 
 def _overlap(alike: list[Hypothesis]) -> float:

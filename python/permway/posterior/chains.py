@@ -46,10 +46,20 @@ class Chains:
     kinds : tuple of str
         Of each process; what sizes are known by.
     entries : Entries
+    relative : ndarray, shape (n,), optional
+        Of each row what an error of 1 neper does to it.
     """
 
-    def __init__(self, rows: np.ndarray, turn: Complexes | None, kinds: tuple[str, ...], entries: Entries) -> None:
+    def __init__(
+        self,
+        rows: np.ndarray,
+        turn: Complexes | None,
+        kinds: tuple[str, ...],
+        entries: Entries,
+        relative: Reals | None = None,
+    ) -> None:
         self.rows, self.turn, self.kinds = rows, turn, kinds
+        self.relative = np.ones(len(rows)) if relative is None else relative
         self.nodes = Nodes.of(entries.x)
         width = STATES * len(kinds)
         self.size = width * self.nodes.x.size
@@ -127,6 +137,10 @@ class Factor:
     log_determinant: float
     """Of I + C K C' D^-1."""
 
+    def explained(self, values: Reals) -> Reals:
+        """What the processes most probably do to rows, shape (n, 1), whose values are these."""
+        return np.asarray(values - self.apply(values) / self.weights[:, None])
+
     def apply(self, values: Reals) -> Reals:
         """Inverse times columns, shape (n rows of the chains, k)."""
         design = self.chains.design
@@ -151,7 +165,7 @@ def of_responses(blocks: list[tuple[int, FrfBlock]]) -> Chains:
         Each with its first row.
     """
     names: dict[str, int] = {}
-    rows, turns, parts, start = [], [], [], 0
+    rows, turns, parts, sizes, start = [], [], [], [], 0
     for first, block in blocks:
         data = block.dataset.data
         sensors = [f"sensor {name}" for name in data["sensor"].values.astype(str)]
@@ -169,9 +183,10 @@ def of_responses(blocks: list[tuple[int, FrfBlock]]) -> Chains:
             parts.append(Entries(start + index.reshape(-1), process, x, relative, np.zeros(count)))
         rows.append(first + np.stack([np.arange(count), count + np.arange(count)], axis=1))
         turns.append(block.phase.conj().reshape(-1))
+        sizes.append(relative)
         start += count
     kinds = tuple(name.split(" ", 1)[0] for name in names)
-    return Chains(np.concatenate(rows), np.concatenate(turns), kinds, _joined(parts))
+    return Chains(np.concatenate(rows), np.concatenate(turns), kinds, _joined(parts), np.concatenate(sizes))
 
 
 def of_spectra(blocks: list[tuple[int, SpectraBlock]]) -> Chains:

@@ -12,10 +12,11 @@ from permway.arrays import Reals
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_spectra import LEVEL, SpectraBlock
-from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.gather import first_size
 from permway.posterior.chains import Chains, Factor, chains_of
 from permway.posterior.hyper import Hyper
+from permway.recordings.predict import added_to, away_from_lines
 
 NEPER_PER_DB = float(np.log(10.0)) / 20.0
 
@@ -62,6 +63,36 @@ class Frame:
         sigma = NEPER_PER_DB * np.concatenate([b.rows.scale_dB for b in blocks])
         columns = _columns(evidence, blocks)
         return Frame(evidence, tuple(chains_of(blocks)), columns, np.maximum(sigma, 1e-9), statistic)
+
+    def about(self, solved: Solved, covariance: Covariance, residuals: Reals) -> Frame:
+        """The same records weighed by what a fit predicts and by the errors of chains that it leaves.
+
+        What noise hides is expected to be what the prediction is there, and spectra scatter as it has them.
+
+        Parameters
+        ----------
+        solved : Solved
+            Its predictions.
+        covariance : Covariance
+            Of its residuals.
+        residuals : ndarray, shape (n,)
+        """
+        starts = np.cumsum([0, *(b.rows.channel.size for b in self.evidence.blocks)])
+        errors = covariance.errors(residuals)
+        blocks: list[Block] = []
+        for index, (block, prediction) in enumerate(zip(self.evidence.blocks, solved.datasets, strict=True)):
+            if isinstance(block, FrfBlock):
+                first, count = int(starts[index]), block.measured.size
+                mine = errors[first : first + count] + 1j * errors[first + count : first + 2 * count]
+                block = block.with_reference(prediction, mine.reshape(block.measured.shape))
+            elif isinstance(block, SpectraBlock):
+                need = solved.needs[index]
+                if need is not None:
+                    campaign, answer = solved.campaign, solved.answers[need.state]
+                    away = away_from_lines(campaign, block.dataset, need, answer)
+                    block = block.expecting(prediction, added_to(campaign, block.dataset), away)
+            blocks.append(block)
+        return Frame.of(self.evidence.with_blocks(tuple(blocks)))
 
     def first(self) -> Hyper:
         """Hyperparameters at the medians of their priors."""
@@ -153,6 +184,20 @@ class Covariance:
         solved = self._chains(self.frame.columns)
         inner = self.frame.columns.T @ solved + np.eye(solved.shape[1])
         return solved, linalg.cholesky(inner, lower=True)
+
+    def errors(self, residuals: Reals) -> Reals:
+        """Most probable errors of chains at rows of frequency responses: log gains, then phases; else 0."""
+        found = np.zeros(residuals.size)
+        for factor in self.factors:
+            chains = factor.chains
+            if chains.turn is not None:
+                real, imaginary = chains.rows.T
+                turned = (residuals[real] + 1j * residuals[imaginary]) * chains.turn
+                moved = factor.explained(turned[:, None])[:, 0]
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    each = np.where(chains.relative > 0.0, moved / chains.relative, 0.0)
+                found[real], found[imaginary] = each.real, each.imag
+        return found
 
     def apply(self, values: Reals) -> Reals:
         """Inverse times values, shape (n, k)."""

@@ -42,6 +42,9 @@ BEHIND = 92.0
 """Of the objective, by which a fit may be behind the best at one discrepancy to be fitted at the next: odds of
 1e-20, for at a large discrepancy a fit may still lie beside its best neighbour."""
 
+LEFT = 12.0
+"""Nats behind the best set from which a set is let go of: less than a class ever shows."""
+
 MOVING = 5.0
 """Nats that a small change may lack before it is moved to better neighbours."""
 
@@ -116,7 +119,9 @@ def explored(
     nominal = Model(campaign.with_values, free_parameters(campaign))
     coarse = fitter.frame.first().with_discrepancy(LEVELS[0])
     start = fitter.begin(nominal, np.zeros(len(nominal.free)), coarse)
-    empty = Member((), _annealed(fitter, start), float(np.log(1.0 - SOMETHING)))
+    fitter, (first,) = _weighed(fitter, [_annealed(fitter, start)], [()])
+    start = fitter.begin(nominal, np.zeros(len(nominal.free)), coarse)
+    empty = Member((), first, float(np.log(1.0 - SOMETHING)))
     members = [empty]
     far = Member((), start, empty.log_prior)
     for count in range(1, MOST + 1):
@@ -131,7 +136,20 @@ def explored(
         # A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it.
         if len(members[0].amendments) < count:
             break
-    return _apart(members)
+    # All that may count are held against the records as the best of them weighs these.
+    members = [m for m in _apart(members) if m.log_mass > members[0].log_mass - LEFT or not m.amendments]
+    _, fits = _weighed(fitter, [m.fit for m in members], [m.amendments for m in members])
+    return sorted((replace(m, fit=fit) for m, fit in zip(members, fits, strict=True)), key=lambda m: -m.log_mass)
+
+
+def _weighed(
+    fitter: Fitter, fits: Sequence[Fit], amendments: Sequence[tuple[Hypothesis, ...]]
+) -> tuple[Fitter, list[Fit]]:
+    """Records weighed by the first of some fits, and all of them fitted again."""
+    best = fits[0]
+    again = Fitter(fitter.frame.about(best.state.solved, best.covariance, best.state.deviations))
+    begun = [again.begin(fit.model, fit.z, fit.hyper) for fit in fits]
+    return again, [_finished(again, fit, own) for fit, own in zip(begun, amendments, strict=True)]
 
 
 def _annealed(fitter: Fitter, fit: Fit) -> Fit:
@@ -193,9 +211,10 @@ def _far(
     about = replace(root.fit, hyper=root.fit.hyper.with_discrepancy(level))
     starts = cells(about, ruled_out)
     scores = screened(about, starts, lambda done: progress(f"first look, {what}", done, len(starts)))
+    # A start that changes nothing is fitted whatever the first look says.
+    objective = np.where(np.isinf(scores.gain), -np.inf, scores.objective)
     rows = [
-        (scores.objective[i] - 2.0 * starts[i].log_prior, starts[i].hypothesis, starts[i])
-        for i in range(len(starts))
+        (objective[i] - 2.0 * starts[i].log_prior, starts[i].hypothesis, starts[i]) for i in range(len(starts))
     ]
     fits = [(_begun(fitter, root, cell, level), cell) for cell in _chosen(rows, widths[0], PER_FORM[0])]
     beam = [(fit, cell) for fit, cell in fits if fit is not None]
@@ -271,7 +290,7 @@ def _chosen(ranked: Sequence[tuple[float, Hypothesis, T]], width: int, each: int
     kept: list[T] = []
     count: Counter[tuple[str, ...]] = Counter()
     for score, hypothesis, item in sorted(ranked, key=lambda one: one[0]):
-        if len(kept) == width or not np.isfinite(score):
+        if len(kept) == width or not score < np.inf:
             break
         if count[hypothesis.form] < each:
             count[hypothesis.form] += 1
