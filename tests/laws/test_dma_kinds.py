@@ -78,6 +78,9 @@ def test_the_same_table(tmp_path: Path, text: str, encoding: str) -> None:
         ("f [Hz],T [°C],E' [MPa],E'' [MPa]\nrad/s,°C,MPa,MPa\n1,20,2,0.3\n", ["row of units", "'rad/s'"]),
         ("f [Hz],T [°C],E' [MPa],E'' [MPa]\n1,20,2,0.3\nmean,of,all,rows\n", ["line 3", "neither units nor"]),
         ("f [Hz],T [°C],E' [MPa],E'' [MPa]\n1_0,20,2,0.3\n", ["line 2", "not a number"]),
+        ("f [-],T [°C],E' [MPa],E'' [MPa]\n1,20,2,0.3\n", ["'f [-]' says that it has no unit"]),
+        ("f [Hz],T [?],E' [MPa],E'' [MPa]\n1,20,2,0.3\n", ["temperature", "'T [?]'"]),
+        ("T [°C],f [Hz],E' [MPa],E'' [MPa]\n20,1,2,0.3\n#REF!,2,2,0.3\n", ["line 3", "#REF!"]),
         ("PK\x03\x04 zipped", ["Excel"]),
     ],
 )  # fmt: skip

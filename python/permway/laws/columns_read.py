@@ -34,7 +34,7 @@ tests, twice would let kelvin pass."""
 _MOST_LOSS_FACTOR = 6.0
 """Rubber at its glass transition has 1 to 3. Half would refuse damping rubber, twice let 7 % pass as 7."""
 
-_PLAIN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?")
+_PLAIN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?", re.ASCII)
 
 
 def refuse_missing(recognised: Recognised, where: str, *, frequency_Hz: float | None) -> None:

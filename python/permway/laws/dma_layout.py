@@ -17,6 +17,8 @@ from permway.reading import LARGEST_TABLE, read_bytes
 _HEAD_LINES = 200
 """Lines among which the header is looked for. Half is more than any export's head; twice takes twice as long."""
 _NUMBER = re.compile(r"[-+−]?(\d|[.,]\d)")
+_SHEET_FAULT = re.compile(r"#(REF!|DIV/0!|N/A|NAME\?|VALUE!|NUM!|NULL!)")
+"""What a spreadsheet writes for a cell without a value: no remark."""
 _THOUSANDS = re.compile(r"[-+−]?[1-9]\d{0,2}(,\d{3})+")
 _SIGNATURES = {b"PK\x03\x04": "an Excel or a zip file", b"\xd0\xcf\x11\xe0": "an Excel file of the old kind"}
 
@@ -161,7 +163,7 @@ def _lines(text: str, split: Callable[[str], list[str]], *, remarks: bool) -> It
     for index, (number, line) in enumerate(_joined(text)):
         if index == 0 and re.fullmatch(r"\"?sep=.\"?", line.strip()):
             continue
-        if line.lstrip().startswith("#"):
+        if line.lstrip().startswith("#") and not _SHEET_FAULT.match(line.lstrip()):
             if not remarks:
                 continue
             line = line.lstrip().lstrip("#")
