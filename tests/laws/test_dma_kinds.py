@@ -165,3 +165,25 @@ def test_the_answer_says_which_of_the_two_it_is(tmp_path: Path) -> None:
     assert answer["quantity"] == "stiffness of the part, N/m"
     answer = fit_table(path, output=tmp_path / "law.toml", law="springpot", shift="none", shape_factor_m=2.0)
     assert answer["quantity"] == "modulus, Pa"
+
+
+def test_a_ramp_of_temperature_is_many_temperatures(tmp_path: Path) -> None:
+    """Rows half a kelvin apart are no single isotherm, however the machine dwelt."""
+    rows = "".join(f"{t},{3.0 * 10.0 ** (-t / 40.0):.6g},{0.3:.6g}\n" for t in np.arange(-40.0, 40.0, 0.5))
+    ramp = read_dma(write(tmp_path, "T [°C],E' [MPa],tan δ\n" + rows), frequency_Hz=1.0)
+    nodes = ramp.isotherms()
+    assert 20 <= len(nodes) <= 40
+    assert np.all(np.diff(nodes) > 1.0)
+    held = "".join(f"{f},{t + 0.4 * (-1) ** f},3,0.3\n" for t in (0.0, 20.0) for f in (1, 2, 3))
+    np.testing.assert_allclose(
+        read_dma(write(tmp_path, "f [Hz],T [°C],E' [MPa],tan δ\n" + held)).isotherms(), [0.0, 20.0], atol=0.2
+    )
+
+
+def test_a_damping_factor_is_not_taken_for_a_loss_factor(tmp_path: Path) -> None:
+    """The damping factor of a vibration is half the loss factor of its spring: which is meant nobody can tell."""
+    with pytest.raises(InputError, match="not understood: 'Damping factor'"):
+        read_dma(write(tmp_path, "f [Hz],T [°C],E' [MPa],Damping factor\n1,20,2,0.1\n"))
+    assert read_dma(write(tmp_path, "f [Hz],T [°C],E' [MPa],tan ∂\n1,20,2,0.1\n")).loss_factor[0] == pytest.approx(
+        0.1
+    )

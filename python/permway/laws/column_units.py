@@ -145,7 +145,7 @@ def column_unit(quantity: str, text: str) -> ColumnUnit | None:
     if unit.quantity not in known or unit.level or unit.offset:
         return None
     kind = {"pressure": MODULUS, "stiffness": STIFFNESS}.get(unit.quantity, "")
-    # A modulus in mPa is a slip of the pen for MPa, a factor of a thousand million: not to be guessed.
+    # A modulus in mPa may be meant in MPa, a factor of a thousand million: not to be guessed.
     if kind and unit.factor < 1.0:
         return None
     return ColumnUnit(unit.factor * known[unit.quantity], kind=kind)

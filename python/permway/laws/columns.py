@@ -23,7 +23,7 @@ _NAMES = {
     "loss": ("loss_modulus", "loss", "modulus_loss", "verlustmodul", "module_de_perte"),
     "loss_factor": (
         *("loss_factor", "loss_tangent", "tan_delta", "tandelta", "tan_d", "tand", "tg_delta", "tgdelta", "eta"),
-        *("damping_factor", "dissipation_factor", "verlustfaktor", "facteur_de_perte"),
+        *("dissipation_factor", "verlustfaktor", "facteur_de_perte"),
     ),
     "magnitude": (
         *("complex_modulus", "dynamic_modulus", "absolute_modulus", "modulus_magnitude", "dyn_modulus"),
@@ -65,7 +65,16 @@ _ALONE_OTHER = {
 _UNIT_REQUIRED = {"frequency", "omega", "temperature"}
 _NO_NAME = re.compile(r"[?!@$&=\\^~+%°\ufffd]|[\[({<]\W*[\])}>]")
 _PRIMES = "'′’´″\"`‘”“"
-_GREEK = (("δ", " delta "), ("Δ", " delta "), ("ω", " omega "), ("η", " eta "), ("ε", " strain "), ("∗", "*"))
+_GREEK = (
+    ("δ", " delta "),
+    ("∂", " delta "),
+    ("ẟ", " delta "),
+    ("Δ", " delta "),
+    ("ω", " omega "),
+    ("η", " eta "),
+    ("ε", " strain "),
+    ("∗", "*"),
+)
 
 
 @dataclass(frozen=True)

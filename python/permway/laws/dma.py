@@ -93,12 +93,19 @@ class DmaTable:
         return np.asarray(self.loss_Pa / self.storage_Pa)
 
     def isotherms(self, gap_K: float = 1.0) -> Reals:
-        """Mean temperature of each group of rows closer than `gap_K`, rising."""
+        """Mean temperature of each group of rows closer than `gap_K`, rising.
+
+        A group wider than three gaps is a ramp, measured while the temperature rose, and cut into pieces so wide.
+        """
         if self.temperature_C is None:
             return np.empty(0)
         ordered = np.sort(self.temperature_C)
-        groups = np.split(ordered, np.nonzero(np.diff(ordered) > gap_K)[0] + 1)
-        return np.array([group.mean() for group in groups])
+        means: list[float] = []
+        for group in np.split(ordered, np.nonzero(np.diff(ordered) > gap_K)[0] + 1):
+            pieces = max(math.ceil((group[-1] - group[0]) / (3.0 * gap_K)), 1)
+            edges = np.linspace(group[0], group[-1], pieces + 1)[1:-1]
+            means += [float(part.mean()) for part in np.split(group, np.searchsorted(group, edges)) if part.size]
+        return np.array(means)
 
 
 def read_dma(
@@ -176,7 +183,7 @@ def read_dma(
 
 
 def _or_given(column: Reals | None, given: float | None, count: int, name: str) -> Reals | None:
-    """A column, or the one value that stands for it; both together are refused unless they agree."""
+    """A column, or the one value that stands for it; where there are both the column is right, row by row."""
     if given is None or column is None:
         if given is not None and not (math.isfinite(given) and (name == "temperature_C" or given > 0.0)):
             raise InputError("must be a finite number, a frequency above zero", where=name, value=given)

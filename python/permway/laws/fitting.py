@@ -222,13 +222,12 @@ def _overlaid(found: Identification) -> tuple[list[dict[str, Any]], tuple[str, .
     steps, apart = [], []
     for step in overlay(found.table).steps:
         own = float(law.log10_shift(step.cold_C) - law.log10_shift(step.warm_C))
-        told = step.decades is not None
         steps.append(
             {
                 "from_C": step.cold_C,
                 "to_C": step.warm_C,
                 "overlay_decades": step.decades,
-                "standard_error": step.error if told else None,
+                "standard_error": None if step.decades is None else step.error,
                 "law_decades": own,
                 "note": step.why,
             }
