@@ -71,7 +71,13 @@ def _some(headers: tuple[str, ...]) -> str:
 def read_column(source: Path, layout: Layout, column: Column) -> Reals:
     """One column in SI."""
     values = np.empty(len(layout.rows))
+    signed = column.quantity in ("temperature", "strain")
     for index, row in enumerate(layout.rows):
+        if not layout.decimal_comma and _PLAIN.fullmatch(row.cells[column.index]):
+            # The place is worded for what is wrong only: most cells are plain.
+            values[index] = column.to_si(float(row.cells[column.index]))
+            if np.isfinite(values[index]) and (signed or values[index] > 0.0):
+                continue
         place = f"{source}: line {row.number}, column '{column.header}'"
         cell = row.cells[column.index]
         plain = cell.replace("−", "-")
@@ -81,7 +87,7 @@ def read_column(source: Path, layout: Layout, column: Column) -> Reals:
                 raise InputError(what, where=place, value=cell, remedy="write all numbers alike")
             plain = plain.replace(",", ".", 1)
         value = column.to_si(_number(plain, place))
-        if column.quantity not in ("temperature", "strain") and value <= 0.0:
+        if not signed and value <= 0.0:
             raise InputError(
                 "must be above zero",
                 where=place,
