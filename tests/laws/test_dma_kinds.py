@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.cli import app
 from permway.errors import InputError
 from permway.laws import FractionalZener, law_to_dict
 from permway.laws.dma import DmaTable, read_dma
 from permway.laws.fitting import fit_table
 from permway.laws.identify import identify
-from permway.laws.lawfile import save_law
+from permway.laws.lawfile import load_law, save_law
 from permway.model.file import model_from_dict
 
 # The same two rows in all tables: 1 and 10 Hz at 20 degC, 2 + 0.3i and 3 + 0.5i MPa.
@@ -70,6 +72,8 @@ def test_the_same_table(tmp_path: Path, text: str, encoding: str) -> None:
         ("f [Hz],T [°C],E' [MPa],loss factor\n1,20,2,15\n", ["line 2", "per cent", "tan_delta_pct"]),
         ("f [Hz],T,E' [MPa],E'' [MPa]\n1,160,2,0.3\n", ["kelvin", "temperature_K"]),
         ("f [Hz],T [°C],E' [MPa],E'' [MPa]\n1,-300,2,0.3\n", ["absolute zero"]),
+        ("f [Hz],T [K],E' [MPa],E'' [MPa]\n1,-20,2,0.3\n", ["degrees Celsius given as kelvin"]),
+        ("f [Hz],T [K],E' [MPa],E'' [MPa]\n1,20,2,0.3\n", ["degrees Celsius given as kelvin"]),
         ("f;T;E' [MPa];E'' [MPa]\n1,000;20,000;2,000;1,300\n", ["thousands", "--decimal"]),
         ("f;T;E' [MPa];E'' [MPa]\n1;20;2,5;0.3\n", ["line 2", "decimal point in '0.3'"]),
         ("f [Hz],E' [MPa],E'' [MPa]\n1,2,0.3\n10,3,0.5\n1,1,0.1\n", ["line 4", "come again", "--temperature"]),
@@ -187,3 +191,25 @@ def test_a_damping_factor_is_not_taken_for_a_loss_factor(tmp_path: Path) -> None
     assert read_dma(write(tmp_path, "f [Hz],T [°C],E' [MPa],tan ∂\n1,20,2,0.1\n")).loss_factor[0] == pytest.approx(
         0.1
     )
+
+
+def test_the_command_takes_what_the_file_does_not_say(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A stiffness in a decimal comma that could be thousands, at a frequency that no column gives."""
+    rows = "".join(f"{t},000;{k},125;0,325\n" for t, k in ((-40, 650), (-20, 130), (1, 26), (20, 13), (40, 11)))
+    path = write(tmp_path, "T [°C];K' [kN/m];tan δ\n" + rows)
+    law = tmp_path / "law.toml"
+    options = ["--law", "springpot_parallel", "-o", str(law), "--json"]
+    with pytest.raises(SystemExit) as end:
+        app(["fit-pad", str(path), *options, "--frequency", "2", "--shape-factor", "2.6", "--decimal", ","])
+    assert end.value.code == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["quantity"] == "modulus, Pa"
+    assert said["reference_temperature_C"] == 20.0
+    stiffness = load_law(law).storage(2.0, 20.0) * 2.6
+    assert stiffness == pytest.approx(13.125e3, rel=0.5)
+    warm = write(tmp_path, "f_Hz,T_C,E_storage_MPa,tan_delta\n1,40,3,0.1\n5,40,4,0.2\n1,60,2,0.1\n5,60,3,0.1\n")
+    with pytest.raises(SystemExit) as end:
+        app(["fit-pad", str(warm), *options])
+    assert end.value.code == 0
+    # 20 degC lies outside: the nearest isotherm is taken.
+    assert json.loads(capsys.readouterr().out)["reference_temperature_C"] == 40.0

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from permway.arrays import ABSOLUTE_ZERO_C, Reals
+from permway.arrays import Reals
 from permway.errors import InputError
 from permway.laws.column_units import MODULUS_UNITS
 from permway.laws.columns import Column, Recognised
@@ -26,6 +26,9 @@ WAYS = tuple(
 
 _KELVIN_ABOVE_C = 200.0
 """No rubber is tested above: half would refuse tests of hot seals, twice would let most tables in kelvin pass."""
+
+_COLDEST_C = -190.0
+"""Liquid nitrogen cools a machine to -150 degC or so. Half would refuse cold tests; nothing is below -273.15."""
 
 _UNSTATED_ABOVE_C = 140.0
 """Without a unit, above this, degrees Celsius, Fahrenheit and kelvin are all likely. Half would refuse warm
@@ -118,12 +121,12 @@ def refuse_kelvin(source: Path, rows: list[Line], temperature: Reals, column: Co
             value=float(temperature[hot[0]]),
             remedy="subtract 273.15, or name the column temperature_K",
         )
-    if (temperature <= ABSOLUTE_ZERO_C).any():
-        at = int(temperature.argmin())
+    at = int(temperature.argmin())
+    if temperature[at] < _COLDEST_C:
         raise InputError(
-            "a temperature below absolute zero",
+            f"a temperature below {_COLDEST_C:g} degC, or absolute zero: degrees Celsius given as kelvin?",
             where=f"{source}: line {rows[at].number}, column '{column.header}'",
-            value=float(temperature[at]),
+            value=f"{temperature[at]:.6g} degC",
             remedy="correct the value or the unit of the column",
         )
 
