@@ -106,6 +106,9 @@ def test_what_the_user_says_settles_what_the_file_leaves_open(tmp_path: Path) ->
     np.testing.assert_array_equal(read_dma(swept, frequency_Hz=2.0).frequency_Hz, [2.0, 2.0])
     with pytest.raises(InputError, match="above zero"):
         read_dma(swept, frequency_Hz=0.0)
+    both = read_dma(write(tmp_path, "f [Hz],T [°C],E' [MPa],tan δ\n1,20,3,0.1\n"), frequency_Hz=2.0)
+    assert both.frequency_Hz[0] == 1.0
+    assert any("column 'f [Hz]', not the one given, 2" in note for note in both.notes)
 
 
 def test_a_stiffness_is_one_and_becomes_a_modulus_by_the_shape_factor(tmp_path: Path) -> None:

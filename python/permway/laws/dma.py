@@ -178,7 +178,7 @@ def read_dma(
         quantity=quantity,
         strain=read.get("strain"),
         source=str(source),
-        notes=(*layout.notes, *_assumed(columns)),
+        notes=(*layout.notes, *_assumed(columns), *_unused(columns, frequency_Hz, temperature_C)),
     )
 
 
@@ -209,6 +209,17 @@ def _quantity(column: Column, shape_factor_m: float | None) -> tuple[Literal["mo
     if not (math.isfinite(shape_factor_m) and shape_factor_m > 0.0):
         raise InputError("must be finite and above zero", where="shape_factor_m", value=shape_factor_m)
     return "modulus", 1.0 / shape_factor_m
+
+
+def _unused(
+    columns: dict[str, Column], frequency_Hz: float | None, temperature_C: float | None
+) -> tuple[str, ...]:
+    given = {"frequency": frequency_Hz, "temperature": temperature_C}
+    return tuple(
+        f"the {name} of each row is that of column '{columns[name].header}', not the one given, {value:g}"
+        for name, value in given.items()
+        if value is not None and name in columns
+    )
 
 
 def _assumed(columns: dict[str, Column]) -> tuple[str, ...]:
