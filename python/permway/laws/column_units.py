@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from permway.arrays import ABSOLUTE_ZERO_C
 from permway.errors import InputError
-from permway.recordings.units import parse_unit
+from permway.units import parse_unit
 
 MODULUS_UNITS = {"pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9, "n_mm2": 1e6, "n_m2": 1.0}
 
