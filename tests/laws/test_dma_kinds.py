@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.cli import app
 from permway.errors import InputError
 from permway.laws import FractionalZener, law_to_dict
 from permway.laws.dma import DmaTable, read_dma
 from permway.laws.fitting import fit_table
 from permway.laws.identify import identify
-from permway.laws.lawfile import save_law
+from permway.laws.lawfile import load_law, save_law
 from permway.model.file import model_from_dict
 
 # The same two rows in all tables: 1 and 10 Hz at 20 degC, 2 + 0.3i and 3 + 0.5i MPa.
@@ -70,6 +72,8 @@ def test_the_same_table(tmp_path: Path, text: str, encoding: str) -> None:
         ("f [Hz],T [°C],E' [MPa],loss factor\n1,20,2,15\n", ["line 2", "per cent", "tan_delta_pct"]),
         ("f [Hz],T,E' [MPa],E'' [MPa]\n1,160,2,0.3\n", ["kelvin", "temperature_K"]),
         ("f [Hz],T [°C],E' [MPa],E'' [MPa]\n1,-300,2,0.3\n", ["absolute zero"]),
+        ("f [Hz],T [K],E' [MPa],E'' [MPa]\n1,-20,2,0.3\n", ["degrees Celsius given as kelvin"]),
+        ("f [Hz],T [K],E' [MPa],E'' [MPa]\n1,20,2,0.3\n", ["degrees Celsius given as kelvin"]),
         ("f;T;E' [MPa];E'' [MPa]\n1,000;20,000;2,000;1,300\n", ["thousands", "--decimal"]),
         ("f;T;E' [MPa];E'' [MPa]\n1;20;2,5;0.3\n", ["line 2", "decimal point in '0.3'"]),
         ("f [Hz],E' [MPa],E'' [MPa]\n1,2,0.3\n10,3,0.5\n1,1,0.1\n", ["line 4", "come again", "--temperature"]),
@@ -78,6 +82,9 @@ def test_the_same_table(tmp_path: Path, text: str, encoding: str) -> None:
         ("f [Hz],T [°C],E' [MPa],E'' [MPa]\nrad/s,°C,MPa,MPa\n1,20,2,0.3\n", ["row of units", "'rad/s'"]),
         ("f [Hz],T [°C],E' [MPa],E'' [MPa]\n1,20,2,0.3\nmean,of,all,rows\n", ["line 3", "neither units nor"]),
         ("f [Hz],T [°C],E' [MPa],E'' [MPa]\n1_0,20,2,0.3\n", ["line 2", "not a number"]),
+        ("f [-],T [°C],E' [MPa],E'' [MPa]\n1,20,2,0.3\n", ["'f [-]' says that it has no unit"]),
+        ("f [Hz],T [?],E' [MPa],E'' [MPa]\n1,20,2,0.3\n", ["temperature", "'T [?]'"]),
+        ("T [°C],f [Hz],E' [MPa],E'' [MPa]\n20,1,2,0.3\n#REF!,2,2,0.3\n", ["line 3", "#REF!"]),
         ("PK\x03\x04 zipped", ["Excel"]),
     ],
 )  # fmt: skip
@@ -99,6 +106,9 @@ def test_what_the_user_says_settles_what_the_file_leaves_open(tmp_path: Path) ->
     np.testing.assert_array_equal(read_dma(swept, frequency_Hz=2.0).frequency_Hz, [2.0, 2.0])
     with pytest.raises(InputError, match="above zero"):
         read_dma(swept, frequency_Hz=0.0)
+    both = read_dma(write(tmp_path, "f [Hz],T [°C],E' [MPa],tan δ\n1,20,3,0.1\n"), frequency_Hz=2.0)
+    assert both.frequency_Hz[0] == 1.0
+    assert any("column 'f [Hz]', not the one given, 2" in note for note in both.notes)
 
 
 def test_a_stiffness_is_one_and_becomes_a_modulus_by_the_shape_factor(tmp_path: Path) -> None:
@@ -162,3 +172,47 @@ def test_the_answer_says_which_of_the_two_it_is(tmp_path: Path) -> None:
     assert answer["quantity"] == "stiffness of the part, N/m"
     answer = fit_table(path, output=tmp_path / "law.toml", law="springpot", shift="none", shape_factor_m=2.0)
     assert answer["quantity"] == "modulus, Pa"
+
+
+def test_a_ramp_of_temperature_is_many_temperatures(tmp_path: Path) -> None:
+    """Rows half a kelvin apart are no single isotherm, however the machine dwelt."""
+    rows = "".join(f"{t},{3.0 * 10.0 ** (-t / 40.0):.6g},{0.3:.6g}\n" for t in np.arange(-40.0, 40.0, 0.5))
+    ramp = read_dma(write(tmp_path, "T [°C],E' [MPa],tan δ\n" + rows), frequency_Hz=1.0)
+    nodes = ramp.isotherms()
+    assert 20 <= len(nodes) <= 40
+    assert np.all(np.diff(nodes) > 1.0)
+    held = "".join(f"{f},{t + 0.4 * (-1) ** f},3,0.3\n" for t in (0.0, 20.0) for f in (1, 2, 3))
+    np.testing.assert_allclose(
+        read_dma(write(tmp_path, "f [Hz],T [°C],E' [MPa],tan δ\n" + held)).isotherms(), [0.0, 20.0], atol=0.2
+    )
+
+
+def test_a_damping_factor_is_not_taken_for_a_loss_factor(tmp_path: Path) -> None:
+    """The damping factor of a vibration is half the loss factor of its spring: which is meant nobody can tell."""
+    with pytest.raises(InputError, match="not understood: 'Damping factor'"):
+        read_dma(write(tmp_path, "f [Hz],T [°C],E' [MPa],Damping factor\n1,20,2,0.1\n"))
+    assert read_dma(write(tmp_path, "f [Hz],T [°C],E' [MPa],tan ∂\n1,20,2,0.1\n")).loss_factor[0] == pytest.approx(
+        0.1
+    )
+
+
+def test_the_command_takes_what_the_file_does_not_say(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A stiffness in a decimal comma that could be thousands, at a frequency that no column gives."""
+    rows = "".join(f"{t},000;{k},125;0,325\n" for t, k in ((-40, 650), (-20, 130), (1, 26), (20, 13), (40, 11)))
+    path = write(tmp_path, "T [°C];K' [kN/m];tan δ\n" + rows)
+    law = tmp_path / "law.toml"
+    options = ["--law", "springpot_parallel", "-o", str(law), "--json"]
+    with pytest.raises(SystemExit) as end:
+        app(["fit-pad", str(path), *options, "--frequency", "2", "--shape-factor", "2.6", "--decimal", ","])
+    assert end.value.code == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["quantity"] == "modulus, Pa"
+    assert said["reference_temperature_C"] == 20.0
+    stiffness = load_law(law).storage(2.0, 20.0) * 2.6
+    assert stiffness == pytest.approx(13.125e3, rel=0.5)
+    warm = write(tmp_path, "f_Hz,T_C,E_storage_MPa,tan_delta\n1,40,3,0.1\n5,40,4,0.2\n1,60,2,0.1\n5,60,3,0.1\n")
+    with pytest.raises(SystemExit) as end:
+        app(["fit-pad", str(warm), *options])
+    assert end.value.code == 0
+    # 20 degC lies outside: the nearest isotherm is taken.
+    assert json.loads(capsys.readouterr().out)["reference_temperature_C"] == 40.0

@@ -150,7 +150,7 @@ def one(seed: int, folder: Path) -> str:
 def test_what_programs_write_is_read_or_refused(tmp_path: Path) -> None:
     said = [one(seed, tmp_path) for seed in range(FILES)]
     # Refusals are for what can be read two ways; most files have to be read.
-    assert said.count("read") > 0.8 * FILES
+    assert said.count("read") > 0.98 * FILES
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -166,3 +166,94 @@ def test_a_unit_in_other_letters_is_refused_or_the_same(tmp_path: Path, seed: in
         path.write_text(f"f_Hz;T_C;{header};tan_delta\n1;20;3;0.1\n2;20;4;0.1\n", encoding="utf-8")
         with pytest.raises(InputError, match="storage"):
             read_dma(path)
+
+
+BAD_CELLS = (
+    "",
+    "n/a",
+    "nan",
+    "inf",
+    "---",
+    "1e400",
+    "1.2.3",
+    "12 MPa",
+    "1,2,3",
+    "0x10",
+    "1_0",
+    "-5",
+    "0",
+    "\u0663",
+    "1e",
+    "#REF!",
+)
+
+
+def damaged(random: Generator, lines: list[str], asked: list[int], separator: str) -> tuple[str, bool]:
+    """A file with one fault, and whether it has to be refused."""
+    way = pick(random, ("cell", "spare", "short", "long", "header", "unit", "comma", "text", "again", "cut"))
+    rows = list(lines)
+    at = int(random.integers(1, len(rows)))
+    cells = rows[at].split(separator)
+    if way in ("cell", "spare"):
+        column = pick(random, asked) if way == "cell" else len(cells) - 1
+        cells[column] = pick(random, BAD_CELLS)
+        rows[at] = separator.join(cells)
+        return "\n".join(rows) + "\n", way == "cell"
+    if way in ("short", "long"):
+        rows[at] = separator.join(cells[:-1] if way == "short" else [*cells, "1"])
+    elif way == "header":
+        heads = rows[0].split(separator)
+        heads[pick(random, asked)] = pick(random, ("", "column", "E'/E0", "log f", "E' norm", "aT f", "rate"))
+        rows[0] = separator.join(heads)
+    elif way == "unit":
+        heads = rows[0].split(separator)
+        column = pick(random, asked)
+        heads[column] = heads[column].split("[")[0] + pick(random, ("[mPa]", "[s]", "[?]", "[1/MPa]", "[%/K]"))
+        rows[0] = separator.join(heads)
+    elif way == "comma":
+        cells[pick(random, asked)] = "1,5"
+        rows[at] = separator.join(cells)
+    elif way == "text":
+        rows.insert(at, separator.join("x" * (k + 1) for k in range(len(cells))))
+    elif way == "again":
+        rows.insert(at, rows[0])
+        return "\n".join(rows) + "\n", False
+    else:
+        whole = "\n".join(rows)
+        end = whole.rindex(separator)
+        return whole[: random.integers(whole.index("\n") + 2, end)], False
+    return "\n".join(rows) + "\n", True
+
+
+@pytest.mark.parametrize("seed", range(400))
+def test_a_damaged_table_is_refused_or_what_is_left_of_it_is_right(tmp_path: Path, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    true = truth(random)
+    separator = pick(random, (";", "\t"))
+    names = ["f [Hz]", "T [°C]", "E' [MPa]", "tan δ [%]", "remark"]
+    columns = [true["f"], true["t"], true["storage"] / 1e6, 100.0 * true["factor"]]
+    order = [*random.permutation(4).tolist(), 4]
+    lines = [separator.join(names[i] for i in order)]
+    for row in range(len(true["f"])):
+        cells = [*(f"{column[row]:.9f}" for column in columns), "0"]
+        lines.append(separator.join(cells[i] for i in order))
+    text, refused = damaged(random, lines, [0, 1, 2, 3], separator)
+    # A temperature of -5 or 0 is one like any other.
+    path = tmp_path / "dma.csv"
+    path.write_text(text, encoding="utf-8")
+    try:
+        table = read_dma(path)
+    except InputError:
+        return
+    left = slice(0, len(table))
+    same = np.isclose(table.frequency_Hz, true["f"][left]) & np.isclose(table.storage_Pa, true["storage"][left])
+    same &= np.isclose(table.loss_factor, true["factor"][left])
+    assert same[:-1].all()
+    assert table.temperature_C is not None
+    warm = np.isclose(table.temperature_C, true["t"][left])
+    if refused:
+        wrong = np.flatnonzero(~warm)
+        assert len(wrong) == 1
+        assert table.temperature_C[wrong[0]] in (-5.0, 0.0)
+    else:
+        assert warm.all()

@@ -209,3 +209,25 @@ def test_a_coordinate_at_its_limit_is_said_in_words(law: Law, shift: str, name: 
     assert note.startswith("not identifiable")
     assert says in note
     assert "limit of its range" not in note
+
+
+def test_one_frequency_is_said_to_be_one(tmp_path: Path) -> None:
+    path = tmp_path / "dma.csv"
+    path.write_text(
+        "T [°C],E' [MPa],tan δ\n20,5,0.1\n60,3,0.1\n-20,30,0.3\n-40,300,0.2\n0,8,0.25\n", encoding="utf-8"
+    )
+    answer = fit_table(path, output=tmp_path / "law.toml", law="springpot_parallel", frequency_Hz=2.0)
+    assert "overlay" not in answer
+    assert any("all rows are at 2 Hz" in note and "several frequencies" in note for note in answer["notes"])
+
+
+def test_a_transition_is_judged_in_kelvin() -> None:
+    shift = WLFArrhenius(c1=14.0, c2_K=60.0, transition_C=15.0, activation_energy_J_per_mol=1.2e5)
+    law = FractionalZener(relaxed=5e6, unrelaxed=2e9, relaxation_time_s=30.0, order=0.35)
+    measured = table(law, shift, tuple(np.arange(-40.0, 71.0, 10.0)), at=15.0, noise=0.005)
+    found = identify(measured, law="fractional_zener", shift="wlf_arrhenius", reference_temperature_C=20.0)
+    transition = next(p for p in found.parameters if p.name == "shift.transition_C")
+    assert transition.note == ""
+    assert transition.low < transition.value < transition.high
+    assert transition.high - transition.low < 10.0
+    assert transition.value == pytest.approx(15.0, abs=4.0)

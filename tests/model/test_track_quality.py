@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from permway.cli import app
 from permway.errors import InputError
-from permway.model.irregularity import DensityTable, Fra, GermanHigh, GermanLow, Iso3095
+from permway.model.irregularity import CycleTable, DensityTable, En13848, Fra, GermanHigh, GermanLow, Iso3095
 from permway.model.irregularity_file import irregularity_of
 from permway.model.track_quality import BANDS_M, band_deviations, density_per_cycle, draw_profile
 
@@ -61,6 +61,49 @@ def test_a_density_per_cycle_has_the_same_variance() -> None:
     )
     with pytest.raises(InputError, match="above 0"):
         density_per_cycle(spectrum, 0.0)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 3.0])
+def test_an_irregularity_of_standard_deviations_has_them(exponent: float) -> None:
+    spectrum = En13848(D1_mm=1.1, D2_mm=2.3, D3_mm=4.7, exponent=exponent)
+    found = [1e3 * (band.deviation_m or 0.0) for band in band_deviations(spectrum)]
+    np.testing.assert_allclose(found, [1.1, 2.3, 4.7], rtol=1e-6)
+    assert spectrum.valid_wavelength_m == (3.0, 150.0)
+    # Within a band a power of the wavenumber.
+    low, high = spectrum.wavenumber_density([0.5, 1.0])
+    assert low / high == pytest.approx(2.0**exponent)
+    short = En13848(D1_mm=1.1)
+    assert short.valid_wavelength_m == (3.0, 25.0)
+    with pytest.raises(InputError, match="not extrapolated"):
+        short.wavenumber_density(2.0 * np.pi / 30.0)
+
+
+def test_a_table_over_cycles_per_metre_is_the_one_over_wavenumber() -> None:
+    n = np.array([0.01, 0.04, 0.1, 0.5])
+    german = GermanLow()
+    table = CycleTable(cycles_per_m=tuple(n), density_mm2_m=tuple(1e6 * density_per_cycle(german, n)))
+    np.testing.assert_allclose(
+        table.wavenumber_density(2.0 * np.pi * n), german.wavenumber_density(2.0 * np.pi * n)
+    )
+    np.testing.assert_allclose(density_per_cycle(table, n), density_per_cycle(german, n), rtol=1e-12)
+    assert table.valid_wavelength_m == pytest.approx((2.0, 100.0))
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('type = "en13848"\nD1_mm = 1.0\nD3_mm = 2.0\n', "leaves a gap"),
+        ('type = "en13848"\nD1_mm = 900.0\n', "give it in mm"),
+        ('type = "en13848"\nD2_mm = 1.0\n', "D1_mm"),
+        ('type = "table_per_cycle"\ncycles_per_m = [0.1, 0.01]\ndensity_mm2_m = [1.0, 2.0]\n', "ascending"),
+        ('type = "table_per_cycle"\ncycles_per_m = [0.01, 0.1]\ndensity_mm2_m = [1.0, 0.0]\n', "above zero"),
+    ],
+)
+def test_recorded_irregularities_that_cannot_be(tmp_path: Path, text: str, says: str) -> None:
+    path = tmp_path / "model.toml"
+    path.write_text("[irregularity]\n" + text)
+    with pytest.raises(InputError, match=says):
+        irregularity_of(path)
 
 
 def test_a_profile_has_the_spectrum_it_was_drawn_from() -> None:

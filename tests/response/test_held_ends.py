@@ -73,6 +73,7 @@ CLAMPED_PINNED = roots(lambda z: np.tan(z) - np.tanh(z), (3.9266, 7.0686, 10.210
         ("clamped", CLAMPED_CLAMPED, 0.23 * L),
         (("clamped", "pinned"), CLAMPED_PINNED, 0.23 * L),
         ("pinned", [np.pi, 2.0 * np.pi], 0.37 * L),
+        ("free", CLAMPED_CLAMPED, 0.0),
     ],
 )
 def test_natural_frequencies_of_lone_beams(ends: object, wanted: list[float], x_m: float) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from permway.arrays import ABSOLUTE_ZERO_C
 from permway.errors import InputError
-from permway.recordings.units import parse_unit
+from permway.units import parse_unit
 
 MODULUS_UNITS = {"pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9, "n_mm2": 1e6, "n_m2": 1.0}
 
@@ -145,7 +145,7 @@ def column_unit(quantity: str, text: str) -> ColumnUnit | None:
     if unit.quantity not in known or unit.level or unit.offset:
         return None
     kind = {"pressure": MODULUS, "stiffness": STIFFNESS}.get(unit.quantity, "")
-    # A modulus in mPa is a slip of the pen for MPa, a factor of a thousand million: not to be guessed.
+    # A modulus in mPa may be meant in MPa, a factor of a thousand million: not to be guessed.
     if kind and unit.factor < 1.0:
         return None
     return ColumnUnit(unit.factor * known[unit.quantity], kind=kind)

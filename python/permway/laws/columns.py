@@ -23,7 +23,7 @@ _NAMES = {
     "loss": ("loss_modulus", "loss", "modulus_loss", "verlustmodul", "module_de_perte"),
     "loss_factor": (
         *("loss_factor", "loss_tangent", "tan_delta", "tandelta", "tan_d", "tand", "tg_delta", "tgdelta", "eta"),
-        *("damping_factor", "dissipation_factor", "verlustfaktor", "facteur_de_perte"),
+        *("dissipation_factor", "verlustfaktor", "facteur_de_perte"),
     ),
     "magnitude": (
         *("complex_modulus", "dynamic_modulus", "absolute_modulus", "modulus_magnitude", "dyn_modulus"),
@@ -62,8 +62,19 @@ _ALONE_OTHER = {
     "W": ("omega", "may be a width"),
 }
 """Letters alone that stand for their quantity only with its unit beside them."""
+_UNIT_REQUIRED = {"frequency", "omega", "temperature"}
+_NO_NAME = re.compile(r"[?!@$&=\\^~+%°\ufffd]|[\[({<]\W*[\])}>]")
 _PRIMES = "'′’´″\"`‘”“"
-_GREEK = (("δ", " delta "), ("Δ", " delta "), ("ω", " omega "), ("η", " eta "), ("ε", " strain "), ("∗", "*"))
+_GREEK = (
+    ("δ", " delta "),
+    ("∂", " delta "),
+    ("ẟ", " delta "),
+    ("Δ", " delta "),
+    ("ω", " omega "),
+    ("η", " eta "),
+    ("ε", " strain "),
+    ("∗", "*"),
+)
 
 
 @dataclass(frozen=True)
@@ -170,7 +181,9 @@ def _match(index: int, header: str, beneath: str, where: str) -> Column | tuple[
     for name, rest in _splits(header):
         for quantity, kind in _quantities(name):
             inner = bare(rest)
-            target = "frequency" if quantity == "omega" else quantity
+            if _UNIT_REQUIRED & {quantity} and _says_none(rest) and not beneath:
+                return target_of(quantity), f"'{header}' says that it has no unit: write it, as in freq_Hz, temp_C"
+            target = target_of(quantity)
             unit = column_unit(quantity, inner)
             if unit is None and inner:
                 if looks_like_unit(inner) or rest.strip()[:1] in ("[", "("):
@@ -205,6 +218,16 @@ def _match(index: int, header: str, beneath: str, where: str) -> Column | tuple[
     return nearly
 
 
+def target_of(quantity: str) -> str:
+    """The quantity that a column is kept as: a circular frequency is a frequency."""
+    return "frequency" if quantity == "omega" else quantity
+
+
+def _says_none(rest: str) -> bool:
+    """Whether a header says that there is no unit, as "f [-]" does."""
+    return bool(rest.strip()) and not re.search(r"[\w°%℃℉]", rest)
+
+
 def _splits(header: str) -> Iterator[tuple[str, str]]:
     """Every way to part a header into name and unit, longest name first."""
     text = " ".join(header.split())
@@ -222,6 +245,9 @@ def _splits(header: str) -> Iterator[tuple[str, str]]:
 
 def _quantities(name: str) -> list[tuple[str, str]]:
     """What a name stands for: quantity and letter of the modulus."""
+    # Spelling drops all marks; what is in brackets or odd belongs to no name.
+    if _NO_NAME.search(name):
+        return []
     spelt = [word for word in _name_words(name).split("_") if word not in _BESIDE]
     whole = _LOOKUP.get("_".join(spelt))
     if whole is not None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from permway.arrays import ABSOLUTE_ZERO_C, Reals
+from permway.arrays import Reals
 from permway.errors import InputError
 from permway.laws.column_units import MODULUS_UNITS
 from permway.laws.columns import Column, Recognised
@@ -27,6 +27,9 @@ WAYS = tuple(
 _KELVIN_ABOVE_C = 200.0
 """No rubber is tested above: half would refuse tests of hot seals, twice would let most tables in kelvin pass."""
 
+_COLDEST_C = -190.0
+"""Liquid nitrogen cools a machine to -150 degC or so. Half would refuse cold tests; nothing is below -273.15."""
+
 _UNSTATED_ABOVE_C = 140.0
 """Without a unit, above this, degrees Celsius, Fahrenheit and kelvin are all likely. Half would refuse warm
 tests, twice would let kelvin pass."""
@@ -34,7 +37,7 @@ tests, twice would let kelvin pass."""
 _MOST_LOSS_FACTOR = 6.0
 """Rubber at its glass transition has 1 to 3. Half would refuse damping rubber, twice let 7 % pass as 7."""
 
-_PLAIN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?")
+_PLAIN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?", re.ASCII)
 
 
 def refuse_missing(recognised: Recognised, where: str, *, frequency_Hz: float | None) -> None:
@@ -71,7 +74,13 @@ def _some(headers: tuple[str, ...]) -> str:
 def read_column(source: Path, layout: Layout, column: Column) -> Reals:
     """One column in SI."""
     values = np.empty(len(layout.rows))
+    signed = column.quantity in ("temperature", "strain")
     for index, row in enumerate(layout.rows):
+        if not layout.decimal_comma and _PLAIN.fullmatch(row.cells[column.index]):
+            # The place is worded for what is wrong only: most cells are plain.
+            values[index] = column.to_si(float(row.cells[column.index]))
+            if np.isfinite(values[index]) and (signed or values[index] > 0.0):
+                continue
         place = f"{source}: line {row.number}, column '{column.header}'"
         cell = row.cells[column.index]
         plain = cell.replace("−", "-")
@@ -81,7 +90,7 @@ def read_column(source: Path, layout: Layout, column: Column) -> Reals:
                 raise InputError(what, where=place, value=cell, remedy="write all numbers alike")
             plain = plain.replace(",", ".", 1)
         value = column.to_si(_number(plain, place))
-        if column.quantity not in ("temperature", "strain") and value <= 0.0:
+        if not signed and value <= 0.0:
             raise InputError(
                 "must be above zero",
                 where=place,
@@ -112,12 +121,12 @@ def refuse_kelvin(source: Path, rows: list[Line], temperature: Reals, column: Co
             value=float(temperature[hot[0]]),
             remedy="subtract 273.15, or name the column temperature_K",
         )
-    if (temperature <= ABSOLUTE_ZERO_C).any():
-        at = int(temperature.argmin())
+    at = int(temperature.argmin())
+    if temperature[at] < _COLDEST_C:
         raise InputError(
-            "a temperature below absolute zero",
+            f"a temperature below {_COLDEST_C:g} degC, or absolute zero: degrees Celsius given as kelvin?",
             where=f"{source}: line {rows[at].number}, column '{column.header}'",
-            value=float(temperature[at]),
+            value=f"{temperature[at]:.6g} degC",
             remedy="correct the value or the unit of the column",
         )
 

@@ -93,12 +93,19 @@ class DmaTable:
         return np.asarray(self.loss_Pa / self.storage_Pa)
 
     def isotherms(self, gap_K: float = 1.0) -> Reals:
-        """Mean temperature of each group of rows closer than `gap_K`, rising."""
+        """Mean temperature of each group of rows closer than `gap_K`, rising.
+
+        A group wider than three gaps is a ramp, measured while the temperature rose, and cut into pieces so wide.
+        """
         if self.temperature_C is None:
             return np.empty(0)
         ordered = np.sort(self.temperature_C)
-        groups = np.split(ordered, np.nonzero(np.diff(ordered) > gap_K)[0] + 1)
-        return np.array([group.mean() for group in groups])
+        means: list[float] = []
+        for group in np.split(ordered, np.nonzero(np.diff(ordered) > gap_K)[0] + 1):
+            pieces = max(math.ceil((group[-1] - group[0]) / (3.0 * gap_K)), 1)
+            edges = np.linspace(group[0], group[-1], pieces + 1)[1:-1]
+            means += [float(part.mean()) for part in np.split(group, np.searchsorted(group, edges)) if part.size]
+        return np.array(means)
 
 
 def read_dma(
@@ -171,12 +178,12 @@ def read_dma(
         quantity=quantity,
         strain=read.get("strain"),
         source=str(source),
-        notes=(*layout.notes, *_assumed(columns)),
+        notes=(*layout.notes, *_assumed(columns), *_unused(columns, frequency_Hz, temperature_C)),
     )
 
 
 def _or_given(column: Reals | None, given: float | None, count: int, name: str) -> Reals | None:
-    """A column, or the one value that stands for it; both together are refused unless they agree."""
+    """A column, or the one value that stands for it; where there are both the column is right, row by row."""
     if given is None or column is None:
         if given is not None and not (math.isfinite(given) and (name == "temperature_C" or given > 0.0)):
             raise InputError("must be a finite number, a frequency above zero", where=name, value=given)
@@ -202,6 +209,17 @@ def _quantity(column: Column, shape_factor_m: float | None) -> tuple[Literal["mo
     if not (math.isfinite(shape_factor_m) and shape_factor_m > 0.0):
         raise InputError("must be finite and above zero", where="shape_factor_m", value=shape_factor_m)
     return "modulus", 1.0 / shape_factor_m
+
+
+def _unused(
+    columns: dict[str, Column], frequency_Hz: float | None, temperature_C: float | None
+) -> tuple[str, ...]:
+    given = {"frequency": frequency_Hz, "temperature": temperature_C}
+    return tuple(
+        f"the {name} of each row is that of column '{columns[name].header}', not the one given, {value:g}"
+        for name, value in given.items()
+        if value is not None and name in columns
+    )
 
 
 def _assumed(columns: dict[str, Column]) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ import csv
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 from permway.errors import InputError
@@ -17,6 +18,8 @@ from permway.reading import LARGEST_TABLE, read_bytes
 _HEAD_LINES = 200
 """Lines among which the header is looked for. Half is more than any export's head; twice takes twice as long."""
 _NUMBER = re.compile(r"[-+−]?(\d|[.,]\d)")
+_SHEET_FAULT = re.compile(r"#(REF!|DIV/0!|N/A|NAME\?|VALUE!|NUM!|NULL!)")
+"""What a spreadsheet writes for a cell without a value: no remark."""
 _THOUSANDS = re.compile(r"[-+−]?[1-9]\d{0,2}(,\d{3})+")
 _SIGNATURES = {b"PK\x03\x04": "an Excel or a zip file", b"\xd0\xcf\x11\xe0": "an Excel file of the old kind"}
 
@@ -61,8 +64,9 @@ def read_layout(path: Path, *, decimal: str | None = None) -> Layout:
     if decimal not in (None, ".", ","):
         raise InputError("is no decimal sign", where="decimal", value=decimal, remedy='use "." or ","')
     text = _text(path)
-    lines, at, recognised = _header(path, text)
-    header = lines[at]
+    split, remarks, header, recognised = _header(path, text)
+    lines = list(_lines(text, split, remarks=remarks))
+    at = next(index for index, line in enumerate(lines) if line.number == header.number)
     rows, notes = _rows(path, lines, at)
     if at:
         notes = (f"{at} lines above the header (line {header.number}) are no part of the table", *notes)
@@ -86,19 +90,22 @@ def _text(path: Path) -> str:
     raise InputError("not a text file", where=str(path), remedy="export it as CSV in UTF-8")
 
 
-def _header(path: Path, text: str) -> tuple[list[Line], int, Recognised]:
-    """Lines in cells, the place of the header among them, and what it names."""
-    best: tuple[int, list[Line], int, Recognised] | None = None
-    first: tuple[list[Line], int] | None = None
+Split = Callable[[str], list[str]]
+
+
+def _header(path: Path, text: str) -> tuple[Split, bool, Line, Recognised]:
+    """How lines are split, whether the header is a remark, the header, and what it names."""
+    best: tuple[int, Split, bool, Line, Recognised] | None = None
+    first: tuple[Split, bool, Line, Recognised] | None = None
     fault: InputError | None = None
     for remarks in (False, True):
         for split in (*map(_by, "\t;,|"), _by_gaps, _by_blanks):
-            lines = list(_lines(text, split, remarks=remarks))
+            lines = list(islice(_lines(text, split, remarks=remarks), _HEAD_LINES + 1))
             for at, line in enumerate(lines[:_HEAD_LINES]):
                 if len(line.cells) < 2:
                     continue
                 if first is None and not remarks:
-                    first = lines, at
+                    first = split, remarks, line, Recognised(unread=line.cells)
                 if any(_NUMBER.match(cell) for cell in line.cells):
                     continue
                 units = lines[at + 1].cells if at + 1 < len(lines) and _is_units(lines[at + 1].cells) else None
@@ -109,10 +116,10 @@ def _header(path: Path, text: str) -> tuple[list[Line], int, Recognised]:
                     continue
                 count = len(recognised.columns)
                 known = recognised.columns.keys() | recognised.faults.keys()
-                # A storage modulus and how it turns make a header; else the line that names most is told of.
+                # A storage modulus and how it turns make a header; else the line that names most.
                 score = count + (10 if _complete(recognised) else 0) + (5 if len(known) > 1 else 0)
                 if known and (best is None or score > best[0]):
-                    best = score, lines, at, recognised
+                    best = score, split, remarks, line, recognised
                 if _complete(recognised):
                     break
         if best is not None and (best[0] > 5 or fault is None):
@@ -121,15 +128,14 @@ def _header(path: Path, text: str) -> tuple[list[Line], int, Recognised]:
         return best[1:]
     if fault is not None:
         raise fault
-    if first is None:
-        whole = list(_lines(text, _by(","), remarks=False))
-        if not whole:
-            if best is not None:
-                return best[1:]
-            raise InputError("the file is empty", where=str(path), remedy="give a header and rows")
-        first = whole, 0
-    lines, at = first
-    return lines, at, Recognised(unread=lines[at].cells)
+    if first is not None:
+        return first
+    if best is not None:
+        return best[1:]
+    only = next(_lines(text, _by(","), remarks=False), None)
+    if only is None:
+        raise InputError("the file is empty", where=str(path), remedy="give a header and rows")
+    return _by(","), False, only, Recognised(unread=only.cells)
 
 
 def _complete(recognised: Recognised) -> bool:
@@ -142,7 +148,8 @@ def _complete(recognised: Recognised) -> bool:
 
 def _by(mark: str) -> Callable[[str], list[str]]:
     def split(line: str) -> list[str]:
-        cells = next(csv.reader([line], delimiter=mark), [])
+        # Nearly all lines have no quotes, and most tables many lines.
+        cells = next(csv.reader([line], delimiter=mark), []) if '"' in line else line.split(mark)
         return [cell.strip() for cell in cells]
 
     return split
@@ -161,7 +168,7 @@ def _lines(text: str, split: Callable[[str], list[str]], *, remarks: bool) -> It
     for index, (number, line) in enumerate(_joined(text)):
         if index == 0 and re.fullmatch(r"\"?sep=.\"?", line.strip()):
             continue
-        if line.lstrip().startswith("#"):
+        if line.lstrip().startswith("#") and not _SHEET_FAULT.match(line.lstrip()):
             if not remarks:
                 continue
             line = line.lstrip().lstrip("#")
@@ -181,8 +188,8 @@ def _joined(text: str) -> Iterator[tuple[int, str]]:
     for number, line in enumerate(re.split(r"\r\n|\n|\r", text), start=1):
         held, start = (f"{held} {line}", start) if held else (line, number)
         # Quotes open a cell only at its beginning; E" in the middle is a double prime.
-        opened = re.search(r'(?:^|[,;\t|])\s*"(?:[^"]|"")*$', held)
-        if opened is not None and number - start < 4:
+        opened = held.count('"') % 2 and re.search(r'(?:^|[,;\t|])\s*"(?:[^"]|"")*$', held)
+        if opened and number - start < 4:
             continue
         yield start, held
         held = ""

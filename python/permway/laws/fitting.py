@@ -102,7 +102,7 @@ def fit_table(
             raise InputError(
                 f"{len(table)} rows cannot determine any of the laws",
                 where=str(dma),
-                remedy="measure at more frequencies, or name a law with two numbers: --law springpot",
+                remedy="measure at more frequencies or temperatures",
             )
     else:
         laws = [law]
@@ -212,16 +212,22 @@ def _overlaid(found: Identification) -> tuple[list[dict[str, Any]], tuple[str, .
     law = found.law
     if not isinstance(law, TFDV):
         return [], ()
+    frequency = found.table.frequency_Hz
+    if np.ptp(frequency) <= 1e-3 * frequency[0]:
+        note = (
+            f"all rows are at {frequency[0]:g} Hz: temperatures cannot be laid over each other, and how far one "
+            "shifts the law is seen only together with how it goes over frequency; measure at several frequencies"
+        )
+        return [], (note,)
     steps, apart = [], []
     for step in overlay(found.table).steps:
         own = float(law.log10_shift(step.cold_C) - law.log10_shift(step.warm_C))
-        told = step.decades is not None
         steps.append(
             {
                 "from_C": step.cold_C,
                 "to_C": step.warm_C,
                 "overlay_decades": step.decades,
-                "standard_error": step.error if told else None,
+                "standard_error": None if step.decades is None else step.error,
                 "law_decades": own,
                 "note": step.why,
             }

@@ -16,6 +16,8 @@ _CONFIDENCE = 0.90
 _AT_BOUND = 1e-4
 _WIDE_DECADES = 1.0
 _WIDE_RANGE = 0.5
+_WIDE_K = 20.0
+"""Of a transition: half is what few isotherms allow, twice says nothing of where the glass begins."""
 _STEP = 1e-6
 
 
@@ -76,8 +78,8 @@ def parameter_table(problem: Problem, x: Reals, jacobian: Reals, square: float) 
         if len(touched):
             said = dict.fromkeys(limit_words(kinds[index], not low_end[index]) for index in touched)
             note = "not identifiable: " + "; also, ".join(said)
-        elif spread > (_WIDE_DECADES if scale else _WIDE_RANGE):
-            note = "not identifiable: the interval is wider than " + ("a decade" if scale else f"{_WIDE_RANGE}")
+        elif spread > _widest(name, scale)[0]:
+            note = f"not identifiable: the interval is wider than {_widest(name, scale)[1]}"
             note += " on either side; measure over more temperatures and frequencies, or use a law with fewer "
             note += "parameters"
         low, high = (_power(low), _power(high)) if scale else (low, high)
@@ -117,7 +119,13 @@ def _gradient(function: Callable[[Reals], float], x: Reals, width: Reals) -> Rea
 
 
 def _is_plain(name: str) -> bool:
-    return name.rsplit(".", 1)[-1] in ("order", "alpha", "beta", "gamma") or "log10" in name
+    return name.rsplit(".", 1)[-1] in ("order", "alpha", "beta", "gamma", "transition_C") or "log10" in name
+
+
+def _widest(name: str, scale: bool) -> tuple[float, str]:
+    if name.endswith("_C"):
+        return _WIDE_K, f"{_WIDE_K:g} K"
+    return (_WIDE_DECADES, "a decade") if scale else (_WIDE_RANGE, f"{_WIDE_RANGE}")
 
 
 def _view(value: float, scale: bool) -> float:

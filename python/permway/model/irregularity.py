@@ -20,13 +20,16 @@ from permway.model.irregularity_spectra import (
     RangeWarning,
     check_speed,
 )
+from permway.model.recorded_irregularity import CycleTable, En13848
 from permway.model.roughness import DensityTable, Iso3095, RoughnessTable
 
 __all__ = [
     "AnyIrregularity",
     "ChineseBallastless",
     "Conversion",
+    "CycleTable",
     "DensityTable",
+    "En13848",
     "Fra",
     "GermanHigh",
     "GermanLow",
@@ -287,7 +290,9 @@ AnyIrregularity = Annotated[
     | Fra
     | Iso3095
     | RoughnessTable
-    | DensityTable,
+    | DensityTable
+    | CycleTable
+    | En13848,
     Field(discriminator="type"),
 ]
 """Any irregularity a model file can name, chosen by its `type`."""

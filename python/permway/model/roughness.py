@@ -49,7 +49,7 @@ ISO3095_LIMIT_DB: tuple[tuple[float, float], ...] = (
 """ISO 3095:2013, 6.2.5 and Figure 2: upper limit of rail roughness, (wavelength m, level dB re 1 um)."""
 
 
-class _Tabulated(Irregularity):
+class Tabulated(Irregularity):
     """A spectrum that exists at its table only: outside it there is nothing to give, and it says so."""
 
     def _meet_outside(self, wavenumber: Reals, outside: NDArray[np.bool_]) -> None:
@@ -63,7 +63,7 @@ class _Tabulated(Irregularity):
         )
 
 
-class _OneThirdOctaves(_Tabulated):
+class _OneThirdOctaves(Tabulated):
     """Levels per one-third octave of wavelength, read as density: mean square over the band's width."""
 
     interpolation: Interpolation = "bands"
@@ -137,7 +137,7 @@ class RoughnessTable(_OneThirdOctaves):
 
     @model_validator(mode="after")
     def _check_table(self) -> RoughnessTable:
-        _check_columns("wavelength_m", self.wavelength_m, "level_dB", self.level_dB)
+        check_columns("wavelength_m", self.wavelength_m, "level_dB", self.level_dB)
         wavelength = np.array(self.wavelength_m)
         number = _band_number(wavelength)
         off = np.abs(wavelength / 10.0 ** (number / 10.0) - 1.0)
@@ -160,7 +160,7 @@ class RoughnessTable(_OneThirdOctaves):
         return np.array(self.wavelength_m), np.array(self.level_dB)
 
 
-class DensityTable(_Tabulated):
+class DensityTable(Tabulated):
     """A table of one-sided density over wavenumber, straight lines between its points in log-log.
 
     Parameters
@@ -179,7 +179,7 @@ class DensityTable(_Tabulated):
     def _check_table(self) -> DensityTable:
         names = "wavenumber_rad_per_m", "density_m2_per_rad_per_m"
         columns = self.wavenumber_rad_per_m, self.density_m2_per_rad_per_m
-        _check_columns(names[0], columns[0], names[1], columns[1])
+        check_columns(names[0], columns[0], names[1], columns[1])
         for name, column in zip(names, columns, strict=True):
             for index, value in enumerate(column):
                 if value <= 0.0:
@@ -206,7 +206,8 @@ def _band_number(wavelength: Reals) -> NDArray[np.int64]:
     return np.rint(10.0 * np.log10(wavelength)).astype(np.int64)
 
 
-def _check_columns(name: str, column: tuple[float, ...], other: str, values: tuple[float, ...]) -> None:
+def check_columns(name: str, column: tuple[float, ...], other: str, values: tuple[float, ...]) -> None:
+    """Refuse columns of a table that are not alike in length, too short, or an abscissa that is not above zero."""
     if len(column) != len(values):
         raise ValueError(f"{name} has {len(column)} values and {other} {len(values)}; they go in pairs")
     if len(column) < 2:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from permway.errors import InputError
-from permway.recordings.units import parse_unit
+from permway.units import parse_unit
 
 _TIME_NAMES = {"t", "time", "zeit", "temps", "timestamp", "timestamps", "elapsed", "elapsed time", "rel. time"}
 _TIME_SUFFIX = re.compile(r"(.+)[_ ](s|ms|us|sec|min)", re.IGNORECASE)

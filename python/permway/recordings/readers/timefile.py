@@ -10,7 +10,7 @@ import numpy as np
 from permway.arrays import Reals, is_real
 from permway.errors import InputError
 from permway.recordings.readers.limits import MOST_CHANNELS
-from permway.recordings.units import check_same
+from permway.units import check_same
 
 RATES_AGREE = 1e-4
 """Relative difference up to which two statements of a sampling rate are one: clocks and printed digits."""

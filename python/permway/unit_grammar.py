@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 
-from permway.recordings.unit_symbols import NONE, PREFIXES, SYMBOLS, Dimension, unknown
+from permway.unit_symbols import NONE, PREFIXES, SYMBOLS, Dimension, unknown
 
 _TOKEN = re.compile(r"\s*(?:(\d+\.?\d*(?:[eE][-+]?\d+)?)|([A-Za-zε%]+)|(.))")
 
