@@ -51,7 +51,7 @@ HEADER = "frequency;sensor;force;real;imaginary;coherence"
         ([HEADER, *rows("parts")[:-1]], "slab < 5.76: does not have the frequencies of rail@8.64 < 3.20"),
         ([HEADER.replace("imaginary", "phase"), *rows("parts")], "no column of imaginary parts"),
         ([HEADER.replace("sensor", "where"), *rows("parts")], "no column of sensors"),
-        ([HEADER.replace("frequency", "frequency [kHz]"), *rows("parts")], "frequencies must be in Hz"),
+        ([HEADER.replace("frequency", "frequency [rpm]"), *rows("parts")], "frequencies must be in Hz"),
         ([HEADER, *rows("parts"), *rows("parts")[:3]], "rail@8.64"),
         ([HEADER, *rows("parts")[:2], "30;rail@8.64;3.20;x;1;0.9", *rows("parts")[3:]], "not a number"),
         ([HEADER, *[row.replace("0.9", "1.9") for row in rows("parts")]], "coherence"),

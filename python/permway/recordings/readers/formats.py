@@ -29,12 +29,12 @@ _UNREAD: tuple[tuple[bytes, str, str], ...] = (
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet", "export it as CSV"),
     (b"RF64", "a WAV file of more than 4 GB (RF64)", "export it as HDF5, or in parts"),
     (b"RIFX", "a big-endian WAV file", "export it as an ordinary WAV file"),
-    (b"\xff\xfe", "text in UTF-16", "export it in UTF-8"),
-    (b"\xfe\xff", "text in UTF-16", "export it in UTF-8"),
+    (b"\xff\xfe", "text in UTF-16", 'export it in UTF-8, or say in the record encoding = "utf-16"'),
+    (b"\xfe\xff", "text in UTF-16", 'export it in UTF-8, or say in the record encoding = "utf-16"'),
 )
 
 
-def recognise(source: Path, said: str | None = None) -> Format:
+def recognise(source: Path, said: str | None = None, encoding: str | None = None) -> Format:
     """The format of a file.
 
     Parameters
@@ -42,6 +42,8 @@ def recognise(source: Path, said: str | None = None) -> Format:
     source : Path
     said : str, optional
         The format as the caller says it; the content must not be plainly another.
+    encoding : str, optional
+        Character set of a text: one in UTF-16 has zero bytes, and is a text only if that was said.
 
     Raises
     ------
@@ -52,6 +54,8 @@ def recognise(source: Path, said: str | None = None) -> Format:
         raise InputError(
             "no format of this name", where="format", value=said, remedy=f"use one of {get_args(Format)}"
         )
+    if encoding is not None and encoding.lower().replace("_", "-").startswith(("utf-16", "utf-32")):
+        return "text"
     found = _by_content(source)
     wanted: tuple[str, ...] = _SUFFIXES.get(source.suffix.lower(), ()) if said is None else (said,)
     if said in ("hdf5", "netcdf", "mat73") and found in ("hdf5", "netcdf", "mat73"):

@@ -8,6 +8,18 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.errors import InputError
+from permway.recordings.readers.timefile import RATES_AGREE, Timing
+
+LEAST_UNSAID_HZ, MOST_UNSAID_HZ = 1.0, 1e7
+"""Rates outside are not believed of times without a unit: steps may count samples, milliseconds or days.
+
+Half the lower one would take samples every 2 s for seconds, which vibration never has; twice of it refuses no
+record of a vibration either. The upper one lies far above any accelerometer's rate, and below that of times in
+days that were taken for seconds (4e7 Hz and more).
+"""
+
+_EPOCHS = ((1e17, 1e-9, "ns"), (1e14, 1e-6, "us"), (1e11, 1e-3, "ms"))
+"""Times since 1970 by their size: as seconds these would be thousands of years away, as the unit 1973 to 5138."""
 
 _STEP_OFF = 0.01
 """Share of a step by which one may differ from the others."""
@@ -22,34 +34,43 @@ class TimeBase:
         Of the column: what its last printed digit, or the precision of its numbers, is worth.
     place : callable
         From a sample to its place in the file.
+    scale : float
+        Seconds in one of what is fed.
     """
 
-    def __init__(self, resolution_s: float, place: Callable[[int], str]) -> None:
-        self.resolution_s, self.place = resolution_s, place
+    def __init__(self, resolution_s: float, place: Callable[[int], str], scale: float = 1.0) -> None:
+        self.resolution_s, self.place, self.scale = resolution_s, place, scale
+        self._origin: float | None = None
         self.step_s: float | None = None
         self.start_s: float | None = None
         self._spread = 0.0
+        self._even = True
         self._next = 0
         self._last = 0.0
 
-    def feed(self, times_s: Reals) -> None:
+    def feed(self, times: Reals) -> None:
         """Check the times that follow those fed before.
+
+        They are counted from the first: of a date in milliseconds, seconds alone would lose the digits of a step.
 
         Raises
         ------
         InputError
             At the first that is not finite, does not rise, or is not one step after the one before.
         """
-        if not times_s.size:
+        if not times.size:
             return
         first = self._next
-        bad = np.flatnonzero(~np.isfinite(times_s))
+        bad = np.flatnonzero(~np.isfinite(times))
         if bad.size:
-            raise self._error("not a finite time", first + int(bad[0]), float(times_s[bad[0]]))
+            raise self._error("not a finite time", first + int(bad[0]), float("nan"))
+        if self._origin is None:
+            self._origin = float(times[0])
+        times_s: Reals = (times - self._origin) * self.scale
         joined = times_s if first == 0 else np.concatenate(([self._last], times_s))
         offset = first if first == 0 else first - 1
         if self.start_s is None:
-            self.start_s = float(joined[0])
+            self.start_s = self._origin * self.scale
         if joined.size > 1:
             self._check(joined, offset)
         self._next, self._last = first + times_s.size, float(times_s[-1])
@@ -66,6 +87,7 @@ class TimeBase:
         mean = float(near.mean()) if near.size else usual
         if self.step_s is None:
             self.step_s, self._spread = mean, self.resolution_s / (mean * steps.size)
+            self._even = bool(np.all(np.abs(steps - usual) <= 1e-3 * self.resolution_s + 1e-9 * usual))
         allowed = _STEP_OFF * self.step_s + 1.001 * self.resolution_s
         off = np.flatnonzero(np.abs(steps - self.step_s) > allowed)
         if off.size:
@@ -83,11 +105,26 @@ class TimeBase:
         """The rate; a whole number of hertz if the column, as exactly as it is printed, allows it."""
         return None if self.step_s is None else whole_rate(1.0 / self.step_s, self._spread)
 
+    def timing(self, samples: int) -> Timing:
+        """What was found; where the printed digits leave the rate open, with the error that says so."""
+        rate = self.sampling_Hz
+        fault = None
+        if rate is not None and not self._even and self._spread > RATES_AGREE:
+            low, high = rate * (1.0 - self._spread), rate * (1.0 + self._spread)
+            fault = InputError(
+                f"the times are printed so coarsely that the rate may be {low:.6g} to {high:.6g} Hz",
+                where=self.place(0),
+                remedy="state it in the record, as in sampling_Hz = 512.0",
+            )
+        return Timing(
+            samples=samples, sampling_Hz=rate, start_s=self.start_s, uncertainty=self._spread, fault=fault
+        )
+
     def _error(self, what: str, sample: int, value: float) -> InputError:
         return InputError(
             what,
             where=self.place(sample),
-            value=value,
+            value=value / self.scale + (self._origin or 0.0),
             remedy="give uniform samples, in parts if there are gaps; nothing is interpolated",
         )
 
@@ -97,3 +134,28 @@ def whole_rate(rate_Hz: float, relative: float) -> float:
     whole = round(rate_Hz)
     near = whole > 0 and abs(whole / rate_Hz - 1.0) <= min(relative + 1e-12, 1e-5)
     return float(whole) if near else rate_Hz
+
+
+def unsaid_scale(times: Reals, where: str, label: str) -> float:
+    """Seconds in one of a time without a unit, by its first values: a date of a computer's clock, or seconds.
+
+    Raises
+    ------
+    InputError
+        Where seconds are not to be believed.
+    """
+    finite = times[np.isfinite(times)]
+    if finite.size and abs(finite[0]) >= _EPOCHS[-1][0]:
+        return next(scale for least, scale, _ in _EPOCHS if abs(finite[0]) >= least)
+    if finite.size < 2:
+        return 1.0
+    step = float(np.median(np.diff(finite)))
+    if step > 0.0 and not LEAST_UNSAID_HZ < 1.0 / step <= MOST_UNSAID_HZ:
+        key = label if label.replace("_", "").isalnum() else f'"{label}"'
+        raise InputError(
+            f"times without a unit, a step of {step:.6g}: as seconds {1.0 / step:.6g} Hz",
+            where=where,
+            remedy=f'state the unit in the header, or in the record: unit = {{ {key} = "ms" }}; '
+            'or leave the times aside: time_column = "none" and sampling_Hz',
+        )
+    return 1.0

@@ -169,6 +169,9 @@ def _nodes(text: Text, block: Block, at: int, axes: int, is_complex: bool) -> tu
         here = at
         line, at = text.line(at)
         node = text.field(line, here, 0, 10, "node")
+        if line[10:].strip():
+            what = "more than a node's number in its line, or one of more than ten columns"
+            raise text.error(what, here, value=line.strip(), remedy="the number ends in column 10 at the latest")
         if not line.strip() or node in nodes[-1:]:
             raise text.error("a line with a node's number is missing", here, value=line)
         numbers, at = text.numbers(at, _WIDTHS, axes * (2 if is_complex else 1))
