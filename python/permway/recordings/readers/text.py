@@ -8,10 +8,12 @@ from functools import cache
 from pathlib import Path
 
 from permway.errors import InputError
+from permway.recordings.readers.clock import is_clock
 from permway.recordings.readers.headers import time_scale
 from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.scales import seconds_in, seconds_of
 from permway.recordings.readers.text_layout import Layout, find_layout
+from permway.recordings.readers.text_lines import is_number
 from permway.recordings.readers.text_rows import Rows, Times
 from permway.recordings.readers.timebase import unsaid_scale
 from permway.recordings.readers.timefile import TimeFile, Timing
@@ -31,12 +33,15 @@ def open_time(source: Path, keep_nonfinite: bool = False, hints: Hints = NO_HINT
     time = _time_column(source, layout, hints)
     columns = [i for i in range(len(layout.names)) if time is None or i != time]
     rows = Rows(source, layout, keep_nonfinite)
-    times = None if time is None else _times(source, rows, time, hints)
     count = rows.count()
 
     @cache
+    def checked() -> Times | None:
+        return None if time is None else _times(source, rows, time, hints)
+
+    @cache
     def timing() -> Timing:
-        remark = layout.rate
+        remark, times = layout.rate, checked()
         if times is None:
             fault = None if hints.no_times else remark.fault
             value = None if hints.no_times else remark.value_Hz
@@ -59,7 +64,7 @@ def open_time(source: Path, keep_nonfinite: bool = False, hints: Hints = NO_HINT
         )
 
     def read(wanted: Sequence[int], first: int, stop: int) -> object:
-        return rows.read([columns[row] for row in wanted], first, stop, times)
+        return rows.read([columns[row] for row in wanted], first, stop, checked())
 
     yield TimeFile(
         source=str(source),
@@ -107,6 +112,16 @@ def _times(source: Path, rows: Rows, index: int, hints: Hints) -> Times:
     name = rows.layout.names[index]
     where = f"{source}: column '{name}'"
     unit = hints.unit_of(name) or hints.unit_of("time") or rows.layout.units[index]
+    cells = [rows.layout.cells(line) for line in rows.layout.sample[:2]]
+    if cells and all(index < len(row) and is_clock(row[index]) for row in cells):
+        return Times(rows, index, 1.0, clock=True)
+    if cells and index < len(cells[0]) and not is_number(cells[0][index]):
+        raise InputError(
+            "times that are neither numbers nor times of day",
+            where=where,
+            value=cells[0][index],
+            remedy='leave them aside in the record: time_column = "none" and sampling_Hz',
+        )
     known, scale = time_scale(name, unit, where)
     if not known and unit is not None:
         scale = seconds_in(unit, where)

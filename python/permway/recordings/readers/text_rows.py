@@ -11,6 +11,7 @@ import numpy as np
 from permway.arrays import Reals
 from permway.errors import InputError
 from permway.laws.textfile import number
+from permway.recordings.readers.clock import Clock, digits_of
 from permway.recordings.readers.text_layout import Layout
 from permway.recordings.readers.text_lines import is_remark, numbered_lines
 from permway.recordings.readers.timebase import TimeBase
@@ -24,6 +25,7 @@ class Rows:
 
     def __init__(self, source: Path, layout: Layout, keep: bool) -> None:
         self.source, self.layout, self.keep = source, layout, keep
+        self.clocks: dict[int, Clock] = {}
         self._pieces: Iterator[Reals] | None = None
         self._wanted: list[int] = []
         self._at = 0
@@ -121,7 +123,13 @@ class Rows:
             return None
         try:
             table = np.loadtxt(
-                rows, delimiter=mark, comments=None, dtype=np.float64, ndmin=2, usecols=tuple(wanted)
+                rows,
+                delimiter=mark,
+                comments=None,
+                dtype=np.float64,
+                ndmin=2,
+                usecols=tuple(wanted),
+                converters={i: clock for i, clock in self.clocks.items() if i in wanted} or None,
             )
         except ValueError:
             return None
@@ -137,10 +145,19 @@ class Rows:
                 value=line,
                 remedy="complete or remove the line (a file cut short ends so; a decimal comma needs ; or tab)",
             )
-        return [self._cell(cells[i], f"{self.source}: line {index}, column '{layout.names[i]}'") for i in wanted]
+        return [
+            self._cell(cells[i], f"{self.source}: line {index}, column '{layout.names[i]}'", self.clocks.get(i))
+            for i in wanted
+        ]
 
-    def _cell(self, cell: str, place: str) -> float:
+    def _cell(self, cell: str, place: str, clock: Clock | None) -> float:
         comma = self.layout.decimal_comma
+        if clock is not None:
+            try:
+                return clock(cell)
+            except ValueError:
+                remedy = 'write all alike, or leave the times aside: time_column = "none" and sampling_Hz'
+                raise InputError("not a time of day", where=place, value=cell, remedy=remedy) from None
         if "_" in cell or (comma and "," in cell and "." in cell):
             raise InputError("not a number", where=place, value=cell, remedy="give a plain number")
         if comma and "." in cell:
@@ -164,18 +181,23 @@ class Times:
         Of the column.
     scale : float
         Seconds in one of its unit.
+    clock : bool
+        Whether they are dates or times of day. Loggers round these, so that even steps do not make a rate certain.
     """
 
-    def __init__(self, rows: Rows, index: int, scale: float) -> None:
-        self.rows, self.index, self.scale = rows, index, scale
+    def __init__(self, rows: Rows, index: int, scale: float, *, clock: bool = False) -> None:
+        self.rows, self.index, self.scale, self.clock = rows, index, scale, clock
 
     def base(self) -> TimeBase:
         """A check that has seen nothing yet."""
         name = self.rows.layout.names[self.index]
+        if self.clock:
+            self.rows.clocks[self.index] = Clock()
         return TimeBase(
             self._resolution() * self.scale,
             lambda sample: f"{self.rows.source}: {self.rows.line_of(sample)}, column '{name}'",
             self.scale,
+            rounded=self.clock,
         )
 
     def first(self) -> TimeBase:
@@ -189,6 +211,11 @@ class Times:
     def _resolution(self) -> float:
         """What the last digit is worth: the most that any of the first cells is rounded by."""
         layout, worth, top = self.rows.layout, [], 0.0
+        if self.clock:
+            rows = [layout.cells(line) for line in layout.sample]
+            return float(
+                10.0 ** -max((digits_of(row[self.index]) for row in rows if self.index < len(row)), default=0)
+            )
         exponents = False
         for line in layout.sample:
             cells = layout.cells(line)

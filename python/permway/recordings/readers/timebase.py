@@ -36,10 +36,14 @@ class TimeBase:
         From a sample to its place in the file.
     scale : float
         Seconds in one of what is fed.
+    rounded : bool
+        Whether times may be rounded though their steps are even.
     """
 
-    def __init__(self, resolution_s: float, place: Callable[[int], str], scale: float = 1.0) -> None:
-        self.resolution_s, self.place, self.scale = resolution_s, place, scale
+    def __init__(
+        self, resolution_s: float, place: Callable[[int], str], scale: float = 1.0, *, rounded: bool = False
+    ) -> None:
+        self.resolution_s, self.place, self.scale, self.rounded = resolution_s, place, scale, rounded
         self._origin: float | None = None
         self.step_s: float | None = None
         self.start_s: float | None = None
@@ -109,7 +113,7 @@ class TimeBase:
         """What was found; where the printed digits leave the rate open, with the error that says so."""
         rate = self.sampling_Hz
         fault = None
-        if rate is not None and not self._even and self._spread > RATES_AGREE:
+        if rate is not None and (self.rounded or not self._even) and self._spread > RATES_AGREE:
             low, high = rate * (1.0 - self._spread), rate * (1.0 + self._spread)
             fault = InputError(
                 f"the times are printed so coarsely that the rate may be {low:.6g} to {high:.6g} Hz",
