@@ -64,7 +64,8 @@ TEXTS: dict[str, tuple[str | bytes, str]] = {
         "lines 1 to 2 are no part of a table .*header_row = 4",
     ),
     "comma of either kind": ("a;b\n1,024;2,048\n3,072;4,096\n", "decimals or thousands .*decimal = "),
-    "a clock": ("t,a\n12:00:01,1\n12:00:02,2\n", "column 't': not a number"),
+    "a clock": ("t,a\n12:00:01,1\n12:00:02,2\n", "column 't': the times are printed so coarsely .* 0 to 2 Hz"),
+    "a clock and a word": ("t,a\n12:00:01,1\n12:00:02,2\nnoon,3\n", "line 4, column 't': not a time of day"),
     "rate against remark": ("# fs = 50 Hz\nt,a\n" + RISING, "means 100 Hz, a remark says 50 Hz"),
     "rate of zero": ("# fs = 0\na\n1\n", "line 1: a sampling rate must be"),
 }

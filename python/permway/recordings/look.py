@@ -55,8 +55,8 @@ def look(path: str | Path, asked: Asked | None = None) -> dict[str, Any]:
     dict
         `file` and `format`; `channels` of records in time, a dict each: channel, unit, samples, sampling_Hz,
         start_s, and `problem` where it cannot be used; `responses`: pairs, frequencies, unit, coherence; or else
-        `columns` of a table. `notes` are what was left aside; `missing` is what the campaign file has to state; `problems` why
-        the file is not read as one of these; `campaign` is the part of a campaign file, in TOML.
+        `columns` of a table. `notes` are what was left aside; `missing` is what the campaign file has to state;
+        `problems` why the file is not read as one of these; `campaign` is the part of a campaign file, in TOML.
 
     Raises
     ------

@@ -14,7 +14,7 @@ from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.scales import seconds_in
 from permway.recordings.readers.store_columns import Column, columns_of, rank, read_columns
 from permway.recordings.readers.stored import UNITS, Store, Variable, is_one_of
-from permway.recordings.readers.timebase import TimeBase, unsaid_scale
+from permway.recordings.readers.timebase import TimeBase, check_unsaid, unsaid_scale
 from permway.recordings.readers.timefile import TimeFile, Timing
 
 RATES = {
@@ -115,13 +115,16 @@ def _timing_of(store: Store, variable: Variable, rate: float | None, hints: Hint
     known, scale = time_scale(variable.leaf, unit, where)
     if not known:
         scale = None if unit is None else seconds_in(unit, where)
+    unsaid = scale is None
     if scale is None:
-        scale = unsaid_scale(raw, where, variable.leaf)
+        scale = unsaid_scale(raw)
     resolution = variable.step * scale * float(np.abs(raw).max(initial=0.0, where=np.isfinite(raw)))
     base = TimeBase(
         max(2.0 * resolution, variable.resolution * scale), lambda sample: f"{where}, sample {sample}", scale
     )
     base.feed(raw)
+    if unsaid:
+        check_unsaid(base, variable.leaf)
     found = base.timing(variable.size)
     if rate is None or found.sampling_Hz is None:
         return found if rate is None else Timing(samples=variable.size, sampling_Hz=rate, start_s=found.start_s)

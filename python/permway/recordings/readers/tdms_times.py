@@ -16,7 +16,7 @@ from permway.errors import InputError
 from permway.recordings.readers.headers import clean_unit, split_header, time_scale
 from permway.recordings.readers.hints import Hints
 from permway.recordings.readers.scales import seconds_in
-from permway.recordings.readers.timebase import TimeBase, unsaid_scale
+from permway.recordings.readers.timebase import TimeBase, check_unsaid, unsaid_scale
 from permway.recordings.readers.timefile import Timing
 
 _UNTIMED = 1.0
@@ -108,18 +108,20 @@ def _by_channel(channel: Any, where: str, times: list[str], channels: Mapping[st
         raise InputError(what, where=where, remedy=remedy)
     name = mates[0]
     place = f"{where.rpartition(': channel')[0]}: channel '{name}'"
-    raw, scale, worth = _numbers(found, name, place, hints)
+    raw, scale, worth, unsaid = _numbers(found, name, place, hints)
     base = TimeBase(worth * scale, lambda sample: f"{place}, sample {sample}", scale)
     base.feed(raw)
+    if unsaid:
+        check_unsaid(base, name)
     return base.timing(samples)
 
 
-def _numbers(channel: Any, name: str, place: str, hints: Hints) -> tuple[Reals, float, float]:
-    """Times as they stand, seconds in one of them, and what their last digit is worth."""
+def _numbers(channel: Any, name: str, place: str, hints: Hints) -> tuple[Reals, float, float, bool]:
+    """Times as they stand, seconds in one, what their last digit is worth, and whether no unit is stated."""
     values = np.asarray(channel[:])
     if values.dtype.kind == "M":
         micro = values.astype("datetime64[us]").astype(np.int64)
-        return (micro - micro[0]).astype(np.float64), 1e-6, 1.0
+        return (micro - micro[0]).astype(np.float64), 1e-6, 1.0, False
     plain = values.astype(np.float64)
     bare, unit = split_header(name.rpartition("/")[2])
     unit = (
@@ -128,8 +130,9 @@ def _numbers(channel: Any, name: str, place: str, hints: Hints) -> tuple[Reals, 
     known, scale = time_scale(bare, unit, place)
     if not known and unit is not None:
         scale = seconds_in(unit, place)
+    unsaid = scale is None
     if scale is None:
-        scale = unsaid_scale(plain, place, bare)
+        scale = unsaid_scale(plain)
     top = float(np.abs(plain).max(initial=0.0, where=np.isfinite(plain)))
     eps = np.finfo(values.dtype).eps if values.dtype.kind == "f" else 0.0
-    return plain, scale, max(2.0 * float(eps) * top, 1.0 if values.dtype.kind in "iu" else 0.0)
+    return plain, scale, max(2.0 * float(eps) * top, 1.0 if values.dtype.kind in "iu" else 0.0), unsaid

@@ -127,5 +127,5 @@ def _times(source: Path, rows: Rows, index: int, hints: Hints) -> Times:
         scale = seconds_in(unit, where)
     if scale is None:
         first = next(iter(rows.pieces([index])), None)
-        scale = 1.0 if first is None else unsaid_scale(first[:, 0], where, name)
+        return Times(rows, index, 1.0 if first is None else unsaid_scale(first[:, 0]), unsaid=True)
     return Times(rows, index, scale)

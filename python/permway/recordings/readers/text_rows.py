@@ -14,7 +14,7 @@ from permway.laws.textfile import number
 from permway.recordings.readers.clock import Clock, digits_of
 from permway.recordings.readers.text_layout import Layout
 from permway.recordings.readers.text_lines import is_remark, numbered_lines
-from permway.recordings.readers.timebase import TimeBase
+from permway.recordings.readers.timebase import TimeBase, check_unsaid
 
 _PIECE_BYTES = 2**22
 _QUOTED_COMMA = re.compile(r'"([^",]*),([^",]*)"')
@@ -183,10 +183,12 @@ class Times:
         Seconds in one of its unit.
     clock : bool
         Whether they are dates or times of day. Loggers round these, so that even steps do not make a rate certain.
+    unsaid : bool
+        Whether no unit is stated.
     """
 
-    def __init__(self, rows: Rows, index: int, scale: float, *, clock: bool = False) -> None:
-        self.rows, self.index, self.scale, self.clock = rows, index, scale, clock
+    def __init__(self, rows: Rows, index: int, scale: float, *, clock: bool = False, unsaid: bool = False) -> None:
+        self.rows, self.index, self.scale, self.clock, self.unsaid = rows, index, scale, clock, unsaid
 
     def base(self) -> TimeBase:
         """A check that has seen nothing yet."""
@@ -206,6 +208,8 @@ class Times:
         piece = next(iter(self.rows.pieces([self.index])), None)
         if piece is not None:
             base.feed(piece[:, 0])
+        if self.unsaid:
+            check_unsaid(base, self.rows.layout.names[self.index])
         return base
 
     def _resolution(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import numpy as np
@@ -10,12 +11,13 @@ from permway.arrays import Reals
 from permway.errors import InputError
 from permway.recordings.readers.timefile import RATES_AGREE, Timing
 
-LEAST_UNSAID_HZ, MOST_UNSAID_HZ = 1.0, 1e7
-"""Rates outside are not believed of times without a unit: steps may count samples, milliseconds or days.
+LEAST_UNSAID_HZ, MOST_UNSAID_HZ = 20.0, 1e7
+"""Rates outside are not believed of times without a unit: they may count samples, milliseconds or days.
 
-Half the lower one would take samples every 2 s for seconds, which vibration never has; twice of it refuses no
-record of a vibration either. The upper one lies far above any accelerometer's rate, and below that of times in
-days that were taken for seconds (4e7 Hz and more).
+Below 20 Hz hardly a line from 4 Hz on is left, which is where a campaign begins, and milliseconds of all rates up
+to 20 kHz would be read as seconds. Half of it lets those of 10 to 20 kHz pass; twice of it asks slow monitors for
+their unit, too. The upper one lies far above any accelerometer's rate, and below that of times in days that were
+taken for seconds (4e7 Hz and more).
 """
 
 _EPOCHS = ((1e17, 1e-9, "ns"), (1e14, 1e-6, "us"), (1e11, 1e-3, "ms"))
@@ -140,26 +142,35 @@ def whole_rate(rate_Hz: float, relative: float) -> float:
     return float(whole) if near else rate_Hz
 
 
-def unsaid_scale(times: Reals, where: str, label: str) -> float:
-    """Seconds in one of a time without a unit, by its first values: a date of a computer's clock, or seconds.
+def unsaid_scale(times: Reals) -> float:
+    """Seconds in one of a time without a unit, by its first value: a date of a computer's clock, or seconds."""
+    finite = times[np.isfinite(times)]
+    first = abs(float(finite[0])) if finite.size else 0.0
+    return next((scale for least, scale, _ in _EPOCHS if first >= least), 1.0)
+
+
+def check_unsaid(base: TimeBase, label: str) -> None:
+    """Refuse times without a unit where seconds are not to be believed.
+
+    Parameters
+    ----------
+    base : TimeBase
+        That has seen the times, taken for seconds.
+    label : str
+        Of the column, for the remedy.
 
     Raises
     ------
     InputError
-        Where seconds are not to be believed.
+        If the rate is none of vibration.
     """
-    finite = times[np.isfinite(times)]
-    if finite.size and abs(finite[0]) >= _EPOCHS[-1][0]:
-        return next(scale for least, scale, _ in _EPOCHS if abs(finite[0]) >= least)
-    if finite.size < 2:
-        return 1.0
-    step = float(np.median(np.diff(finite)))
-    if step > 0.0 and not LEAST_UNSAID_HZ < 1.0 / step <= MOST_UNSAID_HZ:
-        key = label if label.replace("_", "").isalnum() else f'"{label}"'
-        raise InputError(
-            f"times without a unit, a step of {step:.6g}: as seconds {1.0 / step:.6g} Hz",
-            where=where,
-            remedy=f'state the unit in the header, or in the record: unit = {{ {key} = "ms" }}; '
-            'or leave the times aside: time_column = "none" and sampling_Hz',
-        )
-    return 1.0
+    step = base.step_s
+    if step is None or base.scale != 1.0 or LEAST_UNSAID_HZ <= 1.0 / step <= MOST_UNSAID_HZ:
+        return
+    key = label if re.fullmatch(r"[A-Za-z0-9_-]+", label) else f'"{label}"'
+    raise InputError(
+        f"times without a unit, a step of {step:.6g}: as seconds {1.0 / step:.6g} Hz",
+        where=base.place(0),
+        remedy=f'state the unit in the header, or in the record: unit = {{ {key} = "ms" }}; '
+        'or leave the times aside: time_column = "none" and sampling_Hz',
+    )
