@@ -18,7 +18,7 @@ from permway.errors import InputError
 from permway.recordings.readers import hdf5_trial
 from permway.recordings.readers.limits import MOST_CHANNELS
 from permway.recordings.readers.packed import unpacked
-from permway.recordings.readers.stored import MOST_TEXT_BYTES, OBJECT, Store, Variable, unread
+from permway.recordings.readers.stored import MOST_TEXT_BYTES, OBJECT, Store, Variable, decoded, unread
 
 TRIAL_S = 2.0
 """Processor time that going through a file may take, s; and a second more for every :data:`BYTES_PER_S` of it."""
@@ -163,7 +163,16 @@ def _variable(data: Any, name: str, where: str) -> Variable | None:
     order = -1 if turned else 1
     shape = tuple(int(n) for n in data.shape)[::order]
     variable = Variable(
-        name, shape, kind, read, attributes, _axes(data)[::order], step, data.dtype.itemsize, ordered=bool(matlab)
+        name,
+        shape,
+        kind,
+        read,
+        attributes,
+        _axes(data)[::order],
+        step,
+        data.dtype.itemsize,
+        ordered=bool(matlab),
+        resolution=1.0 if data.dtype.kind in "iu" else 0.0,
     )
     return unpacked(variable, where, fill=None if kind != "real" else _fill(data))
 
@@ -200,7 +209,7 @@ def _plain(array: NDArray[np.generic], kind: str) -> NDArray[np.generic]:
         fields: Any = array
         return np.asarray(fields[real] + 1j * fields[imag])
     if kind == "text":
-        flat = [x.decode("utf-8", "replace") if isinstance(x, bytes) else str(x) for x in array.ravel()]
+        flat = [decoded(x) if isinstance(x, bytes) else str(x) for x in array.ravel()]
         return np.array(flat, dtype=str).reshape(array.shape)
     return array
 
@@ -261,7 +270,7 @@ def _raw_name(data: Any) -> bytes:
 
 
 def _text(value: object) -> str:
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+    return decoded(value) if isinstance(value, bytes) else str(value)
 
 
 def is_group(source: Path, name: str) -> bool:

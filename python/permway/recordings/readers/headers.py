@@ -51,7 +51,10 @@ def split_header(text: str) -> tuple[str, str | None]:
         and (comma[2] not in _NO_UNIT_IN_ROUND or comma[2] in ("V", "N", "g"))
     ):
         return comma[1], clean_unit(comma[2])
-    return text, None
+    # Of "acc [mm/s2] filtered" the unit is known, too; all of it is the name.
+    within: list[tuple[str, str]] = re.findall(r"\[([^\[\]]+)\]|\(([^()]+)\)", text)
+    units = [a or b for a, b in within if is_unit(a) or (is_unit(b) and b.strip() not in _NO_UNIT_IN_ROUND)]
+    return text, clean_unit(units[0]) if len(units) == 1 else None
 
 
 def _round_brackets(text: str) -> tuple[str, str] | None:
@@ -121,6 +124,13 @@ def is_unit_row(cells: list[str]) -> bool:
     return bool(known) and 2 * len(known) >= len(said)
 
 
+def _is_temperature(unit: str) -> bool:
+    try:
+        return parse_unit(unit).quantity == "temperature"
+    except InputError:
+        return False
+
+
 def time_scale(name: str, unit: str | None, where: str) -> tuple[bool, float | None]:
     """Whether a name is that of a time column, and seconds in one of its unit: None where there is no unit.
 
@@ -141,5 +151,7 @@ def time_scale(name: str, unit: str | None, where: str) -> tuple[bool, float | N
     if plain not in _TIME_NAMES:
         return False, None
     if bare == "T" and (unit is None or seconds_of(unit) is None):
+        return False, None
+    if bare == "t" and unit is not None and seconds_of(unit) is None and _is_temperature(unit):
         return False, None
     return True, None if unit is None else seconds_in(unit, where)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from scipy import io
 
 from permway.recordings.readers.limits import MOST_BYTES, check_size
 from permway.recordings.readers.packed import DEFAULT_FILL, unpacked
-from permway.recordings.readers.stored import Store, Variable, unread
+from permway.recordings.readers.stored import Store, Variable, decoded, unread
 
 
 @contextmanager
@@ -29,7 +30,7 @@ def open_store(source: Path, *, max_bytes: int = MOST_BYTES) -> Iterator[Store]:
 def _variable(name: str, found: Any, source: Path) -> Variable:
     array = np.asarray(found.data)
     if array.dtype.kind == "S":
-        texts = np.array([b"".join(row).decode("utf-8", "replace") for row in array.reshape(-1, array.shape[-1])])
+        texts = np.array([decoded(b"".join(row)) for row in array.reshape(-1, array.shape[-1])])
         return Variable(name, texts.shape, "text", lambda slices: np.asarray(texts[slices]))
     if array.dtype.kind not in "fiu":
         return unread(name, f"neither numbers nor texts: {array.dtype}")
@@ -40,13 +41,11 @@ def _variable(name: str, found: Any, source: Path) -> Variable:
 
     step = float(np.finfo(plain.dtype).eps) if plain.dtype.kind == "f" else 2.0**-52
     raw = Variable(name, plain.shape, "real", read, _attributes(found), tuple(found.dimensions), step)
+    raw = replace(raw, resolution=1.0 if plain.dtype.kind in "iu" else 0.0)
     fill = DEFAULT_FILL.get("f" if plain.dtype.kind == "f" else plain.dtype.str[1:])
     return unpacked(raw, f"{source}: '{name}'", fill=fill)
 
 
 def _attributes(item: Any) -> dict[str, object]:
     table = dict(item._attributes)
-    return {
-        key: value.decode("utf-8", "replace") if isinstance(value, bytes) else value
-        for key, value in table.items()
-    }
+    return {key: decoded(value) if isinstance(value, bytes) else value for key, value in table.items()}

@@ -68,7 +68,16 @@ def _variable(archive: zipfile.ZipFile, info: zipfile.ZipInfo, name: str, where:
     step = float(np.finfo(dtype).eps) if dtype.kind == "f" else 2.0**-52
     # NumPy turns no axes: the order that is documented for frequency responses holds.
     whole = tuple(int(n) for n in shape)
-    return Variable(name, whole, kind, read, step=step, item_bytes=dtype.itemsize, ordered=True)
+    return Variable(
+        name,
+        whole,
+        kind,
+        read,
+        step=step,
+        item_bytes=dtype.itemsize,
+        ordered=True,
+        resolution=1.0 if dtype.kind in "iu" else 0.0,
+    )
 
 
 def _read(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -11,10 +12,10 @@ from permway.arrays import Reals
 from permway.errors import InputError
 from permway.recordings.readers.headers import clean_unit, split_header, time_scale
 from permway.recordings.readers.hints import NO_HINTS, Hints
-from permway.recordings.readers.scales import seconds_in
+from permway.recordings.readers.scales import hertz_in, seconds_in
 from permway.recordings.readers.store_columns import Column, columns_of, rank, read_columns
 from permway.recordings.readers.stored import UNITS, Store, Variable, is_one_of
-from permway.recordings.readers.timebase import TimeBase, check_unsaid, unsaid_scale
+from permway.recordings.readers.timebase import LEAST_UNSAID_HZ, TimeBase, check_unsaid, unsaid_scale
 from permway.recordings.readers.timefile import TimeFile, Timing
 
 RATES = {
@@ -30,6 +31,7 @@ RATES = {
 }
 RATES |= {"sampling_frequency", "sampling_frequency_hz", "sample_rate_hz", "sampling"}
 STEPS = {"dt", "ts", "sample_interval", "sampling_interval", "dt_s"}
+STARTS = {"start_time", "starttime", "t0", "start", "time_zero", "wf_start_time", "start_s"}
 NAMES = {"channels", "channel", "channel_names", "channel_name", "names", "labels", "sensors", "sensor"}
 
 OVER_FREQUENCY = {"f", "freq", "freqs", "frequency", "frequencies", "frequency_hz", "freq_hz", "f_hz"}
@@ -72,22 +74,25 @@ def as_time(store: Store, part: str | None = None, hints: Hints = NO_HINTS) -> T
         )
     columns = columns_of(store, data, names, None if time is None else time.size)
     labels, units = _labels(store, columns, near)
-    rate = _rate(store, data[0].attributes, near)
 
     @cache
-    def of_times() -> Timing:
+    def of_times(rate: float | None) -> Timing:
         assert time is not None
         return _timing_of(store, time, rate, hints)
 
     def timing(row: int) -> Timing:
-        samples = columns[row].samples
-        if hints.no_times or time is None:
-            return Timing(samples=samples, sampling_Hz=None if hints.no_times else rate)
+        samples, attributes = columns[row].samples, columns[row].attributes
+        begins = next((str(value) for key, value in attributes.items() if key.lower() in STARTS), "")
+        if hints.no_times:
+            return Timing(samples=samples, sampling_Hz=None, begins=begins)
+        rate = _rate(store, attributes, near)
+        if time is None:
+            return Timing(samples=samples, sampling_Hz=rate, begins=begins)
         if time.size != samples:
             what = f"{time.size} times for {samples} samples"
             where = f"{store.source}: '{time.name}', channel '{labels[row]}'"
             raise InputError(what, where=where, remedy="give one each")
-        return of_times()
+        return replace(of_times(rate), begins=begins)
 
     def read(rows: Sequence[int], first: int, stop: int) -> Reals:
         return read_columns([columns[row] for row in rows], first, stop)
@@ -143,11 +148,38 @@ def _only_numbers_samples(raw: Reals) -> bool:
 
 
 def _rate(store: Store, attributes: Mapping[str, object], near: str | None) -> float | None:
-    rate, step = store.number(RATES, attributes, near), store.number(STEPS, attributes, near)
+    """The rate that the file states of an array: in its attributes, in arrays beside it, or of the whole file."""
+    rate = _scaled(store, RATES, attributes, near, lambda unit, where: hertz_in(unit, where))
+    step = _scaled(store, STEPS, attributes, near, lambda unit, where: seconds_in(unit or "s", where))
     if rate is not None and step is not None and abs(rate * step - 1.0) > 1e-4:
         what = f"a rate of {rate:g} Hz and a step of {step:g} s contradict"
         raise InputError(what, where=store.source, remedy="correct whichever is wrong")
+    if rate is None and step is not None and 1.0 / step < LEAST_UNSAID_HZ and not _has_unit(store, STEPS, near):
+        raise InputError(
+            f"a step without a unit of {step:g}: as seconds {1.0 / step:g} Hz",
+            where=store.source,
+            remedy='state the rate in the record, as in sampling_Hz = 512.0, with time_column = "none"',
+        )
     return rate if rate is not None else (None if step is None else 1.0 / step)
+
+
+def _scaled(
+    store: Store,
+    names: set[str],
+    attributes: Mapping[str, object],
+    near: str | None,
+    scale: Callable[[str | None, str], float],
+) -> float | None:
+    own = Store(store.source, {}, {}).number(names, attributes)
+    value = own if own is not None else store.number(names, near=near)
+    if value is None or own is not None:
+        return value
+    unit = next((x.unit() for x in store.named(names, near) if x.kind == "real" and x.size == 1), None)
+    return value * scale(unit, f"{store.source}: {sorted(names)[0]}")
+
+
+def _has_unit(store: Store, names: set[str], near: str | None) -> bool:
+    return any(variable.unit() is not None or variable.leaf == "dt_s" for variable in store.named(names, near))
 
 
 def _times(store: Store, hints: Hints) -> list[Variable]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,8 @@ class Column:
         From rows of its array, first sample and the one after the last, to values, shape (row, sample).
     row : int or None
         In the table that it is a column of; None for an array of its own.
+    attributes : mapping
+        Of its array.
     """
 
     name: str
@@ -38,6 +40,7 @@ class Column:
     samples: int
     read: Callable[[list[int], int, int], NDArray[np.generic]]
     row: int | None
+    attributes: Mapping[str, object] = field(default_factory=dict)
 
     @property
     def in_table(self) -> bool:
@@ -75,7 +78,7 @@ def columns_of(
     if table is None and names is not None and len(names) == 1 == len(own):
         own = list(names)
     for name, variable in zip(own, vectors, strict=True):
-        columns.append(Column(name, variable.unit(), variable.size, _reader(variable), None))
+        columns.append(Column(name, variable.unit(), variable.size, _reader(variable), None, variable.attributes))
     return columns
 
 
@@ -119,7 +122,7 @@ def _of_table(store: Store, table: Variable, names: tuple[str, ...] | None, time
         piece = np.moveaxis(piece, (channel_axis, sample_axis), (0, 1)).reshape(len(span), stop - first)
         return piece[[row - span.start for row in rows]]
 
-    return [Column(name, table.unit(), samples, read, row) for row, name in enumerate(names)]
+    return [Column(name, table.unit(), samples, read, row, table.attributes) for row, name in enumerate(names)]
 
 
 def _channel_axis(

@@ -171,7 +171,7 @@ class Store:
             raise InputError("several values of one thing", where=self.source, value=each, remedy=remedy)
         if each:
             return next(iter(each.values()))
-        for table in (self.attributes, attributes or {}):
+        for table in (attributes or {}, self.attributes):
             for name, value in table.items():
                 if name.lower() in names:
                     return self._positive(name, value)
@@ -207,8 +207,16 @@ def is_one_of(name: str, names: Collection[str]) -> bool:
     return name in names or (len(name) > 1 and name.lower() in names)
 
 
+def decoded(raw: bytes) -> str:
+    """A text in UTF-8, or else in Latin-1 as older programs write it."""
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError:
+        return raw.decode("latin-1")
+
+
 def _texts(value: object) -> tuple[str, ...] | None:
     parts = np.ravel(np.asarray(value))
     if parts.dtype.kind not in "USO":
         return None
-    return tuple(x.decode("utf-8", "replace") if isinstance(x, bytes) else str(x) for x in parts)
+    return tuple(decoded(x) if isinstance(x, bytes) else str(x) for x in parts)

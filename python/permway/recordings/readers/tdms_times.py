@@ -81,7 +81,11 @@ def timing_of(channel: Any, where: str, times: list[str], channels: Mapping[str,
     # Counted from the channel that began first, so that starts can be held against each other.
     dates = [_since_1970(other) for other in channels.values()]
     earliest = min((date for date in dates if date is not None), default=0.0)
-    start = begin * scale + ((_since_1970(channel) or 0.0) - earliest if clock else 0.0)
+    start: float | None = begin * scale
+    if clock:
+        start = begin * scale + (_since_1970(channel) or 0.0) - earliest
+    elif any(date is not None for date in dates):
+        start = None
     return Timing(samples=samples, sampling_Hz=1.0 / (float(step) * scale), start_s=start)
 
 

@@ -99,13 +99,15 @@ def find_layout(source: Path, hints: Hints = NO_HINTS) -> Layout:
             break
     if not kept:
         raise InputError("the file is empty", where=str(source), remedy="give a header and rows")
-    separator = stated or separator_of([line for _, line in kept])
+    separator = stated or separator_of([line for _, line in kept], hints.decimal)
     rows = [cells_of(line, separator) for _, line in kept]
     first = _first_row(source, kept, rows, hints)
     names, units = _named(source, kept, rows, first, separator, hints)
     sample = tuple(line for _, line in kept[first:])
     layout = Layout(separator, False, names, units, kept[first][0], rate, sample, hints.encoding)
     comma = hints.decimal == "," if hints.decimal is not None else _decimal_comma(source, layout)
+    if comma:
+        rate = rate.in_decimal_commas()
     return Layout(separator, comma, names, units, kept[first][0], rate, sample, hints.encoding)
 
 
@@ -113,16 +115,18 @@ def _weighed(lines: Sequence[Line]) -> Sequence[Line]:
     return lines[-min(_LINES_WEIGHED, max(3, len(lines) // 2)) :]
 
 
-def separator_of(lines: list[str]) -> str | None:
+def separator_of(lines: list[str], decimal: str | None = None) -> str | None:
     """The sign between cells: that which cuts the last of these lines into equally many, numbers among them."""
     last = _weighed(lines)
-    for mark in ("\t", ";", ",", None):
+    quoted = any('"' in line for line in last)
+    for mark in ("\t", ";", None) if decimal == "," and not quoted else ("\t", ";", ",", None):
         rows = [cells_of(line, mark) for line in last]
         count, times = Counter(len(row) for row in rows).most_common(1)[0]
         numeric = sum(any(is_number(cell) for cell in row) for row in rows)
         if count > 1 and 2 * times > len(rows) and 2 * numeric >= len(rows):
             return mark
-    return next((mark for mark in ("\t", ";", ",") if mark in lines[0]), None)
+    marks = ("\t", ";") if decimal == "," and not quoted else ("\t", ";", ",")
+    return next((mark for mark in marks if mark in lines[0]), None)
 
 
 def _first_row(source: Path, kept: list[tuple[int, str]], rows: list[list[str]], hints: Hints) -> int:
@@ -186,7 +190,7 @@ def _named(
     cells = rows[at] if at < top else _joined(rows[top:first])
     if separator is None and count == 1:
         # One column: blanks in its header are part of its name.
-        cells = [kept[at][1].strip()]
+        cells = [kept[at][1].strip().strip('"')]
     if len(cells) > 1 and len(cells) == count + 1 and not cells[-1]:
         cells = cells[:-1]
     if len(cells) > 1 and not cells[-1] and all(len(row) < len(cells) or not row[-1] for row in rows[first:]):
@@ -261,6 +265,14 @@ def _decimal_comma(source: Path, layout: Layout) -> bool:
     InputError
         If a comma may as well part thousands.
     """
+    odd = _split_decimals(layout)
+    if odd is not None:
+        raise InputError(
+            "a comma that may part decimals or cells",
+            where=str(source),
+            value=odd,
+            remedy='if it parts decimals, say so in the record: decimal = ","; if cells, write 5 for 05',
+        )
     found = _commas(layout, layout.sample)
     if not found and not any("." in line for line in layout.sample) and layout.separator != ",":
         last = 0
@@ -281,6 +293,16 @@ def _decimal_comma(source: Path, layout: Layout) -> bool:
             remedy='say in the record which sign parts decimals: decimal = "," (or export without thousands)',
         )
     return bool(found)
+
+
+def _split_decimals(layout: Layout) -> str | None:
+    """A line of whole numbers between commas, one of them as "05", which only decimals are; else None."""
+    if layout.separator != "," or any('"' in line or "." in line for line in layout.sample):
+        return None
+    for line in layout.sample:
+        if any(re.fullmatch(r"0\d+", cell) for cell in layout.cells(line)):
+            return line
+    return None
 
 
 def _commas(layout: Layout, lines: tuple[str, ...]) -> list[str]:

@@ -30,10 +30,17 @@ class RateRemark:
     value_Hz : float or None
     fault : InputError or None
         If one speaks of the rate and is not understood: to be raised where nothing else says it.
+    doubt : InputError or None
+        The same if the table has decimal commas.
     """
 
     value_Hz: float | None = None
     fault: InputError | None = field(default=None, compare=False)
+    doubt: InputError | None = field(default=None, compare=False)
+
+    def in_decimal_commas(self) -> RateRemark:
+        """The same in a table with decimal commas, where a point may part thousands."""
+        return self if self.doubt is None else RateRemark(fault=self.doubt)
 
     def and_then(self, other: RateRemark) -> RateRemark:
         """The first that says something."""
@@ -68,4 +75,4 @@ def rate_in(remark: str, where: str) -> RateRemark:
     if not 0.0 < value < float("inf"):
         what = "a sampling rate must be finite and above 0 Hz"
         return RateRemark(fault=InputError(what, where=where, value=text, remedy="correct or remove the remark"))
-    return RateRemark(value)
+    return RateRemark(value, doubt=fault if re.search(r"\.\d{3}(?!\d)", number) else None)

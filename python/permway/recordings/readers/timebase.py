@@ -11,17 +11,20 @@ from permway.arrays import Reals
 from permway.errors import InputError
 from permway.recordings.readers.timefile import RATES_AGREE, Timing
 
-LEAST_UNSAID_HZ, MOST_UNSAID_HZ = 20.0, 1e7
+LEAST_UNSAID_HZ, MOST_UNSAID_HZ = 20.0, 1e6
 """Rates outside are not believed of times without a unit: they may count samples, milliseconds or days.
 
 Below 20 Hz hardly a line from 4 Hz on is left, which is where a campaign begins, and milliseconds of all rates up
 to 20 kHz would be read as seconds. Half of it lets those of 10 to 20 kHz pass; twice of it asks slow monitors for
-their unit, too. The upper one lies far above any accelerometer's rate, and below that of times in days that were
-taken for seconds (4e7 Hz and more).
+their unit, too. The upper one lies above what
+accelerometers are sampled with, and below times in days or hours that were taken for seconds (1.7e6 Hz and more).
 """
 
-_EPOCHS = ((1e17, 1e-9, "ns"), (1e14, 1e-6, "us"), (1e11, 1e-3, "ms"))
-"""Times since 1970 by their size: as seconds these would be thousands of years away, as the unit 1973 to 5138."""
+_EPOCHS = tuple((946_684_800.0 / scale, 4_102_444_800.0 / scale, scale) for scale in (1e-3, 1e-6, 1e-9))
+"""Times since 1970 in ms, us and ns, from 2000 to 2100: no two of these ranges meet, nor does another clock's."""
+
+_MOST_UNSAID_S = 1e11
+"""Larger times without a unit are no seconds, of whatever clock: 3,000 years."""
 
 _STEP_OFF = 0.01
 """Share of a step by which one may differ from the others."""
@@ -145,8 +148,8 @@ def whole_rate(rate_Hz: float, relative: float) -> float:
 def unsaid_scale(times: Reals) -> float:
     """Seconds in one of a time without a unit, by its first value: a date of a computer's clock, or seconds."""
     finite = times[np.isfinite(times)]
-    first = abs(float(finite[0])) if finite.size else 0.0
-    return next((scale for least, scale, _ in _EPOCHS if first >= least), 1.0)
+    first = float(finite[0]) if finite.size else 0.0
+    return next((scale for least, most, scale in _EPOCHS if least <= first <= most), 1.0)
 
 
 def check_unsaid(base: TimeBase, label: str) -> None:
@@ -165,7 +168,8 @@ def check_unsaid(base: TimeBase, label: str) -> None:
         If the rate is none of vibration.
     """
     step = base.step_s
-    if step is None or base.scale != 1.0 or LEAST_UNSAID_HZ <= 1.0 / step <= MOST_UNSAID_HZ:
+    far = abs(base.start_s or 0.0) > _MOST_UNSAID_S
+    if step is None or base.scale != 1.0 or (LEAST_UNSAID_HZ <= 1.0 / step <= MOST_UNSAID_HZ and not far):
         return
     key = label if re.fullmatch(r"[A-Za-z0-9_-]+", label) else f'"{label}"'
     raise InputError(

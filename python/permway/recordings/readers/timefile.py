@@ -36,6 +36,8 @@ class Timing:
         Of the rate, relative: of times that are printed with few digits.
     remark : bool
         Whether the rate is only a remark in a text, which a statement of the caller replaces.
+    begins : str
+        When the first sample was taken by a clock, as the file says it; empty if it does not.
     fault : InputError or None
         Why the rate is not known, or not well enough: to be raised if the caller does not give one.
     """
@@ -45,6 +47,7 @@ class Timing:
     start_s: float | None = None
     uncertainty: float = 0.0
     remark: bool = False
+    begins: str = ""
     fault: InputError | None = field(default=None, compare=False)
 
 
@@ -163,6 +166,11 @@ def agreed_timing(file: TimeFile, rows: Sequence[int]) -> Timing:
             what = (
                 f"sampled at {_said(other.sampling_Hz)} Hz from {_said(other.start_s)} s, "
                 f"'{name}' at {_said(first.sampling_Hz)} Hz from {_said(first.start_s)} s"
+            )
+            raise InputError(what, where=where, remedy=remedy)
+        if other.begins != first.begins:
+            what = (
+                f"begins at {other.begins or 'an unknown time'}, '{name}' at {first.begins or 'an unknown time'}"
             )
             raise InputError(what, where=where, remedy=remedy)
     if first.samples < 1:

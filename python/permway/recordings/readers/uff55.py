@@ -87,6 +87,10 @@ def read_frf(source: Path, *, max_bytes: int = MOST_BYTES) -> FrfRecord:
     if not shapes:
         what = "holds no frequency response (dataset 55 of analysis type 5)"
         raise InputError(what, where=str(source), remedy="mode shapes are a table: use read_table")
+    real = next((shape for shape in shapes if not shape.complex), None)
+    if real is not None:
+        what = "the responses are of real numbers: magnitudes without a phase"
+        raise InputError(what, where=f"{source}: frequency step {real.number}", remedy="export them as complex")
     shapes.sort(key=lambda shape: shape.frequency_Hz)
     first = shapes[0]
     for shape in shapes[1:]:
