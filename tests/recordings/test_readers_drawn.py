@@ -1,6 +1,6 @@
 """Random files by each format's usual writer, read back: the same in SI, or a refusal; never anything else.
 
-The same for ten thousand files: `python tests/fuzz/written.py`.
+The same for ten thousand files: `python tests/fuzz/ten_thousand.py`.
 """
 
 from __future__ import annotations

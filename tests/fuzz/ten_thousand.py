@@ -1,4 +1,4 @@
-"""Ten thousand random files by the usual writers, read back: `python tests/fuzz/written.py [COUNT] [FIRST_SEED]`.
+"""Ten thousand random files by the usual writers, read back: `python tests/fuzz/ten_thousand.py [COUNT] [FIRST_SEED]`.
 
 Prints for each format how many were right, refused and wrong, every wrong one with its seed, and ends with 1 if
 there is one. The tests of the readers run some hundreds of the same.
