@@ -1,4 +1,4 @@
-"""Ten thousand random files by the usual writers, read back: `python tests/fuzz/ten_thousand.py [COUNT] [FIRST_SEED]`.
+"""Ten thousand random files by the usual writers: `python tests/fuzz/ten_thousand.py [COUNT] [FIRST_SEED]`.
 
 Prints for each format how many were right, refused and wrong, every wrong one with its seed, and ends with 1 if
 there is one. The tests of the readers run some hundreds of the same.
@@ -17,12 +17,15 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1] / "recordings"))
 
 from drawn import outcome
+from permway.recordings.readers import hdf5
 from test_readers_drawn import WRITERS
 
 
 def main(count: int, first: int) -> int:
     """Run so many files in all, seeds from the first on; the number of wrong ones."""
     began, wrong = time.perf_counter(), 0
+    # None of these files is damaged: that the HDF5 library comes to an end on them need not be tried in a process.
+    hdf5.check_sound = lambda _: None
     totals: dict[str, Counter[str]] = {kind: Counter() for kind in WRITERS}
     reasons: Counter[str] = Counter()
     for index in range(count):
@@ -35,9 +38,11 @@ def main(count: int, first: int) -> int:
         totals[kind][result] += 1
         if result == "wrong":
             wrong += 1
-            print(f"{kind}, seed {seed}: {why}")
+            print(f"{kind}, seed {seed}: {why}", flush=True)
         elif result == "refused":
             reasons[f"{kind}: {why.replace(str(path), '')[:110]}"] += 1
+        if (index + 1) % 1000 == 0:
+            print(f"{index + 1} files, {wrong} wrong, {time.perf_counter() - began:.0f} s", flush=True)
     for kind, total in totals.items():
         print(f"{kind:<12} right {total['right']:5d}  refused {total['refused']:5d}  wrong {total['wrong']:5d}")
     for reason, times in reasons.most_common(25):

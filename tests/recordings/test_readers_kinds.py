@@ -34,6 +34,8 @@ def text(folder: Path, content: str) -> Path:
     [
         ("acc [mm/s2] filtered", "mm/s2"), ("acc (mm/s2), left", "mm/s2"), ("X (100g)", None),
         ("acc [100 g]", "100 g"),
+        ("acc / (mm/s²)", "mm/s²"), ("Weg / mm", "mm"), ("Weg in mm", "mm"), ("acc mm/s2", "mm/s2"),
+        ("a / b", None),
         ("box (N)", None), ("force (N)", "N"), ("a, b", None), ('"acc, m/s2"', "m/s2"), ("acc (dB)", None),
     ],
 )  # fmt: skip

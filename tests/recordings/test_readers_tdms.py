@@ -63,6 +63,14 @@ def test_starts(tmp_path: Path) -> None:
             read_time(path, channels=pair)
 
 
+def test_clocks_of_one_microsecond_are_together(tmp_path: Path) -> None:
+    step = {"wf_increment": 1 / 512}
+    path = write(
+        tmp_path, a={**step, "wf_start_time": START}, b={**step, "wf_start_time": START + np.timedelta64(1, "us")}
+    )
+    assert read_time(path).sampling_Hz == pytest.approx(512.0)
+
+
 def test_channels_of_times(tmp_path: Path) -> None:
     t = np.arange(64) / 512
     dates = START + np.round(t * 1e6).astype("timedelta64[us]")

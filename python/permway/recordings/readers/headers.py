@@ -51,6 +51,15 @@ def split_header(text: str) -> tuple[str, str | None]:
         and (comma[2] not in _NO_UNIT_IN_ROUND or comma[2] in ("V", "N", "g"))
     ):
         return comma[1], clean_unit(comma[2])
+    # "a / (m/s²)" and "a / mm" as DIN 1313 writes axes, "a in mm"; "t/s" only of times.
+    over = re.fullmatch(r"(.*\S)\s+(?:/|in)\s+\(?([^()]+)\)?", text) or re.fullmatch(
+        r"(t|[Tt]ime|Zeit)/(\S+)", text
+    )
+    if over is not None and is_unit(over[2]):
+        return over[1], clean_unit(over[2])
+    last = text.rpartition(" ")[2]
+    if last != text and re.search(r"[/²^]", last) and is_unit(last):
+        return text, clean_unit(last)
     # Of "acc [mm/s2] filtered" the unit is known, too; all of it is the name.
     within: list[tuple[str, str]] = re.findall(r"\[([^\[\]]+)\]|\(([^()]+)\)", text)
     units = [a or b for a, b in within if is_unit(a) or (is_unit(b) and b.strip() not in _NO_UNIT_IN_ROUND)]

@@ -76,7 +76,7 @@ def open_time(source: Path, *, group: str | None = None, hints: Hints = NO_HINTS
 
         yield TimeFile(
             source=str(source),
-            channels=tuple(name for name, _ in pairs),
+            channels=tuple(names),
             units=tuple(_unit(channel) or unit for channel, (_, unit) in zip(found, pairs, strict=True)),
             timing=timing,
             read=read,
