@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import pyuff
 import written
 from permway.cli import app
 from permway.errors import InputError
@@ -70,6 +71,41 @@ def test_lines_above_the_table_are_found_and_stated(tmp_path: Path) -> None:
     record, sensors, _ = pasted(result["campaign"])
     assert (record.header_row, sensors[0].unit) == (4, "mm/s2")
     assert read_time(path, hints=record.hints).sampling_Hz == 512.0
+
+
+@pytest.mark.parametrize("kind", [15, 2411])
+@pytest.mark.parametrize(("length", "scale"), [(None, 1.0), (1000.0, 1e-3)])
+def test_places_of_nodes(kind: int, length: float | None, scale: float, tmp_path: Path) -> None:
+    path = tmp_path / "a.uff"
+    if length is not None:
+        system = pyuff.prepare_164(
+            units_code=1,
+            units_description="own",
+            temp_mode=1,
+            length=length,
+            force=1.0,
+            temp=1.0,
+            temp_offset=273.15,
+        )
+        written.append_uff(path, system)
+    place = {1: (2.5, 0.0, -1.0), 2: (-7.25, 1.5, 0.0), 3: (0.125, 0.0, 0.0)}
+    if kind == 15:
+        x, y, z = (list(map(float, axis)) for axis in zip(*place.values(), strict=True))
+        zero = [0] * 3
+        nodes = pyuff.prepare_15(node_nums=list(place), def_cs=zero, disp_cs=zero, color=zero, x=x, y=y, z=z)
+        written.append_uff(path, nodes)
+    else:
+        rows = [
+            f"{node:10d}{1:10d}{1:10d}{11:10d}\n" + "".join(f"{v:25.16E}" for v in at).replace("E", "D") + "\n"
+            for node, at in place.items()
+        ]
+        with path.open("a") as file:
+            file.write("    -1\n  2411\n" + "".join(rows) + "    -1\n")
+    run = tmp_path / "run.uff"
+    written.uff_time(run, written.samples())
+    path.write_bytes(path.read_bytes() + run.read_bytes())
+    _, sensors, _ = pasted(look(path)["campaign"])
+    assert [s.x_m for s in sensors] == [pytest.approx(at[0] * scale) for at in place.values()]
 
 
 def test_what_is_missing_is_said_with_its_key(tmp_path: Path) -> None:

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from permway.errors import InputError
-from permway.recordings.look_campaign import frf_part, time_part
+from permway.recordings.look_campaign import Places, frf_part, time_part
 from permway.recordings.readers.formats import recognise
 from permway.recordings.readers.front import opened, read_frf, read_table
 from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES, existing_file
 from permway.recordings.readers.timefile import TimeFile, Timing
+from permway.recordings.readers.uff_nodes import read_nodes
 from permway.recordings.record import FrfRecord
 
 MOST_SAMPLES = 2**20
@@ -68,6 +69,12 @@ def look(path: str | Path, asked: Asked | None = None) -> dict[str, Any]:
     kind = recognise(source, asked.format, asked.hints.encoding)
     result: dict[str, Any] = {"file": str(source), "format": kind}
     problems: list[InputError] = []
+    places: Places = {}
+    if kind == "uff":
+        try:
+            places = read_nodes(source)
+        except InputError as error:
+            problems.append(error)
     if kind not in ("tdms", "wav"):
         try:
             record = read_frf(source, format=asked.format, part=asked.part, hints=asked.hints, keep_nonfinite=True)
@@ -75,10 +82,10 @@ def look(path: str | Path, asked: Asked | None = None) -> dict[str, Any]:
             problems.append(error)
         else:
             result |= _responses(record)
-            result["campaign"] = frf_part(record, source.name, asked)
+            result["campaign"] = frf_part(record, source.name, asked, places)
     if not (kind == "text" and "responses" in result):
         try:
-            result |= _in_time(source, asked, result.get("campaign", ""))
+            result |= _in_time(source, asked, result.get("campaign", ""), places)
         except InputError as error:
             problems.append(error)
     if "channels" not in result and "responses" not in result:
@@ -109,19 +116,20 @@ def _responses(record: FrfRecord) -> dict[str, Any]:
     }
 
 
-def _in_time(source: Path, asked: Asked, before: str) -> dict[str, Any]:
+def _in_time(source: Path, asked: Asked, before: str, places: Places) -> dict[str, Any]:
     """Channels of a record in time; where lines stand above the table, once more with the header's line."""
     try:
-        return _channels(source, asked, before)
+        return _channels(source, asked, before, places)
     except InputError as error:
         found = _HEADER_ROW.search(error.remedy)
         if found is None or asked.hints.header_row is not None:
             raise
         hints = replace(asked.hints, header_row=int(found[1]))
-        return _channels(source, replace(asked, hints=hints), before) | {"supposed": str(error)}
+        found_so = _channels(source, replace(asked, hints=hints), before, places)
+        return found_so | {"supposed": str(error)}
 
 
-def _channels(source: Path, asked: Asked, before: str) -> dict[str, Any]:
+def _channels(source: Path, asked: Asked, before: str, places: Places) -> dict[str, Any]:
     rows: list[dict[str, Any]] = []
     missing: list[str] = []
     with opened(source, asked.format, asked.part, asked.hints, False, MOST_BYTES) as (file, _):
@@ -138,7 +146,7 @@ def _channels(source: Path, asked: Asked, before: str) -> dict[str, Any]:
     missing += faults
     if any(row["unit"] is None for row in sound):
         missing.append("unit of the sensors: the file does not say the unit of every channel")
-    part = time_part(rows, source.name, asked, faults)
+    part = time_part(rows, source.name, asked, faults, places)
     return {
         "channels": rows,
         "notes": notes,

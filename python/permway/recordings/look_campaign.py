@@ -17,7 +17,13 @@ if TYPE_CHECKING:
 _SHOWN = 200
 
 
-def time_part(rows: Sequence[Mapping[str, Any]], file: str, asked: Asked, faults: Sequence[str]) -> str:
+Places = Mapping[int, tuple[float, float, float]]
+"""Of nodes, by their numbers, m."""
+
+
+def time_part(
+    rows: Sequence[Mapping[str, Any]], file: str, asked: Asked, faults: Sequence[str], places: Places
+) -> str:
     """Sensors and a record for the channels of a record in time; what cannot be used is left out, and said."""
     lines: list[str] = []
     channels: dict[str, str] = {}
@@ -38,7 +44,7 @@ def time_part(rows: Sequence[Mapping[str, Any]], file: str, asked: Asked, faults
             lines.append(f"# {_quoted(name)} is left out: another sampling rate, which needs a record of its own")
             continue
         quantity, unit = found
-        lines += _sensor(name, quantity, unit, known=row["unit"] is not None)
+        lines += _sensor(name, quantity, unit, _place(name, places), known=row["unit"] is not None)
         channels[name] = name
     if not channels:
         return "\n".join(lines)
@@ -58,20 +64,20 @@ def time_part(rows: Sequence[Mapping[str, Any]], file: str, asked: Asked, faults
     return "\n".join(lines)
 
 
-def frf_part(record: FrfRecord, file: str, asked: Asked) -> str:
+def frf_part(record: FrfRecord, file: str, asked: Asked, places: Places) -> str:
     """Sensors, force points and a record for frequency responses."""
     responses, references = list(dict.fromkeys(record.responses)), list(dict.fromkeys(record.references))
     unit = next((record.unit_of(row) for row in range(len(record.responses)) if record.unit_of(row)), None)
     top, force = _ratio(unit)
     lines: list[str] = []
     for name in responses[:_SHOWN]:
-        lines += _sensor(name, *top, known=unit is not None)
+        lines += _sensor(name, *top, _place(name, places), known=unit is not None)
     for name in references[:_SHOWN]:
         lines += [
             "[[forces]]",
             f"name = {_quoted('hit ' + name)}",
             'body = ""                       # a body of the model',
-            "x_m = 0.0                       # where on it",
+            _place(name, places),
             f"unit = {_quoted(force)}",
             "",
         ]
@@ -92,12 +98,21 @@ def frf_part(record: FrfRecord, file: str, asked: Asked) -> str:
     return "\n".join(lines)
 
 
-def _sensor(name: str, quantity: str, unit: str, *, known: bool) -> list[str]:
+def _place(label: str, places: Places) -> str:
+    """Where on the body: the first coordinate of its node, where the file has it."""
+    node = label.partition(":")[0]
+    if not node.isdecimal() or int(node) not in places:
+        return "x_m = 0.0                       # where on it"
+    x, y, z = places[int(node)]
+    return f"{f'x_m = {x:.9g}':<32}# of the file: node {node} at ({x:.9g}, {y:.9g}, {z:.9g}) m"
+
+
+def _sensor(name: str, quantity: str, unit: str, place: str, *, known: bool) -> list[str]:
     return [
         "[[sensors]]",
         f"name = {_quoted(name)}",
         'body = ""                       # a body of the model; or degree = "car1.wheelset1"',
-        "x_m = 0.0                       # where on it",
+        place,
         f"quantity = {_quoted(quantity)}",
         f"unit = {_quoted(unit)}{'' if known else '                   # the file does not say it'}",
         "",
