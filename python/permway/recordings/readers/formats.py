@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 from permway.errors import InputError
 
-Format = Literal["text", "uff", "mat", "mat73", "npz", "hdf5", "netcdf", "netcdf3", "tdms", "wav"]
+Format = Literal["text", "uff", "mat", "mat73", "npz", "hdf5", "netcdf", "netcdf3", "tdms", "wav", "lvm"]
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _SUFFIXES: dict[str, tuple[Format, ...]] = {
@@ -20,6 +20,7 @@ _SUFFIXES: dict[str, tuple[Format, ...]] = {
     **dict.fromkeys((".nc", ".nc4", ".cdf"), ("netcdf", "netcdf3")),
     ".tdms": ("tdms",),
     ".wav": ("wav",),
+    ".lvm": ("lvm",),
 }
 _UNREAD: tuple[tuple[bytes, str, str], ...] = (
     (b"\x93NUMPY", "a bare NumPy array, without names and units", "save it with numpy.savez and name its parts"),
@@ -95,6 +96,8 @@ def _by_content(source: Path) -> Format:
         return "netcdf3"
     if head[126:128] in (b"IM", b"MI") and head[124:128] in (b"\x00\x01IM", b"\x01\x00MI"):
         return "mat"
+    if head.removeprefix(b"\xef\xbb\xbf").startswith(b"LabVIEW Measurement"):
+        return "lvm"
     if re.match(rb"\s*-1[ \t]*\r?\n\s*\d+", head):
         return "uff"
     if b"\x00" in head or len(re.findall(rb"[\x01-\x08\x0e-\x1f]", head)) > len(head) // 50:
@@ -102,6 +105,6 @@ def _by_content(source: Path) -> Format:
             "the content is no format that is read here",
             where=str(source),
             value=head[:16],
-            remedy="give UFF, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS or WAV (MAT of version 4: save it as -v7)",
+            remedy="give UFF, MAT (version 4: save as -v7), CSV, TSV, NPZ, HDF5, NetCDF, TDMS, LVM or WAV",
         )
     return "text"

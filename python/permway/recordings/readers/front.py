@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from permway.errors import InputError
-from permway.recordings.readers import hdf5, mat, netcdf3, npz, table, tdms, text, text_frf, uff55, uff58, wav
+from permway.recordings.readers import hdf5, lvm, mat, netcdf3, npz, table, tdms, text, text_frf, uff55, uff58, wav
 from permway.recordings.readers.formats import Format, recognise
 from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES, check_size, existing_file, foreign
@@ -49,7 +49,7 @@ def read_time(
     Parameters
     ----------
     path : path
-        UFF 58 or 58b, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS or WAV.
+        UFF 58 or 58b, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS, LVM or WAV.
     channels : sequence of str, optional
         Which, in which order; by default all. Only these have to be sound, and to go together.
     units : str or dict of channel to str, optional
@@ -258,6 +258,8 @@ def opened(
                 entered: AbstractContextManager[TimeFile]
                 if kind == "text":
                     entered = text.open_time(source, keep, hints)
+                elif kind == "lvm":
+                    entered = lvm.open_time(source, hints, max_bytes=max_bytes)
                 elif kind == "uff":
                     entered = uff58.open_time(source, hints, keep=keep)
                 else:
