@@ -141,6 +141,19 @@ def test_channels_of_their_own_rate_and_start(tmp_path: Path) -> None:
     assert read_time(path, channels=["b"]).sampling_Hz == 1024.0
 
 
+def test_structs_of_their_own_rate(tmp_path: Path) -> None:
+    x = np.sin(np.arange(64.0))
+    structs = {"s": {"acc": x, "fs": 1000.0}, "q": {"acc": 2.0 * x, "fs": 500.0}}
+    io.savemat(tmp_path / "five.mat", structs)
+    _turned(tmp_path / "seven.mat", structs)
+    for name in ("five.mat", "seven.mat"):
+        path = tmp_path / name
+        assert read_time(path, channels=["q/acc"]).sampling_Hz == 500.0
+        np.testing.assert_array_equal(read_time(path, part="s").values[0], x)
+        with pytest.raises(InputError, match=r"sampled at .*Hz"):
+            read_time(path)
+
+
 def test_rates_and_steps_have_units(tmp_path: Path) -> None:
     path = tmp_path / "a.h5"
     for name, value, unit, rate in (

@@ -85,7 +85,7 @@ def as_time(store: Store, part: str | None = None, hints: Hints = NO_HINTS) -> T
         begins = next((str(value) for key, value in attributes.items() if key.lower() in STARTS), "")
         if hints.no_times:
             return Timing(samples=samples, sampling_Hz=None, begins=begins)
-        rate = _rate(store, attributes, near)
+        rate = _rate(store, attributes, columns[row].folder)
         if time is None:
             return Timing(samples=samples, sampling_Hz=rate, begins=begins)
         if time.size != samples:

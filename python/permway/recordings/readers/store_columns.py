@@ -33,6 +33,8 @@ class Column:
         In the table that it is a column of; None for an array of its own.
     attributes : mapping
         Of its array.
+    folder : str
+        The group or struct that its array is in.
     """
 
     name: str
@@ -41,6 +43,7 @@ class Column:
     read: Callable[[list[int], int, int], NDArray[np.generic]]
     row: int | None
     attributes: Mapping[str, object] = field(default_factory=dict)
+    folder: str = ""
 
     @property
     def in_table(self) -> bool:
@@ -78,7 +81,11 @@ def columns_of(
     if table is None and names is not None and len(names) == 1 == len(own):
         own = list(names)
     for name, variable in zip(own, vectors, strict=True):
-        columns.append(Column(name, variable.unit(), variable.size, _reader(variable), None, variable.attributes))
+        columns.append(
+            Column(
+                name, variable.unit(), variable.size, _reader(variable), None, variable.attributes, variable.folder
+            )
+        )
     return columns
 
 
@@ -122,7 +129,10 @@ def _of_table(store: Store, table: Variable, names: tuple[str, ...] | None, time
         piece = np.moveaxis(piece, (channel_axis, sample_axis), (0, 1)).reshape(len(span), stop - first)
         return piece[[row - span.start for row in rows]]
 
-    return [Column(name, table.unit(), samples, read, row, table.attributes) for row, name in enumerate(names)]
+    return [
+        Column(name, table.unit(), samples, read, row, table.attributes, table.folder)
+        for row, name in enumerate(names)
+    ]
 
 
 def _channel_axis(

@@ -227,4 +227,5 @@ def _coherence(
             where=f"{store.source}: '{coherence.name}'",
             value=coherence.shape,
         )
-    return _table(store, coherence, order, wanted, max_bytes).astype(np.float64)
+    percent = coherence.unit() == "%"
+    return _table(store, coherence, order, wanted, max_bytes).astype(np.float64) / (100.0 if percent else 1.0)

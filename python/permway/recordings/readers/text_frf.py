@@ -15,6 +15,7 @@ from permway.recordings.readers.store_frf import COHERENCES, FREQUENCIES, REFERE
 from permway.recordings.readers.stored import is_one_of
 from permway.recordings.readers.table import read_text_table
 from permway.recordings.record import FrfRecord, TableRecord
+from permway.recordings.units import check_same
 
 REAL, IMAGINARY = {"real", "re"}, {"imaginary", "imag", "im"}
 MAGNITUDE, PHASE = (
@@ -53,7 +54,10 @@ def read_frf(source: Path, *, hints: Hints = NO_HINTS, max_bytes: int = MOST_BYT
     frequency = frequency * hertz_in(hints.unit_of(column) or table.units[column], f"{source}: '{column}'")
     sensors, points = _texts(table, RESPONSES, "sensors"), _texts(table, REFERENCES, "points")
     values, unit = _values(table, hints)
-    coherence = _numbers(table, COHERENCES, "coherence") if _named(table, tuple(COHERENCES)) else None
+    coherence = None
+    if _named(table, tuple(COHERENCES)):
+        percent = table.units[_one(table, COHERENCES, "coherence")] == "%"
+        coherence = _numbers(table, COHERENCES, "coherence") / (100.0 if percent else 1.0)
     rows: dict[tuple[str, str], list[int]] = {}
     for index, pair in enumerate(zip(sensors, points, strict=True)):
         rows.setdefault(pair, []).append(index)
@@ -110,7 +114,11 @@ def _values(table: TableRecord, hints: Hints) -> tuple[Complexes, str | None]:
     if _named(table, tuple(REAL)):
         real = _numbers(table, REAL, "real parts")
         imaginary = _numbers(table, IMAGINARY, "imaginary parts")
-        return np.asarray(real + 1j * imaginary, dtype=np.complex128), table.units[_one(table, REAL, "")]
+        names = _one(table, REAL, ""), _one(table, IMAGINARY, "")
+        unit, other = (table.units[name] for name in names)
+        if unit is not None and other is not None:
+            check_same(other, unit, where=f"{table.source}: '{names[1]}'")
+        return np.asarray(real + 1j * imaginary, dtype=np.complex128), unit or other
     name = _one(table, MAGNITUDE, "real parts or magnitudes")
     size = _numbers(table, MAGNITUDE, "magnitudes")
     below = np.flatnonzero(size < 0.0)
