@@ -246,7 +246,9 @@ class FrfRecord:
         if self.coherence is None:
             return
         where = self.source or "FRF"
-        bad = np.argwhere((self.coherence < -COHERENCE_OFF) | (self.coherence > 1.0 + COHERENCE_OFF))
+        off = (self.coherence < -COHERENCE_OFF) | (self.coherence > 1.0 + COHERENCE_OFF)
+        # Nothing uses 0 Hz, where programs divide by what is not there.
+        bad = np.argwhere(off & (self.frequency_Hz > 0.0))
         if len(bad):
             row, line = (int(i) for i in bad[0])
             raise InputError(
