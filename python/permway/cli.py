@@ -14,6 +14,7 @@ import typer
 from permway.cli_campaign import campaigns
 from permway.cli_challenge import challenges
 from permway.cli_import import imports
+from permway.cli_look import looking
 from permway.cli_output import Json, Threads, examples, progress_bar, say, tell
 from permway.cli_track import tracks
 from permway.errors import InputError, PermwayError
@@ -51,6 +52,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
+app.add_typer(looking)
 app.add_typer(campaigns)
 app.add_typer(tracks)
 app.add_typer(imports, name="import")

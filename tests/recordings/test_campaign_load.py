@@ -127,13 +127,12 @@ def test_a_run_without_a_rate_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_pair_that_was_not_measured_stays_empty(tmp_path: Path) -> None:
-    from types import SimpleNamespace
-
     import permway.recordings.campaign_load as module
+    from permway.recordings.record import FrfRecord
 
     (tmp_path / "frf.npz").write_bytes(b"later")
     campaign = campaign_with(tmp_path)
-    three = SimpleNamespace(
+    three = FrfRecord(
         responses=("r", "r", "d"),
         references=("a", "b", "b"),
         frequency_Hz=np.array([10.0, 20.0]),

@@ -39,7 +39,6 @@ TEXTS: dict[str, tuple[str | bytes, str]] = {
     "hexadecimal": ("a,b\n1,2\n0x1p3,4\n", "line 3, column 'a': not a number"),
     "two of one name": ("a,b,a\n1,2,3\n", "channel 3: a channel named twice .*'a'"),
     "two of one name with units": ("a [g],b,a [m]\n1,2,3\n", "a channel named twice"),
-    "column without name": ("a,,b\n1,2,3\n", "column 2 has no name"),
     "units that contradict": ("a [g]\nm/s2\n1\n", "the header says 'g', the row of units 'm/s2'"),
     "decimal comma and comma": ("a,b\n1,5,2,5\n", "line 2: 4 cells.*decimal comma needs ;"),
     "point and comma": (
@@ -57,8 +56,16 @@ TEXTS: dict[str, tuple[str | bytes, str]] = {
     "time jumps": ("t,a\n" + RISING + "0.60,1\n", "line 52, column 't': a step of 0.11 s .* not uniform"),
     "time in another unit": ("t [m],a\n0,1\n1,2\n", "column 't': is no unit of time .*'m'"),
     "two times": ("t,time,a\n0,0,1\n1,1,2\n", "more than one time column"),
-    "time alone": ("t\n0\n1\n", "no channel in time"),
-    "a clock": ("t,a\n12:00:01,1\n12:00:02,2\n", "column 't': not a number"),
+    "time alone": ("t [s]\n0\n1\n", "no channel in time"),
+    "times that may be anything": ("t,a\n0,1\n1,2\n2,3\n", "column 't': times without a unit, .*unit = { t ="),
+    "rate of thousands": ("# fs = 51,200 Hz\na\n1\n", "line 1: a remark speaks of the sampling rate"),
+    "lines above": (
+        "Model,x\nSerial,7\n\na,b\n1,2\n3,4\n",
+        "lines 1 to 2 are no part of a table .*header_row = 4",
+    ),
+    "comma of either kind": ("a;b\n1,024;2,048\n3,072;4,096\n", "decimals or thousands .*decimal = "),
+    "a clock": ("t,a\n12:00:01,1\n12:00:02,2\n", "column 't': the times are printed so coarsely .* 0 to 2 Hz"),
+    "a clock and a word": ("t,a\n12:00:01,1\n12:00:02,2\nnoon,3\n", "line 4, column 't': not a time of day"),
     "rate against remark": ("# fs = 50 Hz\nt,a\n" + RISING, "means 100 Hz, a remark says 50 Hz"),
     "rate of zero": ("# fs = 0\na\n1\n", "line 1: a sampling rate must be"),
 }
@@ -123,7 +130,7 @@ UNIVERSAL: dict[str, tuple[str | bytes, str]] = {
     "twice": ((function() + VALUES + END) * 2, "a channel named twice .*'101:.Z'"),
     "other lengths": (
         function() + VALUES + END + function(5, node=7) + body(np.arange(5.0), (DOUBLE,) * 4) + END,
-        "channel 7:.Z has other samples than 101:.Z: 5 of",
+        "channel '7:.Z': 5 samples where '101:.Z' has 6",
     ),
     "step of zero": (function(step=0.0) + VALUES + END, "step of the abscissa must be above 0"),
     "direction": (function(way=9) + VALUES + END, "direction must lie between -6 and 6 .*9"),
@@ -167,7 +174,9 @@ def test_universal_file(kind: str, tmp_path: Path) -> None:
             "coherence lies between 0 and 1 .*50.0",
         ),
         (FRF + header(6, 4, 3, even=True, node=5, start=3.0) + FRF.split("\n", 13)[13], "has other frequencies"),
-        (FRF + FRF.replace("m/s^2", "g    ").replace("      101", "      102"), "several units"),
+        (FRF.replace("m/s^2", "dB   "), "a frequency response in decibels is no ratio .*dB"),
+        (FRF.replace("         6         3", "         4         6"), "101:.Z / 7:-Z is of real numbers"),
+        (FRF.replace("        18    0", "        19    0"), "does not stand over frequency: .* type 19"),
         (FRF.replace("2.00000E+00", "-3.0000E+00"), "from 0 Hz on"),
     ],
 )
@@ -283,8 +292,8 @@ FILES: dict[str, tuple[str, Callable[[Path], object], str]] = {
     ),
     "times with a gap": (
         "a.npz",
-        lambda p: np.savez(p, a=np.ones(9), t=np.delete(np.arange(10.0), 6)),
-        "'t', sample 6: a step of 2 s",
+        lambda p: np.savez(p, a=np.ones(9), t=np.delete(np.arange(10.0) / 4, 6)),
+        "'t', sample 6: a step of 0.5 s",
     ),
     "times too few": ("a.npz", lambda p: np.savez(p, a=np.ones(9), t=np.arange(8.0)), "8 times for 9 samples"),
     "a nan": (

@@ -99,7 +99,7 @@ def test_wav_whole_numbers_as_parts_of_full_scale(bits: int, tmp_path: Path) -> 
     [
         ("a,b\n1,2\n3,4\n", ("a", "b"), (None, None), None, (1, 3)),
         ("a (m/s^2);b [kN]\n1,5;2\n3;4\n", ("a", "b"), ("m/s^2", "kN"), None, (1.5, 3)),
-        ("t;a\n0,00;1\n0,25;2\n0,50;3\n", ("a",), (None,), 4.0, (1, 2, 3)),
+        ("t [s];a\n0,00;1\n0,25;2\n0,50;3\n", ("a",), (None,), 4.0, (1, 2, 3)),
         ("Time [ms]\ta [g]\n0\t1\n2\t2\n4\t3\n", ("a",), ("g",), 500.0, (1, 2, 3)),
         ("time_ms,a\n10,1\n12,2\n14,3\n", ("a",), (None,), 500.0, (1, 2, 3)),
         ("a,b\n[m/s2],[V]\n1,2\n3,4\n", ("a", "b"), ("m/s2", "V"), None, (1, 3)),

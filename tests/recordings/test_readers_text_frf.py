@@ -51,9 +51,14 @@ HEADER = "frequency;sensor;force;real;imaginary;coherence"
         ([HEADER, *rows("parts")[:-1]], "slab < 5.76: does not have the frequencies of rail@8.64 < 3.20"),
         ([HEADER.replace("imaginary", "phase"), *rows("parts")], "no column of imaginary parts"),
         ([HEADER.replace("sensor", "where"), *rows("parts")], "no column of sensors"),
-        ([HEADER.replace("frequency", "frequency [kHz]"), *rows("parts")], "frequencies must be in Hz"),
+        ([HEADER.replace("frequency", "frequency [rpm]"), *rows("parts")], "frequencies must be in Hz"),
         ([HEADER, *rows("parts"), *rows("parts")[:3]], "rail@8.64"),
         ([HEADER, *rows("parts")[:2], "30;rail@8.64;3.20;x;1;0.9", *rows("parts")[3:]], "not a number"),
+        (
+            [HEADER.replace("real;imaginary", "real [mm/N];imaginary [m/N]"), *rows("parts")],
+            "'imaginary': the file says",
+        ),
+        ([HEADER.replace("real;imaginary", "magnitude;phase"), *rows("polar")], "degrees or radians"),
         ([HEADER, *[row.replace("0.9", "1.9") for row in rows("parts")]], "coherence"),
     ],
 )
@@ -62,3 +67,12 @@ def test_what_cannot_be_used_is_said(tmp_path: Path, lines: list[str], said: str
     path.write_text("\n".join(lines) + "\n")
     with pytest.raises(InputError, match=said):
         read_frf(path)
+
+
+def test_a_coherence_in_percent(tmp_path: Path) -> None:
+    path = tmp_path / "frf.csv"
+    lines = [HEADER.replace("coherence", "coherence [%]"), *rows("parts")]
+    path.write_text("\n".join(lines) + "\n")
+    coherence = read_frf(path).coherence
+    assert coherence is not None
+    np.testing.assert_allclose(coherence, 0.009)

@@ -31,7 +31,7 @@ def header(
         "NONE",
         f"{function:5d}{0:10d}{0:5d}{0:10d} {'rail':<10s}{node:10d}{way:4d} {'rail':<10s}{7:10d}{-3:4d}",
         f"{kind:10d}{count:10d}{int(even):10d}{start:13.5E}{step:13.5E}{0.0:13.5E}",
-        f"{axis:10d}{0:5d}{0:5d}{0:5d} {'NONE':<20s} {'Hz':<20s}",
+        f"{axis:10d}{0:5d}{0:5d}{0:5d} {'NONE':<20s} {'s' if axis == 17 else 'Hz':<20s}",
         f"{12:10d}{0:5d}{0:5d}{0:5d} {'NONE':<20s} {'m/s^2':<20s}",
         f"{13:10d}{0:5d}{0:5d}{0:5d} {'NONE':<20s} {'N':<20s}",
         f"{0:10d}{0:5d}{0:5d}{0:5d} {'NONE':<20s} {'NONE':<20s}",

@@ -16,6 +16,8 @@ from permway.errors import InputError
 from permway.recordings.campaign_parts import Condition, Record
 from permway.recordings.campaign_welch import cross_spectra_of
 from permway.recordings.readers import read_frf, time_blocks
+from permway.recordings.record import FrfRecord
+from permway.recordings.units import check_same
 from permway.response.receptance import frequency_coordinate
 
 if TYPE_CHECKING:
@@ -156,10 +158,18 @@ def in_band(frequency_Hz: Reals, record: Record) -> np.ndarray[tuple[int], np.dt
 
 
 def _frf(campaign: Campaign, record: Record) -> xr.Dataset:
-    file = read_frf(campaign.path(record), format=record.format, part=record.part)
+    sensors, points = list(record.responses), list(record.references)
+    file = read_frf(
+        campaign.path(record),
+        responses=sensors,
+        references=points,
+        format=record.format,
+        part=record.part,
+        hints=record.hints,
+        keep_nonfinite=True,
+    )
     frequency = np.asarray(file.frequency_Hz, dtype=np.float64)
     used = in_band(frequency, record)
-    sensors, points = list(record.responses), list(record.references)
     pairs = {pair: i for i, pair in enumerate(zip(file.responses, file.references, strict=True))}
     at = np.full((len(sensors), len(points)), -1, dtype=np.int64)
     for i, sensor in enumerate(sensors):
@@ -177,6 +187,8 @@ def _frf(campaign: Campaign, record: Record) -> xr.Dataset:
             if near:
                 remedy = f"did you mean {near[0]!r}? {remedy}"
             raise InputError("the file has no such label", where=f"{key}.{label}", remedy=remedy)
+    file.of(sensors, points).check_finite(used)
+    _check_units(campaign, record, file, at)
     there = (at >= 0)[:, :, None]
 
     def spread(values: np.ndarray) -> np.ndarray:
@@ -211,6 +223,34 @@ def _frf(campaign: Campaign, record: Record) -> xr.Dataset:
     return data
 
 
+def _check_units(campaign: Campaign, record: Record, file: FrfRecord, at: np.ndarray) -> None:
+    """Refuse a file whose unit is not that of the sensor over that of the force point.
+
+    Raises
+    ------
+    InputError
+        With the pair, both units, and the key that would settle it.
+    """
+    for i, (label, name) in enumerate(record.responses.items()):
+        for j, (struck, point) in enumerate(record.references.items()):
+            found = None if at[i, j] < 0 else file.unit_of(int(at[i, j]))
+            if found is None:
+                continue
+            said = f"({campaign.sensor(name).unit})/{campaign.point(point).unit}"
+            where = f"{record.file}: {label} / {struck}"
+            try:
+                check_same(found, said, where=where)
+            except InputError as error:
+                what = f"{error.what}: the sensor and the force point make it {said!r}"
+                what = (
+                    what
+                    if record.unit is None
+                    else f"the record states {found!r}, sensor and force point {said!r}"
+                )
+                remedy = f'correct the unit of the sensor or of the point; if the file is wrong, unit = "{said}"'
+                raise InputError(what, where=where, value=found, remedy=remedy) from error
+
+
 def log_variance(coherence: Reals, averages: float) -> Reals:
     """Variance of the log magnitude (nepers) and of the phase (rad) of an H1 estimate, shape of the coherence.
 
@@ -231,6 +271,7 @@ def _csd(campaign: Campaign, record: Record) -> xr.Dataset:
         sampling_Hz=record.sampling_Hz,
         format=record.format,
         part=record.part,
+        hints=record.hints,
     )
     data = cross_spectra_of(
         blocks,

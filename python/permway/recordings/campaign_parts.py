@@ -10,9 +10,11 @@ import numpy as np
 from pydantic import BeforeValidator, Field, PositiveFloat, model_validator
 
 from permway.arrays import Reals
+from permway.errors import InputError
 from permway.model.faults import fault
 from permway.model.irregularity_spectra import FASTEST_M_PER_S
 from permway.recordings.campaign_excitation import Dips, Push, Rolling, RoughBand, TrackLines, WheelLines
+from permway.recordings.readers.hints import Hints
 from permway.records import FrozenModel, Number
 
 Statistic = Literal["frf", "csd", "psd", "bands", "decay", "transmissibility", "material"]
@@ -100,6 +102,9 @@ Band = Annotated[tuple[Number, Number], BeforeValidator(_band)]
 """From and to, Hz."""
 
 
+_HINTS = ("header_row", "skip_rows", "time_column", "decimal", "encoding", "unit", "axes")
+
+
 class Record(FrozenModel):
     """A file, what is in it, and what is made of it.
 
@@ -125,7 +130,11 @@ class Record(FrozenModel):
     band_Hz : (low, high), optional
         What of the record is used; by default all.
     sampling_Hz : float, optional
-        Of a record in time whose file does not say it; if the file does, the two must agree.
+        Of a record in time whose file does not say it. It wins over a remark in a text; with times or a rate of
+        the file's own the two must agree, but for `time_column = "none"`.
+    header_row, skip_rows, time_column, decimal, encoding, unit, axes
+        What the file does not say or says wrongly, and wins over it; see
+        :class:`permway.recordings.readers.hints.Hints`.
     segment_s : float
         Length of a Welch segment, which for Hann's window sets the lines apart by its inverse.
     interpolated_Hz : sequence of (from, step), optional
@@ -165,10 +174,23 @@ class Record(FrozenModel):
     loss_file: str | None = None
     law: str | None = None
     within_dB: PositiveFloat | None = None
+    header_row: int | None = Field(default=None, ge=0, strict=True)
+    skip_rows: int | None = Field(default=None, ge=0, strict=True)
+    time_column: str | None = Field(default=None, min_length=1)
+    decimal: Literal[".", ","] | None = None
+    encoding: str | None = None
+    unit: str | dict[str, str] | None = None
+    axes: tuple[str, str, str] | None = None
+
+    @property
+    def hints(self) -> Hints:
+        """What is said of how its file is read."""
+        return Hints(**{key: getattr(self, key) for key in _HINTS})
 
     @model_validator(mode="after")
     def _check(self) -> Record:
         frf = self.statistic == "frf"
+        self._check_hints()
         if frf and self.channels:
             raise fault("an FRF has responses and references", "channels")
         if not frf and (self.responses or self.references):
@@ -197,6 +219,18 @@ class Record(FrozenModel):
             if getattr(self, key) is not None and self.statistic not in ("csd", "psd"):
                 raise fault('goes with statistic "csd" or "psd"', key)
         return self
+
+    def _check_hints(self) -> None:
+        try:
+            _ = self.hints
+        except InputError as error:
+            raise fault(f"{error.what}; {error.remedy}", error.where, value=error.value) from error
+        for key in _HINTS:
+            wanted = (
+                ("frf",) if key == "axes" else ("csd", "psd") if key == "time_column" else ("frf", "csd", "psd")
+            )
+            if getattr(self, key) is not None and self.statistic not in wanted:
+                raise fault(f"goes with statistic {' or '.join(map(repr, wanted))}", key)
 
     @property
     def _needs_channels(self) -> bool:

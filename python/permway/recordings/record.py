@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -13,6 +14,12 @@ from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 
 Name = TypeVar("Name")
+
+COHERENCE_OFF = 1e-4
+"""A coherence of one may stand as so much more: printed with few digits, or summed in single precision.
+
+Half of it refuses none of the files met; twice of it neither. A percentage is 50 times too large or more.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +119,9 @@ class FrfRecord:
         As found.
     coherence : ndarray, shape (pair, frequency), or None
     unit : str or None
-        Response over reference, as "(m/s^2)/N"; None if the file has none.
+        Response over reference, as "(m/s^2)/N"; None if the file has none, or pairs differ.
+    units : tuple of (str or None), or None
+        Of each pair, where the file states them pair by pair.
     averages : int or None
         None if the file does not say.
     source : str
@@ -125,6 +134,7 @@ class FrfRecord:
     values: Complexes
     coherence: Reals | None = None
     unit: str | None = None
+    units: tuple[str | None, ...] | None = None
     averages: int | None = None
     source: str = ""
 
@@ -153,12 +163,92 @@ class FrfRecord:
         _check_shape(self.values, wanted, where, "(pair, frequency)")
         if self.coherence is not None:
             _check_shape(self.coherence, wanted, where, "coherence (pair, frequency)")
-            self._check_coherence(where)
 
-    def _check_coherence(self, where: str) -> None:
-        assert self.coherence is not None
-        # Printed with few digits, a coherence of one may stand as slightly more.
-        bad = np.argwhere((self.coherence < -1e-6) | (self.coherence > 1.0 + 1e-6))
+    def unit_of(self, row: int) -> str | None:
+        """Unit of a pair, by its row."""
+        return self.unit if self.units is None else self.units[row]
+
+    def of(self, responses: Sequence[str] | None, references: Sequence[str] | None) -> FrfRecord:
+        """The pairs of these labels alone; all, if there is no such pair."""
+        rows = [
+            row
+            for row, (response, reference) in enumerate(zip(self.responses, self.references, strict=True))
+            if (responses is None or response in responses) and (references is None or reference in references)
+        ]
+        if not rows or len(rows) == len(self.responses):
+            return self
+        units = None if self.units is None else tuple(self.units[row] for row in rows)
+        return replace(
+            self,
+            responses=tuple(self.responses[row] for row in rows),
+            references=tuple(self.references[row] for row in rows),
+            values=self.values[rows],
+            coherence=None if self.coherence is None else self.coherence[rows],
+            unit=self.unit if units is None else units[0] if len(set(units)) == 1 else None,
+            units=units,
+        )
+
+    def with_unit(self, unit: str | None) -> FrfRecord:
+        """The same in a unit that was stated, if one was."""
+        return self if unit is None else replace(self, unit=unit, units=None)
+
+    def check_ratio(self) -> None:
+        """Refuse levels: decibels have neither a phase nor a size without their reference.
+
+        Raises
+        ------
+        InputError
+            With the first pair in decibels.
+        """
+        for row in range(len(self.responses)):
+            unit = self.unit_of(row)
+            if unit is not None and re.search(r"(?<![A-Za-z])dB(?![A-Za-z])", unit):
+                where = f"{self.source or 'FRF'}: {self.responses[row]} / {self.references[row]}"
+                remedy = "export real and imaginary part, or magnitude and phase, in a plain unit"
+                raise InputError(
+                    "a frequency response in decibels is no ratio", where=where, value=unit, remedy=remedy
+                )
+
+    def check_finite(self, used: NDArray[np.bool_]) -> None:
+        """Refuse numbers that are not finite on the lines that are used, shape (frequency,).
+
+        Raises
+        ------
+        InputError
+            With pair and frequency of the first, and their number.
+        """
+        tables = {"the response": self.values} | (
+            {} if self.coherence is None else {"the coherence": self.coherence}
+        )
+        for name, table in tables.items():
+            bad = ~np.isfinite(table) & used
+            if name == "the coherence":
+                # A pair without a coherence has NaN on all lines.
+                bad &= ~np.isnan(table).all(axis=1, keepdims=True)
+            if bad.any():
+                row, line = (int(i) for i in np.argwhere(bad)[0])
+                where = f"{self.source or 'FRF'}: {self.responses[row]} / {self.references[row]}"
+                raise InputError(
+                    f"{name} is empty or not a finite number ({int(bad.sum())} such here)",
+                    where=f"{where}, {self.frequency_Hz[line]:g} Hz",
+                    value=complex(table[row, line]) if np.iscomplexobj(table) else float(table[row, line]),
+                    remedy="measure it again, or leave the line out of the record's band_Hz",
+                )
+
+    def check_coherence(self) -> None:
+        """Refuse a coherence that is none.
+
+        Raises
+        ------
+        InputError
+            With pair, frequency and value of the first beyond 0 and 1.
+        """
+        if self.coherence is None:
+            return
+        where = self.source or "FRF"
+        off = (self.coherence < -COHERENCE_OFF) | (self.coherence > 1.0 + COHERENCE_OFF)
+        # Nothing uses 0 Hz, where programs divide by what is not there.
+        bad = np.argwhere(off & (self.frequency_Hz > 0.0))
         if len(bad):
             row, line = (int(i) for i in bad[0])
             raise InputError(

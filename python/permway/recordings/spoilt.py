@@ -76,6 +76,7 @@ def _spoilt(campaign: Campaign, record: Record) -> Iterator[Spoilt]:
         sampling_Hz=record.sampling_Hz,
         format=record.format,
         part=record.part,
+        hints=record.hints,
     )
     errors: dict[tuple[str, str], list[Finding]] = {}
     for block in blocks:

@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 from permway.errors import InputError
 
-Format = Literal["text", "uff", "mat", "mat73", "npz", "hdf5", "netcdf", "netcdf3", "tdms", "wav"]
+Format = Literal["text", "uff", "mat", "mat73", "npz", "hdf5", "netcdf", "netcdf3", "tdms", "wav", "lvm"]
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _SUFFIXES: dict[str, tuple[Format, ...]] = {
@@ -20,6 +20,7 @@ _SUFFIXES: dict[str, tuple[Format, ...]] = {
     **dict.fromkeys((".nc", ".nc4", ".cdf"), ("netcdf", "netcdf3")),
     ".tdms": ("tdms",),
     ".wav": ("wav",),
+    ".lvm": ("lvm",),
 }
 _UNREAD: tuple[tuple[bytes, str, str], ...] = (
     (b"\x93NUMPY", "a bare NumPy array, without names and units", "save it with numpy.savez and name its parts"),
@@ -29,12 +30,12 @@ _UNREAD: tuple[tuple[bytes, str, str], ...] = (
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet", "export it as CSV"),
     (b"RF64", "a WAV file of more than 4 GB (RF64)", "export it as HDF5, or in parts"),
     (b"RIFX", "a big-endian WAV file", "export it as an ordinary WAV file"),
-    (b"\xff\xfe", "text in UTF-16", "export it in UTF-8"),
-    (b"\xfe\xff", "text in UTF-16", "export it in UTF-8"),
+    (b"\xff\xfe", "text in UTF-16", 'export it in UTF-8, or say in the record encoding = "utf-16"'),
+    (b"\xfe\xff", "text in UTF-16", 'export it in UTF-8, or say in the record encoding = "utf-16"'),
 )
 
 
-def recognise(source: Path, said: str | None = None) -> Format:
+def recognise(source: Path, said: str | None = None, encoding: str | None = None) -> Format:
     """The format of a file.
 
     Parameters
@@ -42,6 +43,8 @@ def recognise(source: Path, said: str | None = None) -> Format:
     source : Path
     said : str, optional
         The format as the caller says it; the content must not be plainly another.
+    encoding : str, optional
+        Character set of a text: one in UTF-16 has zero bytes, and is a text only if that was said.
 
     Raises
     ------
@@ -52,6 +55,8 @@ def recognise(source: Path, said: str | None = None) -> Format:
         raise InputError(
             "no format of this name", where="format", value=said, remedy=f"use one of {get_args(Format)}"
         )
+    if encoding is not None and encoding.lower().replace("_", "-").startswith(("utf-16", "utf-32")):
+        return "text"
     found = _by_content(source)
     wanted: tuple[str, ...] = _SUFFIXES.get(source.suffix.lower(), ()) if said is None else (said,)
     if said in ("hdf5", "netcdf", "mat73") and found in ("hdf5", "netcdf", "mat73"):
@@ -91,6 +96,8 @@ def _by_content(source: Path) -> Format:
         return "netcdf3"
     if head[126:128] in (b"IM", b"MI") and head[124:128] in (b"\x00\x01IM", b"\x01\x00MI"):
         return "mat"
+    if head.removeprefix(b"\xef\xbb\xbf").startswith(b"LabVIEW Measurement"):
+        return "lvm"
     if re.match(rb"\s*-1[ \t]*\r?\n\s*\d+", head):
         return "uff"
     if b"\x00" in head or len(re.findall(rb"[\x01-\x08\x0e-\x1f]", head)) > len(head) // 50:
@@ -98,6 +105,6 @@ def _by_content(source: Path) -> Format:
             "the content is no format that is read here",
             where=str(source),
             value=head[:16],
-            remedy="give UFF, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS or WAV (MAT of version 4: save it as -v7)",
+            remedy="give UFF, MAT (version 4: save as -v7), CSV, TSV, NPZ, HDF5, NetCDF, TDMS, LVM or WAV",
         )
     return "text"

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from permway.errors import InputError
-from permway.recordings.readers import hdf5, mat, netcdf3, npz, table, tdms, text, text_frf, uff55, uff58, wav
+from permway.recordings.readers import hdf5, lvm, mat, netcdf3, npz, table, tdms, text, text_frf, uff55, uff58, wav
 from permway.recordings.readers.formats import Format, recognise
+from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES, check_size, existing_file, foreign
 from permway.recordings.readers.store import as_time
 from permway.recordings.readers.store_frf import as_frf, as_table
 from permway.recordings.readers.stored import Store
 from permway.recordings.readers.timefile import (
     TimeFile,
+    Timing,
     agreed_rate,
+    agreed_timing,
     agreed_units,
     check_channels,
     check_finite,
@@ -36,6 +40,7 @@ def read_time(
     samples: tuple[int, int] | None = None,
     format: str | None = None,  # noqa: A002 - the word for it
     part: str | None = None,
+    hints: Hints = NO_HINTS,
     keep_nonfinite: bool = False,
     max_bytes: int = MOST_BYTES,
 ) -> TimeRecord:
@@ -44,9 +49,9 @@ def read_time(
     Parameters
     ----------
     path : path
-        UFF 58 or 58b, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS or WAV.
+        UFF 58 or 58b, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS, LVM or WAV.
     channels : sequence of str, optional
-        Which, in which order; by default all.
+        Which, in which order; by default all. Only these have to be sound, and to go together.
     units : str or dict of channel to str, optional
         As known beside the file: taken where the file has none, and refused where its own means another.
     sampling_Hz : float, optional
@@ -57,6 +62,8 @@ def read_time(
         One of :data:`permway.recordings.readers.formats.Format`; by default told from content and name.
     part : str, optional
         Group of a TDMS or HDF5 file, or array of samples, if there are several.
+    hints : Hints
+        What is known of the file and wins over what it says.
     keep_nonfinite : bool
         Keep samples that are not finite, to look at them; else they are refused.
     max_bytes : int
@@ -71,12 +78,13 @@ def read_time(
     InputError
         For whatever in the file cannot be used or contradicts, with channel, line or sample, value and remedy.
     """
-    with _opened(path, format, part, keep_nonfinite, max_bytes) as (file, kind):
+    with opened(path, format, part, hints, keep_nonfinite, max_bytes) as (file, kind):
         rows = rows_of(file, channels)
-        first, stop = _range(file, samples)
+        timing = _timing(file, kind, rows, sampling_Hz)
+        first, stop = _range(timing, samples)
         check_size(len(rows) * (stop - first), file.source, max_bytes=max_bytes)
-        rate, said = agreed_rate(file, sampling_Hz), agreed_units(file, rows, units)
-        return _record(file, kind, rows, said, rate, first, stop, keep_nonfinite)
+        said = agreed_units(file, rows, units, hints)
+        return _record(file, kind, rows, said, timing, first, stop, keep_nonfinite)
 
 
 def time_blocks(
@@ -88,6 +96,7 @@ def time_blocks(
     sampling_Hz: float | None = None,
     format: str | None = None,  # noqa: A002 - the word for it
     part: str | None = None,
+    hints: Hints = NO_HINTS,
     keep_nonfinite: bool = False,
 ) -> Iterator[TimeRecord]:
     """Read a record in time in blocks, for records that memory does not hold. MAT of version 5 is read as a whole.
@@ -109,20 +118,25 @@ def time_blocks(
     """
     if isinstance(block_samples, bool) or not isinstance(block_samples, int) or block_samples < 1:
         raise InputError("must be a whole number above 0", where="block_samples", value=block_samples)
-    with _opened(path, format, part, keep_nonfinite, MOST_BYTES) as (file, kind):
+    with opened(path, format, part, hints, keep_nonfinite, MOST_BYTES) as (file, kind):
         rows = rows_of(file, channels)
-        rate, said = agreed_rate(file, sampling_Hz), agreed_units(file, rows, units)
-        check_size(len(rows) * min(block_samples, file.samples), file.source)
-        for first in range(0, file.samples, block_samples):
-            stop = min(first + block_samples, file.samples)
-            yield _record(file, kind, rows, said, rate, first, stop, keep_nonfinite)
+        timing = _timing(file, kind, rows, sampling_Hz)
+        said = agreed_units(file, rows, units, hints)
+        check_size(len(rows) * min(block_samples, timing.samples), file.source)
+        for first in range(0, timing.samples, block_samples):
+            stop = min(first + block_samples, timing.samples)
+            yield _record(file, kind, rows, said, timing, first, stop, keep_nonfinite)
 
 
 def read_frf(
     path: str | Path,
     *,
+    responses: Sequence[str] | None = None,
+    references: Sequence[str] | None = None,
     format: str | None = None,  # noqa: A002 - the word for it
     part: str | None = None,
+    hints: Hints = NO_HINTS,
+    keep_nonfinite: bool = False,
     max_bytes: int = MOST_BYTES,
 ) -> FrfRecord:
     """Read frequency responses, with their coherence where the file has it.
@@ -132,10 +146,17 @@ def read_frf(
     path : path
         UFF 58, 58b or 55, MAT, NPZ, HDF5 or NetCDF; or a table of text with a row for each frequency, sensor and
         point.
+    responses, references : sequence of str, optional
+        Labels: only pairs of these are read, and have to be sound; by default all. If no pair has them, all are
+        given.
     format : str, optional
         As of :func:`read_time`.
     part : str, optional
-        Group of an HDF5 file, or array, if there are several.
+        Group of an HDF5 file, struct of a MAT file, or array, if there are several.
+    hints : Hints
+        As of :func:`read_time`.
+    keep_nonfinite : bool
+        Keep numbers that are not finite; else they are refused but at 0 Hz, which nothing uses.
     max_bytes : int
         Most that they may take in memory.
 
@@ -145,21 +166,30 @@ def read_frf(
         For whatever in the file cannot be used or contradicts, with pair, line, value and remedy.
     """
     source = existing_file(path)
-    kind = recognise(source, format)
+    kind = recognise(source, format, hints.encoding)
     with foreign(source, kind):
         if kind == "uff":
-            reader = uff58.read_frf if 58 in _datasets(source) else uff55.read_frf
-            record = reader(source, max_bytes=max_bytes)
+            if 58 in _datasets(source):
+                record = uff58.read_frf(
+                    source, responses=responses, references=references, hints=hints, max_bytes=max_bytes
+                )
+            else:
+                record = uff55.read_frf(source, max_bytes=max_bytes)
         elif kind in _STORES:
             with _store(source, kind, part, max_bytes) as (store, array):
-                record = as_frf(store, array, max_bytes=max_bytes)
+                record = as_frf(store, array, hints=hints, max_bytes=max_bytes)
         elif kind == "text":
-            record = text_frf.read_frf(source, max_bytes=max_bytes)
+            record = text_frf.read_frf(source, hints=hints, max_bytes=max_bytes)
         else:
             remedy = "give UFF, MAT, NPZ, HDF5, NetCDF, or a table of text"
             raise InputError(
                 "frequency responses are not read from this format", where=str(source), value=kind, remedy=remedy
             )
+    record = record.of(responses, references).with_unit(hints.unit if isinstance(hints.unit, str) else None)
+    record.check_ratio()
+    record.check_coherence()
+    if not keep_nonfinite:
+        record.check_finite(record.frequency_Hz > 0.0)
     return record
 
 
@@ -169,6 +199,7 @@ def read_table(
     texts: Sequence[str] = (),
     format: str | None = None,  # noqa: A002 - the word for it
     part: str | None = None,
+    hints: Hints = NO_HINTS,
     max_bytes: int = MOST_BYTES,
 ) -> TableRecord:
     """Read a table: decay rates in bands, moduli, mode shapes.
@@ -179,7 +210,7 @@ def read_table(
         CSV, TSV, MAT, NPZ, HDF5, NetCDF, or UFF 55.
     texts : sequence of str
         Columns of a text table that are texts though they look like numbers.
-    format, part, max_bytes
+    format, part, hints, max_bytes
         As of :func:`read_frf`.
 
     Raises
@@ -188,10 +219,10 @@ def read_table(
         For whatever in the file cannot be used, with line and column, value and remedy.
     """
     source = existing_file(path)
-    kind = recognise(source, format)
+    kind = recognise(source, format, hints.encoding)
     with foreign(source, kind):
         if kind == "text":
-            return table.read_text_table(source, texts=texts, max_bytes=max_bytes)
+            return table.read_text_table(source, texts=texts, hints=hints, max_bytes=max_bytes)
         if kind == "uff":
             return uff55.read_shapes(source, max_bytes=max_bytes)
         if kind in _STORES:
@@ -203,29 +234,50 @@ def read_table(
 
 
 @contextmanager
-def _opened(
-    path: str | Path, said: str | None, part: str | None, keep: bool, max_bytes: int
+def opened(
+    path: str | Path, said: str | None, part: str | None, hints: Hints, keep: bool, max_bytes: int
 ) -> Iterator[tuple[TimeFile, Format]]:
+    """A file of records in time, opened, and its format.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_time`.
+    """
     source = existing_file(path)
-    kind = recognise(source, said)
+    kind = recognise(source, said, hints.encoding)
     with ExitStack() as stack:
         # What a reader raises while it opens or reads is made one clear error; what is raised by whoever uses the
         # record between blocks is not its concern, and passes.
         with foreign(source, kind):
-            opened: AbstractContextManager[TimeFile]
+            file: TimeFile
             if kind in _STORES:
                 store, array = stack.enter_context(_store(source, kind, part, max_bytes))
-                file = as_time(store, array)
+                file = as_time(store, array, hints)
             else:
+                entered: AbstractContextManager[TimeFile]
                 if kind == "text":
-                    opened = text.open_time(source, keep)
+                    entered = text.open_time(source, keep, hints)
+                elif kind == "lvm":
+                    entered = lvm.open_time(source, hints, max_bytes=max_bytes)
                 elif kind == "uff":
-                    opened = uff58.open_time(source)
+                    entered = uff58.open_time(source, hints, keep=keep)
                 else:
-                    opened = tdms.open_time(source, group=part) if kind == "tdms" else wav.open_time(source)
-                file = stack.enter_context(opened)
+                    entered = (
+                        tdms.open_time(source, group=part, hints=hints)
+                        if kind == "tdms"
+                        else wav.open_time(source)
+                    )
+                file = stack.enter_context(entered)
             check_channels(file)
         yield file, kind
+
+
+def _timing(file: TimeFile, kind: Format, rows: list[int], said: float | None) -> Timing:
+    """The timing of the channels asked for, its rate as file and caller say it."""
+    with foreign(Path(file.source), kind):
+        timing = agreed_timing(file, rows)
+    return replace(timing, sampling_Hz=agreed_rate(file, timing, said))
 
 
 @contextmanager
@@ -251,7 +303,7 @@ def _record(
     kind: Format,
     rows: list[int],
     units: tuple[str | None, ...],
-    rate: float | None,
+    timing: Timing,
     first: int,
     stop: int,
     keep: bool,
@@ -259,8 +311,8 @@ def _record(
     with foreign(Path(file.source), kind):
         values = file.read(rows, first, stop)
     if not keep:
-        check_finite(file, rows, values, first)
-    start = file.start_s
+        check_finite(file, rows, values, first, timing)
+    rate, start = timing.sampling_Hz, timing.start_s
     if first and rate is not None:
         start = (start or 0.0) + first / rate
     return TimeRecord(
@@ -274,12 +326,12 @@ def _record(
     )
 
 
-def _range(file: TimeFile, samples: tuple[int, int] | None) -> tuple[int, int]:
+def _range(timing: Timing, samples: tuple[int, int] | None) -> tuple[int, int]:
     if samples is None:
-        return 0, file.samples
+        return 0, timing.samples
     whole = len(samples) == 2 and all(isinstance(x, int) and not isinstance(x, bool) for x in samples)
-    if not whole or not 0 <= samples[0] < samples[1] <= file.samples:
-        remedy = f"give first and stop within 0 and {file.samples}"
+    if not whole or not 0 <= samples[0] < samples[1] <= timing.samples:
+        remedy = f"give first and stop within 0 and {timing.samples}"
         raise InputError("no range of samples of this record", where="samples", value=samples, remedy=remedy)
     return samples
 

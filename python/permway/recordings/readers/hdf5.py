@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from permway.errors import InputError
 from permway.recordings.readers import hdf5_trial
 from permway.recordings.readers.limits import MOST_CHANNELS
-from permway.recordings.readers.stored import MOST_TEXT_BYTES, Store, Variable
+from permway.recordings.readers.packed import unpacked
+from permway.recordings.readers.stored import MOST_TEXT_BYTES, OBJECT, Store, Variable, decoded, unread
 
 TRIAL_S = 2.0
 """Processor time that going through a file may take, s; and a second more for every :data:`BYTES_PER_S` of it."""
@@ -110,6 +111,8 @@ def _datasets(root: Any, source: Path) -> dict[str, Any]:
             if count > _MOST_OBJECTS:
                 raise InputError("more objects than can be", where=str(source), value=count)
             item = group[name]
+            if isinstance(item, h5py.Group) and "MATLAB_sparse" in item.attrs:
+                continue
             if isinstance(item, h5py.Group):
                 address = h5py.h5o.get_info(item.id).addr
                 if address not in seen:
@@ -130,33 +133,54 @@ def _variable(data: Any, name: str, where: str) -> Variable | None:
     attributes = _attributes(data)
     matlab = str(attributes.get("MATLAB_class", ""))
     if data.external or data.is_virtual:
-        raise InputError("its values lie in another file", where=where, remedy="copy them into one")
+        return unread(name, "its values lie in another file: copy them into one")
     if data.shape is None or b"This is a netCDF dimension but not a netCDF variable" in _raw_name(data):
         return None
     kind = _kind(data.dtype)
+    if "MATLAB_empty" in data.attrs and matlab not in ("char", "cell"):
+        return None
     if matlab == "char":
-        return Variable(name, (1,), "text", lambda _: np.array([_characters(data)]), attributes)
+        return Variable(name, (_rows(data),), "text", lambda _: _characters(data), attributes)
     if matlab in ("struct", "logical", "function_handle") or matlab.startswith("containers"):
         return None
     if matlab == "cell":
         return Variable(name, (int(data.size),), "text", lambda _: _cells(data, where), attributes)
+    if "MATLAB_object_decode" in data.attrs or (matlab and kind is None):
+        return unread(name, OBJECT)
     if kind is None:
-        raise InputError(
-            "neither numbers nor texts",
-            where=where,
-            value=str(data.dtype),
-            remedy="save plain arrays and texts (of MATLAB's strings: cellstr)",
-        )
+        return unread(name, f"neither numbers nor texts ({data.dtype}): save plain arrays and texts")
     if data.size and kind != "text" and data.id.get_storage_size() == 0:
-        raise InputError("announced, but never written", where=where, value=data.shape, remedy="record it again")
+        return unread(name, f"announced, but never written ({data.shape}): record it again")
+    # MATLAB counts its axes from the fastest one, HDF5 from the slowest.
+    turned = bool(matlab) and len(data.shape) > 1
 
     def read(slices: tuple[slice, ...]) -> NDArray[np.generic]:
-        part = data[slices] if data.shape else data[()]
-        return _plain(np.asarray(part), kind)
+        part = data[slices[::-1] if turned else slices] if data.shape else data[()]
+        plain = _plain(np.asarray(part), kind)
+        return plain.transpose() if turned else plain
 
     step = float(np.finfo(data.dtype).eps) if data.dtype.kind == "f" else 2.0**-52
-    shape = tuple(int(n) for n in data.shape)
-    return Variable(name, shape, kind, read, attributes, _axes(data), step, data.dtype.itemsize)
+    order = -1 if turned else 1
+    shape = tuple(int(n) for n in data.shape)[::order]
+    variable = Variable(
+        name,
+        shape,
+        kind,
+        read,
+        attributes,
+        _axes(data)[::order],
+        step,
+        data.dtype.itemsize,
+        ordered=bool(matlab),
+        resolution=1.0 if data.dtype.kind in "iu" else 0.0,
+    )
+    return unpacked(variable, where, fill=None if kind != "real" else _fill(data))
+
+
+def _fill(data: Any) -> float | None:
+    """What the file writes where nothing was written, if that is no plain zero."""
+    fill = data.fillvalue
+    return None if fill is None or not np.isfinite(fill) or fill == 0 else float(fill)
 
 
 def _kind(dtype: np.dtype[np.generic]) -> str | None:
@@ -185,14 +209,24 @@ def _plain(array: NDArray[np.generic], kind: str) -> NDArray[np.generic]:
         fields: Any = array
         return np.asarray(fields[real] + 1j * fields[imag])
     if kind == "text":
-        flat = [x.decode("utf-8", "replace") if isinstance(x, bytes) else str(x) for x in array.ravel()]
+        flat = [decoded(x) if isinstance(x, bytes) else str(x) for x in array.ravel()]
         return np.array(flat, dtype=str).reshape(array.shape)
     return array
 
 
-def _characters(data: Any) -> str:
-    codes = np.ravel(np.asarray(data[()]))[: 64 * MOST_CHANNELS]
-    return "" if "MATLAB_empty" in data.attrs else "".join(chr(int(code)) for code in codes)
+def _rows(data: Any) -> int:
+    """Rows of MATLAB's characters: its first axis, which is the last here."""
+    return 1 if "MATLAB_empty" in data.attrs or data.ndim < 2 else max(int(data.shape[-1]), 1)
+
+
+def _characters(data: Any) -> NDArray[np.str_]:
+    """Rows of characters."""
+    if "MATLAB_empty" in data.attrs:
+        return np.array([""])
+    if data.size > 64 * MOST_CHANNELS:
+        raise InputError("more characters than names have", where=str(data.name), value=data.shape)
+    codes = np.asarray(data[()]).reshape(-1, _rows(data))
+    return np.array(["".join(chr(int(code)) for code in row).rstrip() for row in codes.transpose()])
 
 
 def _cells(data: Any, where: str) -> NDArray[np.str_]:
@@ -203,7 +237,7 @@ def _cells(data: Any, where: str) -> NDArray[np.str_]:
             raise InputError(
                 "a cell array may hold texts only", where=f"{where}{{{index + 1}}}", remedy="save plain arrays"
             )
-        texts.append(_characters(item))
+        texts.append(str(_characters(item)[0]))
     return np.array(texts, dtype=str)
 
 
@@ -236,7 +270,7 @@ def _raw_name(data: Any) -> bytes:
 
 
 def _text(value: object) -> str:
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+    return decoded(value) if isinstance(value, bytes) else str(value)
 
 
 def is_group(source: Path, name: str) -> bool:

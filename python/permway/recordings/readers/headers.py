@@ -5,24 +5,27 @@ from __future__ import annotations
 import re
 
 from permway.errors import InputError
+from permway.recordings.readers.scales import seconds_in, seconds_of
 from permway.units import parse_unit
 
-_TIME_NAMES = {"t", "time", "zeit", "temps", "timestamp", "timestamps", "elapsed", "elapsed time", "rel. time"}
-_TIME_SUFFIX = re.compile(r"(.+)[_ ](s|ms|us|sec|min)", re.IGNORECASE)
+_TIME_NAMES = {
+    "t", "time", "zeit", "temps", "timestamp", "timestamps", "elapsed", "elapsed time", "rel. time",
+    "relative time", "time stamp", "unix time", "epoch", "abs. time", "absolute time"}  # fmt: skip
+_UNIT_NAMES = {
+    "millis",
+    "milliseconds",
+    "micros",
+    "microseconds",
+    "nanoseconds",
+    "seconds",
+    "secs",
+    "msec",
+    "usec",
+}
+_TIME_SUFFIX = re.compile(r"(.+)[_ ](s|ms|us|ns|sec|msec|usec|millis|min)", re.IGNORECASE)
 _NONE = {"", "-", "none", "n/a", "null", "unknown"}
 # In round brackets these are a side or a number of a sensor rather than amperes or hours.
 _NO_UNIT_IN_ROUND = {"A", "h", "C", "V", "K", "N", "g"}
-
-TIME_SECONDS = {
-    "s": 1.0,
-    "sec": 1.0,
-    "seconds": 1.0,
-    "second": 1.0,
-    "ms": 1e-3,
-    "us": 1e-6,
-    "ns": 1e-9,
-    "min": 60.0,
-}
 
 
 def split_header(text: str) -> tuple[str, str | None]:
@@ -41,7 +44,26 @@ def split_header(text: str) -> tuple[str, str | None]:
         and (round_[1] not in _NO_UNIT_IN_ROUND or _names_quantity(round_))
     ):
         return round_[0], clean_unit(round_[1])
-    return text, None
+    comma = re.fullmatch(r"(.*\S),\s+([^,;()\[\]]+)", text)
+    if (
+        comma is not None
+        and is_unit(comma[2])
+        and (comma[2] not in _NO_UNIT_IN_ROUND or comma[2] in ("V", "N", "g"))
+    ):
+        return comma[1], clean_unit(comma[2])
+    # "a / (m/s²)" and "a / mm" as DIN 1313 writes axes, "a in mm"; "t/s" only of times.
+    over = re.fullmatch(r"(.*\S)\s+(?:/|in)\s+\(?([^()]+)\)?", text) or re.fullmatch(
+        r"(t|[Tt]ime|Zeit)/(\S+)", text
+    )
+    if over is not None and is_unit(over[2]):
+        return over[1], clean_unit(over[2])
+    last = text.rpartition(" ")[2]
+    if last != text and re.search(r"[/²^]", last) and is_unit(last):
+        return text, clean_unit(last)
+    # Of "acc [mm/s2] filtered" the unit is known, too; all of it is the name.
+    within: list[tuple[str, str]] = re.findall(r"\[([^\[\]]+)\]|\(([^()]+)\)", text)
+    units = [a or b for a, b in within if is_unit(a) or (is_unit(b) and b.strip() not in _NO_UNIT_IN_ROUND)]
+    return text, clean_unit(units[0]) if len(units) == 1 else None
 
 
 def _round_brackets(text: str) -> tuple[str, str] | None:
@@ -75,15 +97,24 @@ def clean_unit(text: object) -> str | None:
     if not isinstance(text, str):
         return None
     bare = text.strip().strip("\x00").strip()
-    if len(bare) > 1 and bare[0] == "[" and bare[-1] == "]":
-        bare = bare[1:-1].strip()
+    for opening, closing in ("[]", "()"):
+        inner = bare[1:-1]
+        if (
+            len(bare) > 1
+            and bare[0] == opening
+            and bare[-1] == closing
+            and closing not in inner.partition(opening)[0]
+        ):
+            bare = inner.strip()
     return None if bare.lower() in _NONE else bare
 
 
 def is_unit(text: str) -> bool:
-    """Whether a text is a unit that is known, and not a bare number."""
-    if re.fullmatch(r"\s*[\d.]*\s*", text):
+    """Whether a text is a unit that is known; a number before it, as in "100g", is a range and no unit."""
+    if re.match(r"\s*[\d.]+(?!\s*/)", text) or not text.strip():
         return False
+    if seconds_of(text) is not None:
+        return True
     try:
         parse_unit(text)
     except InputError:
@@ -92,31 +123,44 @@ def is_unit(text: str) -> bool:
 
 
 def is_unit_row(cells: list[str]) -> bool:
-    """Whether a row under the header holds the units: each cell a unit or none, one at least."""
+    """Whether a row under the header holds the units.
+
+    Each cell is a unit or none, or half of those that are not empty are, which a row of names never has.
+    """
     bare = [clean_unit(cell) for cell in cells]
-    return any(bare) and all(
-        unit is None or is_unit(unit) or cells[i].strip().startswith("[") for i, unit in enumerate(bare)
-    )
+    said = [i for i, unit in enumerate(bare) if unit is not None]
+    known = [i for i in said if is_unit(bare[i] or "") or cells[i].strip().startswith(("[", "("))]
+    return bool(known) and 2 * len(known) >= len(said)
 
 
-def time_scale(name: str, unit: str | None, where: str) -> float | None:
-    """Seconds in one of a time column's unit; None if the name is not that of a time column.
+def _is_temperature(unit: str) -> bool:
+    try:
+        return parse_unit(unit).quantity == "temperature"
+    except InputError:
+        return False
+
+
+def time_scale(name: str, unit: str | None, where: str) -> tuple[bool, float | None]:
+    """Whether a name is that of a time column, and seconds in one of its unit: None where there is no unit.
+
+    A bare T is a temperature: only t is a time without a unit of time.
 
     Raises
     ------
     InputError
         For a time column in a unit that is not of time.
     """
-    plain = name.strip().lower()
+    bare = name.strip()
+    plain = bare.lower()
     suffix = _TIME_SUFFIX.fullmatch(plain)
     if plain not in _TIME_NAMES and suffix is not None and suffix[1] in _TIME_NAMES:
-        plain, unit = suffix[1], unit or suffix[2]
+        plain, bare, unit = suffix[1], bare[: len(suffix[1])], unit or suffix[2]
+    if plain in _UNIT_NAMES and unit is None:
+        return True, seconds_in(plain, where)
     if plain not in _TIME_NAMES:
-        return None
-    if unit is None:
-        return 1.0
-    # "seconds since 2024-05-01" is how NetCDF writes a date; only the unit is wanted.
-    bare = unit.strip().split(" since ")[0].strip()
-    if bare not in TIME_SECONDS:
-        raise InputError("is no unit of time", where=where, value=unit, remedy="give the time in s, ms or us")
-    return TIME_SECONDS[bare]
+        return False, None
+    if bare == "T" and (unit is None or seconds_of(unit) is None):
+        return False, None
+    if bare == "t" and unit is not None and seconds_of(unit) is None and _is_temperature(unit):
+        return False, None
+    return True, None if unit is None else seconds_in(unit, where)

@@ -13,7 +13,7 @@ from permway.errors import InputError
 MOST_BYTES = 2**30
 """Most that a record may take in memory, bytes, unless said otherwise."""
 
-_BY_HAND = ("text", "uff", "wav", "mat")
+_BY_HAND = ("text", "uff", "wav", "mat", "lvm")
 
 MOST_CHANNELS = 100_000
 """More channels, pairs or columns than this are a damaged header."""

@@ -1,4 +1,4 @@
-"""MAT files of version 5 (-v6, -v7) as named arrays: numbers, texts and cell arrays of texts.
+"""MAT files of version 5 (-v6, -v7) as named arrays: numbers, texts, cell arrays of texts, and structs of these.
 
 Source: MathWorks, MAT-File Format (R2023b), chapter 1. Read here and not with scipy, whose reader can end the
 whole process on a damaged file (an unchecked type of data, met by the tests with random damage). The tests write
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -20,13 +20,14 @@ from numpy.typing import NDArray
 
 from permway.errors import InputError
 from permway.recordings.readers.limits import MOST_BYTES, MOST_CHANNELS, check_size
-from permway.recordings.readers.stored import Store, Variable
+from permway.recordings.readers.stored import OBJECT, Store, Variable, unread
 
 _MATRIX, _COMPRESSED = 14, 15
 _NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
 _TEXTS = {1: "latin-1", 2: "latin-1", 4: "utf-16", 16: "utf-8", 17: "utf-16", 18: "utf-32"}
-_CELL, _CHAR, _DOUBLE, _SINGLE, _LAST_NUMBER = 1, 4, 6, 7, 15
-_LEFT_ASIDE = {2: "struct", 5: "sparse"}
+_CELL, _STRUCT, _CHAR, _SPARSE, _DOUBLE, _SINGLE, _LAST_NUMBER = 1, 2, 4, 5, 6, 7, 15
+_OBJECTS = (3, 16, 17)
+_DEEPEST = 8
 _HEAD_BYTES = 65_536
 _CELL_BYTES = 4096
 
@@ -48,6 +49,10 @@ class _Head:
         for length in self.shape:
             total *= length
         return total
+
+
+class _NoTextsError(Exception):
+    """A cell array of something else than texts, which is left aside."""
 
 
 class _Bytes:
@@ -75,6 +80,10 @@ class _Bytes:
 
     def head(self, at: int = 0) -> _Head:
         _, flags, at = self.element(at)
+        if len(flags) == 8 and struct.unpack(f"{self.order}II", flags)[0] & 0xFF == _OBJECTS[-1]:
+            # An object has no shape, but the names of its variable, system and class.
+            _, name, at = self.element(at)
+            return _Head(name.decode("latin-1"), _OBJECTS[-1], (), False, False, at)
         _, dims, at = self.element(at)
         _, name, at = self.element(at)
         if len(flags) != 8 or len(dims) % 4 or not 8 <= len(dims) <= 128:
@@ -108,7 +117,10 @@ class _Bytes:
 
 @contextmanager
 def open_store(source: Path, *, max_bytes: int = MOST_BYTES) -> Iterator[Store]:
-    """The numbers and texts of a MAT file; a variable is read as a whole, when it is asked for."""
+    """The numbers and texts of a MAT file; a variable is read as a whole, when it is asked for.
+
+    Structs are folders: the field `acc` of a struct `data` is "data/acc"; of several, "data(2)/acc".
+    """
     variables: dict[str, Variable] = {}
     with source.open("rb") as file:
         order = "<" if file.read(128)[126:128] == b"IM" else ">"
@@ -118,13 +130,12 @@ def open_store(source: Path, *, max_bytes: int = MOST_BYTES) -> Iterator[Store]:
         if at + 8 + size > end:
             raise _Bytes(b"", order, str(source)).cut()
         if kind in (_MATRIX, _COMPRESSED):
-            variable = _variable(source, (at + 8, size, kind == _COMPRESSED), order, max_bytes)
-            if variable is not None:
+            for variable in _variables(source, (at + 8, size, kind == _COMPRESSED), order, max_bytes):
                 if variable.name in variables:
                     raise InputError("a variable named twice", where=str(source), value=variable.name)
                 variables[variable.name] = variable
         at += 8 + size + (0 if kind == _COMPRESSED else -size % 8)
-    yield Store(str(source), variables)
+    yield Store(str(source), variables).without_common()
 
 
 def _tag(source: Path, at: int, order: str) -> tuple[int, int]:
@@ -155,30 +166,79 @@ def _content(source: Path, place: tuple[int, int, bool], order: str, most: int) 
     return inner[8:]
 
 
-def _variable(source: Path, place: tuple[int, int, bool], order: str, max_bytes: int) -> Variable | None:
+def _variables(source: Path, place: tuple[int, int, bool], order: str, max_bytes: int) -> Iterator[Variable]:
+    """The variable at a place; of a struct all of its fields."""
     head = _Bytes(_content(source, place, order, _HEAD_BYTES), order, str(source)).head()
-    where = f"{source}: '{head.name}'"
+    if not head.name:
+        return
+
+    def content() -> bytes:
+        # A text in a cell, and a field of a struct, are matrices of their own.
+        many = head.kind in (_CELL, _STRUCT)
+        most = 2 * max_bytes if head.kind == _STRUCT else (_CELL_BYTES if many else 17) * head.size
+        return _content(source, place, order, min(most, 2 * max_bytes) + _HEAD_BYTES)
+
+    yield from _of(head, head.name, content, (order, str(source)), max_bytes, 0)
+
+
+def _of(
+    head: _Head, name: str, content: Callable[[], bytes], about: tuple[str, str], max_bytes: int, depth: int
+) -> Iterator[Variable]:
+    order, source = about
+    where = f"{source}: '{name}'"
+    if head.kind in _OBJECTS:
+        yield unread(name, OBJECT)
+        return
     check_size(head.size, where, max_bytes=max_bytes, item=16 if head.is_complex else 8)
-    if head.kind in _LEFT_ASIDE or head.is_logical or not head.name:
-        return None
+    if head.kind == _SPARSE or head.is_logical or (head.kind == _STRUCT and depth > _DEEPEST):
+        return
+    if head.kind == _STRUCT:
+        check_size(head.size, where, max_bytes=64 * MOST_CHANNELS)
+        yield from _fields(_Bytes(content(), order, where), name, about, max_bytes, depth)
+        return
     if head.kind not in (_CELL, _CHAR) and not _DOUBLE <= head.kind <= _LAST_NUMBER:
-        remedy = "save plain arrays and texts"
-        raise InputError("an object, which is not read", where=where, value=f"class {head.kind}", remedy=remedy)
+        yield unread(name, f"an array of an unknown class ({head.kind})")
+        return
 
     @cache
     def whole() -> NDArray[np.generic]:
-        # A text in a cell is a matrix of its own.
-        most = min((_CELL_BYTES if head.kind == _CELL else 17) * head.size, 2 * max_bytes) + _HEAD_BYTES
-        return _array(_Bytes(_content(source, place, order, most), order, where))
+        return _array(_Bytes(content(), order, where))
 
     def read(slices: tuple[slice, ...]) -> NDArray[np.generic]:
         return np.asarray(whole()[slices])
 
     if head.kind in (_CELL, _CHAR):
         check_size(head.size, where, max_bytes=64 * MOST_CHANNELS)
-        return Variable(head.name, whole().shape, "text", read)
+        try:
+            shape = whole().shape
+        except _NoTextsError as error:
+            yield unread(name, str(error))
+            return
+        yield Variable(name, shape, "text", read)
+        return
     step = float(np.finfo(np.float32 if head.kind == _SINGLE else np.float64).eps)
-    return Variable(head.name, head.shape, "complex" if head.is_complex else "real", read, step=step)
+    yield Variable(name, head.shape, "complex" if head.is_complex else "real", read, step=step, ordered=True)
+
+
+def _fields(data: _Bytes, name: str, about: tuple[str, str], max_bytes: int, depth: int) -> Iterator[Variable]:
+    """The fields of a struct: a length of names, the names, then a matrix for each, element by element."""
+    head = data.head()
+    _, raw, at = data.element(head.at)
+    _, names, at = data.element(at)
+    length = struct.unpack(f"{data.order}i", raw)[0] if len(raw) == 4 else 0
+    if length < 1 or len(names) % length:
+        raise data.cut()
+    fields = [names[i : i + length].split(b"\x00")[0].decode("latin-1") for i in range(0, len(names), length)]
+    for index in range(head.size):
+        prefix = name if head.size == 1 else f"{name}({index + 1})"
+        for field in fields:
+            kind, inner, at = data.element(at)
+            if kind != _MATRIX:
+                raise data.cut()
+            if not inner:
+                continue
+            below = _Bytes(inner, data.order, data.where).head()
+            yield from _of(below, f"{prefix}/{field}", lambda inner=inner: inner, about, max_bytes, depth + 1)  # type: ignore[misc]
 
 
 def _array(data: _Bytes) -> NDArray[np.generic]:
@@ -203,7 +263,8 @@ def _cells(data: _Bytes, head: _Head) -> NDArray[np.str_]:
         cell = _Bytes(raw, data.order, data.where)
         inner = cell.head() if kind == _MATRIX and raw else None
         if inner is None or inner.kind != _CHAR or (inner.size and inner.shape[0] != 1):
-            what = "a cell array may hold texts only"
-            raise InputError(what, where=f"{data.where}{{{index + 1}}}", remedy="save plain arrays")
+            raise _NoTextsError(
+                f"a cell array may hold texts only, element {index + 1} is none: save plain arrays"
+            )
         texts.append(str(cell.text(inner)[0]))
     return np.array(texts, dtype=str)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from permway.errors import InputError
-from permway.recordings.readers.stored import Store, Variable
+from permway.recordings.readers.stored import Store, Variable, unread
 
 _MOST_MEMBERS = 10_000
 _KINDS = {"f": "real", "i": "real", "u": "real", "c": "complex", "U": "text", "S": "text"}
@@ -47,15 +47,10 @@ def _variable(archive: zipfile.ZipFile, info: zipfile.ZipInfo, name: str, where:
     shape, fortran, dtype = reader(head)
     start = head.tell()
     if dtype.hasobject:
-        raise InputError(
-            "an array of Python objects, which could run code when read",
-            where=where,
-            value=str(dtype),
-            remedy="save numbers and texts only: np.array(names, dtype=str)",
-        )
+        return unread(name, "Python objects, which could run code when read: save np.array(names, dtype=str)")
     kind = _KINDS.get(dtype.kind)
     if kind is None:
-        raise InputError("an array that is neither numbers nor texts", where=where, value=str(dtype))
+        return unread(name, f"neither numbers nor texts: {dtype}")
     size = 1
     for length in shape:
         size *= int(length)
@@ -71,7 +66,18 @@ def _variable(archive: zipfile.ZipFile, info: zipfile.ZipInfo, name: str, where:
         return _read(archive, info, start, dtype, tuple(shape), fortran, slices)
 
     step = float(np.finfo(dtype).eps) if dtype.kind == "f" else 2.0**-52
-    return Variable(name, tuple(int(n) for n in shape), kind, read, step=step, item_bytes=dtype.itemsize)
+    # NumPy turns no axes: the order that is documented for frequency responses holds.
+    whole = tuple(int(n) for n in shape)
+    return Variable(
+        name,
+        whole,
+        kind,
+        read,
+        step=step,
+        item_bytes=dtype.itemsize,
+        ordered=True,
+        resolution=1.0 if dtype.kind in "iu" else 0.0,
+    )
 
 
 def _read(

@@ -9,7 +9,9 @@ import numpy as np
 from permway.arrays import Reals
 from permway.errors import InputError
 from permway.recordings.readers.headers import clean_unit, split_header
+from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES, check_size
+from permway.recordings.readers.scales import hertz_in
 from permway.recordings.readers.stored import UNITS, Store, Variable
 from permway.recordings.record import Cells, FrfRecord, TableRecord
 
@@ -32,32 +34,45 @@ AVERAGES = {"averages", "n_averages", "navg", "n_avg", "blows", "n_blows"}
 _USUAL = {"frf", "frfs", "h", "h1", "accelerance", "mobility", "receptance"}
 
 
-def as_frf(store: Store, part: str | None = None, *, max_bytes: int = MOST_BYTES) -> FrfRecord:
+def as_frf(
+    store: Store, part: str | None = None, *, hints: Hints = NO_HINTS, max_bytes: int = MOST_BYTES
+) -> FrfRecord:
     """Find frequency responses among arrays: one complex array over frequency, response and reference.
 
-    Axes are told by their names where the format has them, else by their lengths; where lengths do not tell, they
-    stand in the order frequency, response, reference.
+    Axes are told by what the caller or an array of texts named `axes` states, by their names where the format has
+    them, else by their lengths. Where lengths do not tell, arrays of MATLAB and NumPy stand in the order
+    frequency, response, reference; those of HDF5 and NetCDF are refused.
 
     Raises
     ------
     InputError
         If something is missing, or more than one thing can be meant.
     """
-    frequency = _vector(store, FREQUENCIES, "frequencies", max_bytes)
+    if part is not None and part not in store.variables:
+        inner = store.within(part)
+        if inner is not None:
+            store, part = inner, None
     values = _complex(store, part)
-    responses, references = _names(store, RESPONSES, "responses"), _names(store, REFERENCES, "references")
+    near = values.folder
+    frequency = _vector(store, FREQUENCIES, "frequencies", max_bytes, near)
+    responses = _names(store, RESPONSES, "responses", near)
+    references = _names(store, REFERENCES, "references", near)
     wanted = (frequency.size, len(responses), len(references))
-    order = _order(store, values, wanted)
+    order = _order(store, values, wanted, hints, near)
     pairs = [(response, reference) for response in responses for reference in references]
-    coherence = next((v for name, v in store.variables.items() if name.lower() in COHERENCES), None)
-    averages = store.number(AVERAGES)
-    unit = store.texts(UNITS)
+    found = store.named(COHERENCES, near)
+    coherence = found[0] if found else None
+    orders = order
+    if coherence is not None and coherence.axes and coherence.axes != values.axes:
+        orders = _order(store, coherence, wanted, hints, near)
+    averages = store.number(AVERAGES, near=near)
+    unit = store.texts(UNITS, near)
     return FrfRecord(
         responses=tuple(pair[0] for pair in pairs),
         references=tuple(pair[1] for pair in pairs),
         frequency_Hz=frequency,
         values=_table(store, values, order, wanted, max_bytes).astype(np.complex128),
-        coherence=None if coherence is None else _coherence(store, coherence, values, order, wanted, max_bytes),
+        coherence=None if coherence is None else _coherence(store, coherence, values, orders, wanted, max_bytes),
         unit=values.unit() or (clean_unit(unit[0]) if unit is not None and len(unit) == 1 else None),
         averages=None if averages is None else round(averages),
         source=store.source,
@@ -76,7 +91,11 @@ def as_table(store: Store, *, max_bytes: int = MOST_BYTES) -> TableRecord:
     units: dict[str, str | None] = {}
     taken = 0
     for key, variable in store.variables.items():
-        if variable.kind == "complex" or sum(length != 1 for length in variable.shape) > 1 or not variable.shape:
+        if (
+            variable.kind in ("complex", "unread")
+            or sum(length != 1 for length in variable.shape) > 1
+            or not variable.shape
+        ):
             continue
         taken += variable.size
         check_size(taken, store.source, max_bytes=max_bytes)
@@ -91,8 +110,8 @@ def as_table(store: Store, *, max_bytes: int = MOST_BYTES) -> TableRecord:
     return TableRecord(columns=columns, units=units, source=store.source)
 
 
-def _vector(store: Store, names: set[str], what: str, max_bytes: int) -> Reals:
-    found = [variable for name, variable in store.variables.items() if name.lower() in names]
+def _vector(store: Store, names: set[str], what: str, max_bytes: int, near: str) -> Reals:
+    found = store.named(names, near)
     if len(found) != 1 or found[0].kind != "real":
         raise InputError(
             f"no array of {what}" if not found else f"more than one array of {what}, or not of real numbers",
@@ -100,10 +119,9 @@ def _vector(store: Store, names: set[str], what: str, max_bytes: int) -> Reals:
             value=list(store.variables)[:12],
             remedy=f"name one of them {sorted(names)[0]!r}",
         )
-    unit = found[0].unit()
-    if unit not in (None, "Hz"):
-        raise InputError("frequencies must be in Hz", where=f"{store.source}: '{found[0].name}'", value=unit)
-    return np.ravel(found[0].all(store.source, max_bytes=max_bytes)).astype(np.float64)
+    where = f"{store.source}: '{found[0].name}'"
+    scale = hertz_in(found[0].unit(), where)
+    return np.ravel(found[0].all(store.source, max_bytes=max_bytes)).astype(np.float64) * scale
 
 
 def _complex(store: Store, part: str | None) -> Variable:
@@ -111,23 +129,25 @@ def _complex(store: Store, part: str | None) -> Variable:
         found = [variable for name, variable in store.variables.items() if name == part]
     else:
         found = [variable for variable in store.variables.values() if variable.kind == "complex"]
-    usual = [variable for variable in found if variable.name.lower() in _USUAL]
+    usual = [variable for variable in found if variable.leaf.lower() in _USUAL]
     found = usual if len(found) > 1 and len(usual) == 1 else found
+    if not found and (aside := store.left_aside()) is not None:
+        raise aside
     if len(found) != 1 or found[0].kind != "complex":
         raise InputError(
             "no array of complex numbers"
             if not found
             else "not one array of complex numbers, which must be the FRFs",
             where=store.source,
-            value=[variable.name for variable in found] or list(store.variables)[:12],
+            value=[variable.name for variable in found] or store.held(),
             remedy='say which array it is, as in part="frf"',
         )
     return found[0]
 
 
-def _names(store: Store, names: tuple[str, ...], what: str) -> tuple[str, ...]:
+def _names(store: Store, names: tuple[str, ...], what: str, near: str) -> tuple[str, ...]:
     for name in names:
-        found = store.texts({name})
+        found = store.texts({name}, near)
         if found is not None:
             twice = next((x for i, x in enumerate(found) if x in found[:i]), None)
             if twice is not None or not found:
@@ -141,19 +161,27 @@ def _names(store: Store, names: tuple[str, ...], what: str) -> tuple[str, ...]:
     )
 
 
-def _order(store: Store, values: Variable, wanted: tuple[int, ...]) -> tuple[int, int, int]:
+def _order(
+    store: Store, values: Variable, wanted: tuple[int, ...], hints: Hints, near: str
+) -> tuple[int, int, int]:
     """Axes of frequency, response and reference."""
     where = f"{store.source}: '{values.name}'"
-    shape = values.shape
+    shape, axes = values.shape, values.axes
+    stated = hints.axes or store.texts({"axes", "dims", "dimensions"}, near)
+    if stated is not None and len(stated) == len(shape) == 3:
+        axes = stated
     if len(shape) == 2 and 1 in wanted[1:]:
         shape = (*shape, 1)
-    if len(values.axes) == len(shape) == 3:
-        kinds = (FREQUENCIES, set(RESPONSES), set(REFERENCES))
-        named = [[i for i, axis in enumerate(values.axes) if axis.lower() in kind] for kind in kinds]
+    if len(axes) == len(shape) == 3:
+        kinds = ({*FREQUENCIES}, {*RESPONSES}, {*REFERENCES})
+        named = [[i for i, axis in enumerate(axes) if axis.lower() in kind] for kind in kinds]
         if all(len(found) == 1 for found in named):
             order = (named[0][0], named[1][0], named[2][0])
             if tuple(shape[axis] for axis in order) == wanted:
                 return order
+            if stated is not None:
+                what = f"{shape} is not {wanted} of {', '.join(axes)}"
+                raise InputError(what, where=where, remedy="state the axes in their order")
     fits = [p for p in permutations(range(len(shape)), 3) if tuple(shape[axis] for axis in p) == wanted]
     if len(shape) != 3 or not fits:
         raise InputError(
@@ -162,7 +190,17 @@ def _order(store: Store, values: Variable, wanted: tuple[int, ...]) -> tuple[int
             value=values.shape,
             remedy="give names and frequencies for each axis",
         )
-    first = fits[0]
+    # Axes of length one may change places: nothing depends on it.
+    apart = {tuple(axis for axis in p if shape[axis] > 1) for p in fits}
+    if len(apart) > 1 and not (values.ordered and (0, 1, 2) in fits):
+        raise InputError(
+            "which axis counts the responses and which the references cannot be told: their lengths are one",
+            where=where,
+            value=values.shape,
+            remedy='state it in the record: axes = ["frequency", "response", "reference"] in their order, '
+            "or in an array of texts named axes",
+        )
+    first = (0, 1, 2) if values.ordered and (0, 1, 2) in fits else fits[0]
     return first[0], first[1], first[2]
 
 
@@ -182,10 +220,12 @@ def _coherence(
     wanted: tuple[int, ...],
     max_bytes: int,
 ) -> Reals:
-    if coherence.kind != "real" or coherence.shape != values.shape:
+    shape = coherence.shape if coherence.axes != values.axes else values.shape
+    if coherence.kind != "real" or coherence.shape != shape:
         raise InputError(
             f"the coherence must be real and of the shape of '{values.name}', {values.shape}",
             where=f"{store.source}: '{coherence.name}'",
             value=coherence.shape,
         )
-    return _table(store, coherence, order, wanted, max_bytes).astype(np.float64)
+    percent = coherence.unit() == "%"
+    return _table(store, coherence, order, wanted, max_bytes).astype(np.float64) / (100.0 if percent else 1.0)

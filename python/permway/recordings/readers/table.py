@@ -9,21 +9,27 @@ from pathlib import Path
 import numpy as np
 
 from permway.errors import InputError
-from permway.laws.textfile import Line, number, read_lines
+from permway.laws.textfile import Line, number
 from permway.recordings.readers.headers import clean_unit, is_unit_row, split_header
+from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES, check_size
-from permway.recordings.readers.text_layout import is_number
+from permway.recordings.readers.text_layout import SEPARATOR_LINE, separator_of
+from permway.recordings.readers.text_lines import cells_of, is_number, is_remark, numbered_lines, without_mark
 from permway.recordings.record import Cells, TableRecord
 
+_LINES_LOOKED_AT = 200
 
-def read_text_table(source: Path, *, texts: Sequence[str] = (), max_bytes: int = MOST_BYTES) -> TableRecord:
+
+def read_text_table(
+    source: Path, *, texts: Sequence[str] = (), hints: Hints = NO_HINTS, max_bytes: int = MOST_BYTES
+) -> TableRecord:
     """Read a table with a header, or one of numbers alone, whose columns are then "column 1" and on.
 
     A column whose first cell that is not empty is a number is a column of numbers, and every other cell of it must
     be one or empty (NaN); other columns are texts, and so are those named in `texts`.
     """
     check_size(source.stat().st_size, str(source), max_bytes=max_bytes, item=32)
-    lines = read_lines(source)
+    lines = _lines(source, hints)
     names, units, rows = _head(source, lines)
     if not rows:
         raise InputError("a header but no rows", where=str(source), remedy="give at least one row")
@@ -31,7 +37,7 @@ def read_text_table(source: Path, *, texts: Sequence[str] = (), max_bytes: int =
         if name not in names:
             raise InputError("there is no such column", where=str(source), value=name, remedy=f"it has {names}")
     _check_rows(source, names, rows)
-    comma = _decimal_comma(source, rows)
+    comma = hints.decimal == "," if hints.decimal is not None else _decimal_comma(source, rows)
     columns: dict[str, Cells] = {}
     for index, name in enumerate(names):
         first = next((row.cells[index] for row in rows if row.cells[index]), "")
@@ -42,6 +48,24 @@ def read_text_table(source: Path, *, texts: Sequence[str] = (), max_bytes: int =
             [_cell(row.cells[index], f"{source}: line {row.number}, column '{name}'", comma) for row in rows]
         )
     return TableRecord(columns=columns, units=dict(zip(names, units, strict=True)), source=str(source))
+
+
+def _lines(source: Path, hints: Hints) -> list[Line]:
+    """Lines without remarks, cut into cells."""
+    skipped = max(hints.skip_rows or 0, (hints.header_row or 0) - 1)
+    kept: list[tuple[int, str]] = []
+    mark: str | None = None
+    for index, line in numbered_lines(source, hints.encoding):
+        if index == 1 and (found := SEPARATOR_LINE.fullmatch(line)) is not None:
+            mark = found[1]
+        elif index == hints.header_row and is_remark(line):
+            kept.append((index, without_mark(line)))
+        elif index > skipped and line.strip() and not line.lstrip().startswith("#"):
+            kept.append((index, line))
+    if not kept:
+        raise InputError("the file is empty", where=str(source), remedy="give a header and rows")
+    mark = mark or separator_of([line for _, line in kept[:_LINES_LOOKED_AT]])
+    return [Line(index, tuple(cells_of(line, mark))) for index, line in kept]
 
 
 def _head(source: Path, lines: list[Line]) -> tuple[list[str], list[str | None], list[Line]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -14,17 +15,20 @@ from nptdms.log import log_manager
 
 from permway.arrays import Reals
 from permway.errors import InputError
-from permway.recordings.readers.headers import clean_unit
-from permway.recordings.readers.timefile import TimeFile
+from permway.recordings.readers.headers import clean_unit, split_header
+from permway.recordings.readers.hints import NO_HINTS, Hints
+from permway.recordings.readers.tdms_times import time_channels, timing_of
+from permway.recordings.readers.timefile import TimeFile, Timing
 
 _UNITS = ("unit_string", "NI_UnitDescription", "unit", "Unit", "units")
 
 
 @contextmanager
-def open_time(source: Path, *, group: str | None = None) -> Iterator[TimeFile]:
+def open_time(source: Path, *, group: str | None = None, hints: Hints = NO_HINTS) -> Iterator[TimeFile]:
     """Open the channels of a TDMS file, scaled as the file itself says.
 
-    With more than one group, and none chosen, channels are named "group/channel".
+    With more than one group, and none chosen, channels are named "group/channel". A channel that is named as a
+    time holds the times of channels that have none of their own.
     """
     # Opened here, so that an index file beside it, which may be of another recording, is not used.
     with _complaints(source) as check, source.open("rb") as raw, TdmsFile.open(raw) as file:
@@ -36,20 +40,26 @@ def open_time(source: Path, *, group: str | None = None) -> Iterator[TimeFile]:
                 "there is no such group", where=str(source), value=group, remedy=f"it has {known[:12]}"
             )
         several = len([item for item in groups if item.channels()]) > 1
-        names, found = [], []
+        channels: dict[str, Any] = {}
         for item in groups:
             for channel in item.channels():
-                if not len(channel):
-                    continue
-                names.append(f"{item.name}/{channel.name}" if several else str(channel.name))
-                found.append(channel)
-        if not found:
+                if len(channel):
+                    channels[f"{item.name}/{channel.name}" if several else str(channel.name)] = channel
+        if not channels:
             raise InputError("holds no channel with samples", where=str(source), remedy="record it again")
-        _check(source, names, found)
-        rates = {
-            name: _rate(channel, f"{source}: channel '{name}'") for name, channel in zip(names, found, strict=True)
-        }
-        rate, start = _one(source, rates)
+        times = time_channels(channels, hints, source)
+        names = [name for name in channels if name not in times]
+        found = [channels[name] for name in names]
+        pairs = [
+            split_header(name) if _unit(channel) is None else (name, None)
+            for name, channel in zip(names, found, strict=True)
+        ]
+
+        @cache
+        def timing(row: int) -> Timing:
+            where = f"{source}: channel '{names[row]}'"
+            _check(source, where, found[row])
+            return timing_of(found[row], where, times, channels, hints)
 
         def read(rows: Sequence[int], first: int, stop: int) -> Reals:
             values = np.empty((len(rows), stop - first))
@@ -67,11 +77,10 @@ def open_time(source: Path, *, group: str | None = None) -> Iterator[TimeFile]:
         yield TimeFile(
             source=str(source),
             channels=tuple(names),
-            units=tuple(_unit(channel) for channel in found),
-            samples=len(found[0]),
-            sampling_Hz=rate,
-            start_s=start,
+            units=tuple(_unit(channel) or unit for channel, (_, unit) in zip(found, pairs, strict=True)),
+            timing=timing,
             read=read,
+            times=", ".join(times) or None,
         )
 
 
@@ -87,6 +96,10 @@ def _complaints(source: Path) -> Iterator[Callable[[], None]]:
     console.setLevel(logging.CRITICAL)
 
     def check() -> None:
+        if heard and "scale" in heard[0].lower():
+            what = "a channel is scaled in a way that is not known, so that its samples have no unit"
+            remedy = "export it as CSV, or with a linear, polynomial or table scale"
+            raise InputError(what, where=str(source), value=heard[0], remedy=remedy)
         if heard:
             remedy = "the file is cut short or damaged; export what is sound"
             raise InputError("the file is not whole", where=str(source), value=heard[0], remedy=remedy)
@@ -98,47 +111,14 @@ def _complaints(source: Path) -> Iterator[Callable[[], None]]:
         console.setLevel(level)
 
 
-def _check(source: Path, names: list[str], found: list[Any]) -> None:
-    size = source.stat().st_size
-    for name, channel in zip(names, found, strict=True):
-        where = f"{source}: channel '{name}'"
-        if channel.dtype.kind not in "fiu":
-            raise InputError(
-                "samples must be real numbers", where=where, value=str(channel.dtype), remedy="choose a group="
-            )
-        if len(channel) > size:
-            what = "more samples announced than the file holds"
-            raise InputError(what, where=where, value=len(channel), remedy="the file is damaged")
-        if len(channel) != len(found[0]):
-            raise InputError(
-                f"{len(channel)} samples where '{names[0]}' has {len(found[0])}",
-                where=where,
-                remedy="choose one group of channels by group=, or record them alike",
-            )
+def _check(source: Path, where: str, channel: Any) -> None:
+    if channel.dtype.kind not in "fiu":
+        what, remedy = "samples must be real numbers", "leave the channel out, or choose a group: part = ..."
+        raise InputError(what, where=where, value=str(channel.dtype), remedy=remedy)
+    if len(channel) > source.stat().st_size:
+        what = "more samples announced than the file holds"
+        raise InputError(what, where=where, value=len(channel), remedy="the file is damaged")
 
 
 def _unit(channel: Any) -> str | None:
     return next((unit for key in _UNITS if (unit := clean_unit(channel.properties.get(key))) is not None), None)
-
-
-def _rate(channel: Any, where: str) -> tuple[float | None, float | None]:
-    """Rate and first time of a waveform, where it is one."""
-    step, start = channel.properties.get("wf_increment"), channel.properties.get("wf_start_offset")
-    if step is None:
-        return None, None
-    if isinstance(step, str) or not (np.isfinite(float(step)) and float(step) > 0.0):
-        raise InputError("the step in time must be a number above 0 s", where=f"{where}: wf_increment", value=step)
-    offset = 0.0 if start is None or isinstance(start, str) else float(start)
-    return 1.0 / float(step), offset if np.isfinite(offset) else None
-
-
-def _one(source: Path, rates: dict[str, tuple[float | None, float | None]]) -> tuple[float | None, float | None]:
-    first, (rate, start) = next(iter(rates.items()))
-    for name, (other, begin) in rates.items():
-        if other != rate or begin != start:
-            raise InputError(
-                f"sampled at {other} Hz from {begin} s, '{first}' at {rate} Hz from {start} s",
-                where=f"{source}: channel '{name}'",
-                remedy="choose one group of channels by group=; nothing is resampled",
-            )
-    return rate, start

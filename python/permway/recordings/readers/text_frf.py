@@ -8,22 +8,39 @@ import numpy as np
 
 from permway.arrays import Complexes, Reals
 from permway.errors import InputError
+from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES
+from permway.recordings.readers.scales import hertz_in
 from permway.recordings.readers.store_frf import COHERENCES, FREQUENCIES, REFERENCES, RESPONSES
+from permway.recordings.readers.stored import is_one_of
 from permway.recordings.readers.table import read_text_table
 from permway.recordings.record import FrfRecord, TableRecord
+from permway.recordings.units import check_same
 
 REAL, IMAGINARY = {"real", "re"}, {"imaginary", "imag", "im"}
-MAGNITUDE, PHASE = {"magnitude", "mag", "amplitude", "abs"}, {"phase", "phase_deg", "angle"}
-DEGREES = {None, "deg", "degree", "degrees", "°"}
+MAGNITUDE, PHASE = (
+    {"magnitude", "mag", "amplitude", "abs"},
+    {"phase", "phase_deg", "phase_rad", "angle", "angle_deg", "angle_rad"},
+)
+_ANGLES = {
+    "deg": 1.0,
+    "degree": 1.0,
+    "degrees": 1.0,
+    "°": 1.0,
+    "grad": None,
+    "rad": 180.0 / np.pi,
+    "radian": 180.0 / np.pi,
+}
+_ANGLES |= {"radians": 180.0 / np.pi}
+"""Degrees in one of a unit of angle."""
 
 REMEDY = (
     "give a row for each frequency, sensor and point, with columns frequency, sensor, force, real and imaginary "
-    "(or magnitude and phase in deg), and coherence"
+    "(or magnitude, and phase [deg] or phase [rad]), and coherence"
 )
 
 
-def read_frf(source: Path, *, max_bytes: int = MOST_BYTES) -> FrfRecord:
+def read_frf(source: Path, *, hints: Hints = NO_HINTS, max_bytes: int = MOST_BYTES) -> FrfRecord:
     """Read frequency responses from a table of text.
 
     Raises
@@ -31,14 +48,16 @@ def read_frf(source: Path, *, max_bytes: int = MOST_BYTES) -> FrfRecord:
     InputError
         If a column is missing, cells are no numbers, or pairs do not have the same frequencies.
     """
-    head = _named(read_text_table(source, max_bytes=max_bytes), (*RESPONSES, *REFERENCES))
-    table = read_text_table(source, texts=head, max_bytes=max_bytes)
+    head = _named(read_text_table(source, hints=hints, max_bytes=max_bytes), (*RESPONSES, *REFERENCES))
+    table = read_text_table(source, texts=head, hints=hints, max_bytes=max_bytes)
     frequency, column = _numbers(table, FREQUENCIES, "frequencies"), _one(table, FREQUENCIES, "frequencies")
-    if table.units[column] not in (None, "Hz"):
-        raise InputError("frequencies must be in Hz", where=f"{source}: '{column}'", value=table.units[column])
+    frequency = frequency * hertz_in(hints.unit_of(column) or table.units[column], f"{source}: '{column}'")
     sensors, points = _texts(table, RESPONSES, "sensors"), _texts(table, REFERENCES, "points")
-    values, unit = _values(table)
-    coherence = _numbers(table, COHERENCES, "coherence") if _named(table, tuple(COHERENCES)) else None
+    values, unit = _values(table, hints)
+    coherence = None
+    if _named(table, tuple(COHERENCES)):
+        percent = table.units[_one(table, COHERENCES, "coherence")] == "%"
+        coherence = _numbers(table, COHERENCES, "coherence") / (100.0 if percent else 1.0)
     rows: dict[tuple[str, str], list[int]] = {}
     for index, pair in enumerate(zip(sensors, points, strict=True)):
         rows.setdefault(pair, []).append(index)
@@ -67,7 +86,7 @@ def read_frf(source: Path, *, max_bytes: int = MOST_BYTES) -> FrfRecord:
 
 
 def _named(table: TableRecord, names: tuple[str, ...]) -> list[str]:
-    return [column for column in table.columns if column.lower() in names]
+    return [column for column in table.columns if is_one_of(column, names)]
 
 
 def _one(table: TableRecord, names: set[str], what: str) -> str:
@@ -90,15 +109,45 @@ def _texts(table: TableRecord, names: tuple[str, ...], what: str) -> tuple[str, 
     return tuple(str(cell) for cell in table.columns[_one(table, set(names), what)])
 
 
-def _values(table: TableRecord) -> tuple[Complexes, str | None]:
+def _values(table: TableRecord, hints: Hints) -> tuple[Complexes, str | None]:
     """Of real and imaginary part, or of magnitude and phase, and the unit in their header."""
     if _named(table, tuple(REAL)):
         real = _numbers(table, REAL, "real parts")
         imaginary = _numbers(table, IMAGINARY, "imaginary parts")
-        return np.asarray(real + 1j * imaginary, dtype=np.complex128), table.units[_one(table, REAL, "")]
+        names = _one(table, REAL, ""), _one(table, IMAGINARY, "")
+        unit, other = (table.units[name] for name in names)
+        if unit is not None and other is not None:
+            check_same(other, unit, where=f"{table.source}: '{names[1]}'")
+        return np.asarray(real + 1j * imaginary, dtype=np.complex128), unit or other
     name = _one(table, MAGNITUDE, "real parts or magnitudes")
-    phase = _one(table, PHASE, "phases")
-    if table.units[phase] not in DEGREES:
-        raise InputError("must be in deg", where=f"{table.source}: '{phase}'", value=table.units[phase])
-    size, angle = _numbers(table, MAGNITUDE, "magnitudes"), np.deg2rad(_numbers(table, PHASE, "phases"))
-    return np.asarray(size * np.exp(1j * angle), dtype=np.complex128), table.units[name]
+    size = _numbers(table, MAGNITUDE, "magnitudes")
+    below = np.flatnonzero(size < 0.0)
+    if below.size:
+        raise InputError(
+            "a magnitude below 0: is it a level in dB?",
+            where=f"{table.source}: '{name}'",
+            value=float(size[below[0]]),
+            remedy="export real and imaginary part, or magnitudes in a plain unit",
+        )
+    angle = _numbers(table, PHASE, "phases") * _degrees(table, hints)
+    return np.asarray(size * np.exp(1j * np.deg2rad(angle)), dtype=np.complex128), table.units[name]
+
+
+def _degrees(table: TableRecord, hints: Hints) -> float:
+    """Degrees in one of the phase's unit, which the header, the name or the caller has to say.
+
+    Raises
+    ------
+    InputError
+        If none does, or it is no angle.
+    """
+    name = _one(table, PHASE, "phases")
+    where = f"{table.source}: '{name}'"
+    unit = hints.unit_of(name) or table.units[name] or name.lower().partition("_")[2] or None
+    if unit is None:
+        remedy = f"write it as in 'phase [deg]', or say it in the record: unit = {{ {name} = \"rad\" }}"
+        raise InputError("a phase without a unit: degrees or radians?", where=where, remedy=remedy)
+    found = _ANGLES.get(unit.lower())
+    if found is None:
+        raise InputError("must be in deg or rad", where=where, value=unit, remedy="export it in degrees")
+    return found

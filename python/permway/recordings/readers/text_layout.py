@@ -2,194 +2,311 @@
 
 from __future__ import annotations
 
-import csv
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-
-import numpy as np
+from typing import TypeVar
 
 from permway.errors import InputError
 from permway.recordings.readers.headers import clean_unit, is_unit_row, split_header
-
-_PIECE_BYTES = 2**20
-_LONGEST_LINE = 2**20
-_LINES_LOOKED_AT = 200
-_REMARKS = ("#", "%", "//")
-_RATE = re.compile(
-    r"\b(?:fs|sr|f_s|sampling[ _-]?(?:rate|frequency|hz)|sample[ _-]?(?:rate|hz))\s*(?:\(Hz\)|\[Hz\])?"
-    r"\s*[:=,;\t]\s*([0-9.eE+-]+)\s*(k?Hz)?",
-    re.IGNORECASE,
+from permway.recordings.readers.hints import NO_HINTS, Hints
+from permway.recordings.readers.text_lines import (
+    cells_of,
+    is_number,
+    is_remark,
+    numbered_lines,
+    without_mark,
 )
+from permway.recordings.readers.text_rate import RateRemark, rate_in
+
+Line = TypeVar("Line")
+
+_LINES_LOOKED_AT = 200
+_LINES_WEIGHED = 40
+"""Of the last lines of those looked at, which are samples if any are; at most half of them, three at least.
+
+Half or twice of it changes nothing in files of more than a hundred rows.
+"""
+SEPARATOR_LINE = re.compile(r'"?sep=(.)"?\s*', re.IGNORECASE)
+_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+")
 
 
 @dataclass(frozen=True)
 class Layout:
-    """How a text table is written, found from its first lines."""
+    """How a text table is written, found from its first lines.
+
+    Attributes
+    ----------
+    separator : str or None
+        None for blanks.
+    decimal_comma : bool
+    names : tuple of str
+    units : tuple of (str or None)
+    first_row : int
+        Number of the line of the first row of samples.
+    rate : RateRemark
+        What a remark says of the sampling rate.
+    sample : tuple of str
+        The first rows.
+    encoding : str or None
+    """
 
     separator: str | None
     decimal_comma: bool
     names: tuple[str, ...]
     units: tuple[str | None, ...]
-    header_lines: int
-    trailing: bool
-    rate_Hz: float | None
+    first_row: int
+    rate: RateRemark
     sample: tuple[str, ...]
+    encoding: str | None
 
     def cells(self, line: str) -> list[str]:
-        """Cells of a line, without blanks, quotes and a separator at the end."""
-        if self.separator is None:
-            return line.split()
-        cells = line.split(self.separator)
-        if self.trailing and cells and not cells[-1].strip():
+        """Cells of a line, without an empty one beyond the last column, which a separator at the end makes."""
+        cells = cells_of(line, self.separator)
+        if len(cells) == len(self.names) + 1 and not cells[-1]:
             cells.pop()
-        return [cell.strip().strip('"').strip() for cell in cells]
+        return cells
 
 
-def numbered_lines(source: Path) -> Iterator[tuple[int, str]]:
-    """Lines of a text file with their numbers from 1, in pieces: UTF-8, or else Latin-1 as older loggers write.
-
-    Raises
-    ------
-    InputError
-        If it is not text, or a line is longer than any table's.
-    """
-    count, rest, first = 0, b"", True
-    with source.open("rb") as file:
-        while piece := file.read(_PIECE_BYTES):
-            if first:
-                piece, first = piece.removeprefix(b"\xef\xbb\xbf"), False
-            # Up to the last line's end; what follows is the beginning of the next piece.
-            whole, end, rest = (rest + piece).rpartition(b"\n")
-            if end:
-                for line in _decoded(whole, source, count):
-                    count += 1
-                    yield count, line
-            elif len(rest) > _LONGEST_LINE:
-                raise InputError("a line longer than a table's", where=f"{source}: line {count + 1}")
-    if rest:
-        for line in _decoded(rest, source, count):
-            count += 1
-            yield count, line
-
-
-def _decoded(raw: bytes, source: Path, before: int) -> list[str]:
-    if b"\x00" in raw:
-        line = before + 1 + raw[: raw.index(b"\x00")].count(b"\n")
-        what = "not a text: it holds zero bytes"
-        raise InputError(what, where=f"{source}: line {line}", remedy="export it as CSV in UTF-8")
-    try:
-        text = raw.decode("utf-8")
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")
-    return [line.rstrip("\r") for line in text.split("\n")]
-
-
-def is_remark(line: str) -> bool:
-    """Whether a line says nothing of the table: empty, or a remark."""
-    bare = line.lstrip()
-    return not bare or bare.startswith(_REMARKS)
-
-
-def is_number(cell: str) -> bool:
-    """Whether a cell is a number, with point or comma, finite or not."""
-    try:
-        float(cell.strip().strip('"').replace(",", ".", 1))
-    except ValueError:
-        return False
-    return True
-
-
-def find_layout(source: Path) -> Layout:
+def find_layout(source: Path, hints: Hints = NO_HINTS) -> Layout:
     """See how a file is written from its first lines.
 
     Raises
     ------
     InputError
-        For a file without rows, a header without names, units that contradict.
+        For a file without rows, lines before the header that nobody said to skip, units that contradict.
     """
-    rate: float | None = None
+    rate = RateRemark()
     kept: list[tuple[int, str]] = []
-    for index, line in numbered_lines(source):
-        if is_remark(line):
-            said = _RATE.search(line)
-            if said is not None and rate is None:
-                rate = _rate(said, f"{source}: line {index}")
+    stated: str | None = None
+    skipped = max(hints.skip_rows or 0, (hints.header_row or 0) - 1)
+    for index, line in numbered_lines(source, hints.encoding):
+        found = SEPARATOR_LINE.fullmatch(line) if index == 1 else None
+        if found is not None:
+            stated = found[1]
             continue
-        kept.append((index, line))
+        if index == hints.header_row:
+            kept.append((index, without_mark(line) if is_remark(line) else line))
+            continue
+        if is_remark(line):
+            rate = rate.and_then(rate_in(without_mark(line), f"{source}: line {index}"))
+            continue
+        if index > skipped:
+            kept.append((index, line))
         if len(kept) == _LINES_LOOKED_AT:
             break
     if not kept:
         raise InputError("the file is empty", where=str(source), remedy="give a header and rows")
-    separator = next((mark for mark in ("\t", ";", ",") if mark in kept[0][1]), None)
-    cells = _header_cells(kept[0][1], separator)
-    trailing = separator is not None and len(cells) > 1 and not cells[-1]
-    if trailing:
-        cells.pop()
-    if not any(cells):
-        raise InputError("a header without names", where=f"{source}: line {kept[0][0]}", value=kept[0][1])
-    if all(is_number(cell) for cell in cells):
-        names, header = [f"column {i + 1}" for i in range(len(cells))], 0
-        units: list[str | None] = [None] * len(cells)
-    else:
-        names, units, header = _named(source, cells, kept, separator)
-    if len(kept) <= header:
+    separator = stated or separator_of([line for _, line in kept], hints.decimal)
+    rows = [cells_of(line, separator) for _, line in kept]
+    first = _first_row(source, kept, rows, hints)
+    names, units = _named(source, kept, rows, first, separator, hints)
+    sample = tuple(line for _, line in kept[first:])
+    layout = Layout(separator, False, names, units, kept[first][0], rate, sample, hints.encoding)
+    comma = hints.decimal == "," if hints.decimal is not None else _decimal_comma(source, layout)
+    if comma:
+        rate = rate.in_decimal_commas()
+    return Layout(separator, comma, names, units, kept[first][0], rate, sample, hints.encoding)
+
+
+def _weighed(lines: Sequence[Line]) -> Sequence[Line]:
+    return lines[-min(_LINES_WEIGHED, max(3, len(lines) // 2)) :]
+
+
+def separator_of(lines: list[str], decimal: str | None = None) -> str | None:
+    """The sign between cells: that which cuts the last of these lines into equally many, numbers among them."""
+    last = _weighed(lines)
+    quoted = any('"' in line for line in last)
+    for mark in ("\t", ";", None) if decimal == "," and not quoted else ("\t", ";", ",", None):
+        rows = [cells_of(line, mark) for line in last]
+        count, times = Counter(len(row) for row in rows).most_common(1)[0]
+        numeric = sum(any(is_number(cell) for cell in row) for row in rows)
+        if count > 1 and 2 * times > len(rows) and 2 * numeric >= len(rows):
+            return mark
+    marks = ("\t", ";") if decimal == "," and not quoted else ("\t", ";", ",")
+    return next((mark for mark in marks if mark in lines[0]), None)
+
+
+def _first_row(source: Path, kept: list[tuple[int, str]], rows: list[list[str]], hints: Hints) -> int:
+    """Position of the first row of numbers.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    last = _weighed(rows)
+    count = Counter(len(row) for row in last).most_common(1)[0][0]
+    # Columns that mostly hold numbers: what is a row of samples has one in each of them, or leaves it empty.
+    table = [row for row in last if len(row) == count]
+    numeric = [i for i in range(count) if 2 * sum(is_number(row[i]) for row in table) > len(table)]
+
+    def is_data(row: list[str]) -> bool:
+        if not any(is_number(cell) for cell in row):
+            return False
+        if len(row) != count or not numeric:
+            return all(is_number(cell) for cell in row if cell)
+        return all(is_number(row[i]) or not row[i] for i in numeric)
+
+    start = 1 if hints.header_row and kept[0][0] == hints.header_row else 0
+    first = next((i for i in range(start, len(rows)) if is_data(rows[i])), None)
+    if first is not None:
+        return first
+    if len(rows) == 1 or (len(rows) == 2 and is_unit_row(rows[1])):
         raise InputError("a header but no rows", where=str(source), remedy="give the samples below it")
-    sample = tuple(line for _, line in kept[header:])
-    layout = Layout(separator, False, tuple(names), tuple(units), header, trailing, rate, sample)
-    comma = separator != "," and any(
-        is_number(cell) and "," in cell for line in sample for cell in layout.cells(line)
+    loose = next((i for i in range(start, len(rows)) if any(is_number(cell) for cell in rows[i])), None)
+    if loose is not None:
+        return loose
+    raise InputError(
+        "no row of numbers among the first lines",
+        where=f"{source}: line {kept[-1][0]}",
+        value=kept[-1][1][:80],
+        remedy="say in the record where the table begins: skip_rows or header_row, and its decimal sign: decimal",
     )
-    return replace(layout, decimal_comma=comma)
 
 
 def _named(
-    source: Path, cells: list[str], kept: list[tuple[int, str]], separator: str | None
-) -> tuple[list[str], list[str | None], int]:
-    pairs = [split_header(cell) for cell in cells]
-    if separator is None and len(kept) > 1 and len(kept[1][1].split()) == 1:
+    source: Path,
+    kept: list[tuple[int, str]],
+    rows: list[list[str]],
+    first: int,
+    separator: str | None,
+    hints: Hints,
+) -> tuple[tuple[str, ...], tuple[str | None, ...]]:
+    """Names and units of the columns, from the lines above the first row."""
+    count = len(rows[first])
+    if first == 0 or hints.header_row == 0:
+        if hints.header_row != 0 or first == 0:
+            _check_preamble(source, kept, 0, hints)
+        return tuple(f"column {i + 1}" for i in range(count)), (None,) * count
+    top = first - 1
+    while top > 0 and _goes_on(rows[top]) and _is_header(rows[top - 1], rows[top]):
+        top -= 1
+    at = 0 if hints.header_row else top
+    if hints.header_row is None and hints.skip_rows is None:
+        _check_preamble(source, kept, at, hints)
+    cells = rows[at] if at < top else _joined(rows[top:first])
+    if separator is None and count == 1:
         # One column: blanks in its header are part of its name.
-        pairs = [split_header(kept[0][1])]
-    names, units = [name for name, _ in pairs], [unit for _, unit in pairs]
-    blank = next((i for i, name in enumerate(names) if not name), None)
-    if blank is not None:
-        raise InputError(f"column {blank + 1} has no name", where=f"{source}: line {kept[0][0]}", remedy="name it")
-    if len(kept) < 2:
-        return names, units, 1
-    below = _header_cells(kept[1][1], separator)
-    if len(below) == len(names) + 1 and not below[-1]:
-        below.pop()
-    if len(below) != len(names) or any(is_number(cell) for cell in below) or not is_unit_row(below):
-        return names, units, 1
-    rows = [clean_unit(cell) for cell in below]
-    for i, unit in enumerate(rows):
-        if unit is not None and units[i] is not None and unit != units[i]:
-            raise InputError(
-                f"the header says {units[i]!r}, the row of units {unit!r}",
-                where=f"{source}: line {kept[1][0]}, column '{names[i]}'",
-                remedy="keep one",
-            )
-    return names, [units[i] or unit for i, unit in enumerate(rows)], 2
+        cells = [kept[at][1].strip().strip('"')]
+    if len(cells) > 1 and len(cells) == count + 1 and not cells[-1]:
+        cells = cells[:-1]
+    if len(cells) > 1 and not cells[-1] and all(len(row) < len(cells) or not row[-1] for row in rows[first:]):
+        # A separator at the end of every line.
+        cells = cells[:-1]
+    if not any(cells):
+        raise InputError("a header without names", where=f"{source}: line {kept[at][0]}", value=kept[at][1])
+    pairs = [split_header(cell) for cell in cells]
+    names = [name or f"column {i + 1}" for i, (name, _) in enumerate(pairs)]
+    units = [unit for _, unit in pairs]
+    for line in range(at + 1, first):
+        below = rows[line]
+        if len(below) == len(names) + 1 and not below[-1]:
+            below = below[:-1]
+        if len(below) != len(names) or not is_unit_row(below):
+            continue
+        for i, cell in enumerate(below):
+            unit = clean_unit(cell)
+            if unit is not None and units[i] is not None and unit != units[i]:
+                raise InputError(
+                    f"the header says {units[i]!r}, the row of units {unit!r}",
+                    where=f"{source}: line {kept[line][0]}, column '{names[i]}'",
+                    remedy="keep one",
+                )
+            units[i] = units[i] or unit
+    return tuple(names), tuple(units)
 
 
-def _header_cells(line: str, separator: str | None) -> list[str]:
-    if separator is None:
-        return line.split()
-    try:
-        # Only headers have quotes around separators: numbers never need them.
-        cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True))
-    except csv.Error:
-        cells = line.split(separator)
-    return [cell.strip() for cell in cells]
+def _is_header(row: list[str], below: list[str]) -> bool:
+    """Whether a line may be the upper part of a header; over units, names may be numbers of channels."""
+    numbers = sum(is_number(cell) for cell in row)
+    return abs(len(row) - len(below)) <= 1 and (not numbers or (numbers < len(row) and is_unit_row(below)))
 
 
-def _rate(said: re.Match[str], where: str) -> float:
-    try:
-        value = float(said[1]) * (1e3 if (said[2] or "").lower() == "khz" else 1.0)
-    except ValueError:
-        value = 0.0
-    if not (np.isfinite(value) and value > 0.0):
-        what = "a sampling rate must be finite and above 0 Hz"
-        raise InputError(what, where=where, value=said[1], remedy="correct or remove the remark")
-    return value
+def _goes_on(row: list[str]) -> bool:
+    """Whether a line of a header leaves something to the lines above: units alone, or columns without a name."""
+    return is_unit_row(row) or not all(row)
+
+
+def _joined(rows: list[list[str]]) -> list[str]:
+    """Names that stand in several lines, rows of units left out."""
+    named = [rows[0], *(row for row in rows[1:] if not is_unit_row(row))]
+    return [" ".join(row[i] for row in named if i < len(row) and row[i]) for i in range(len(rows[0]))]
+
+
+def _check_preamble(source: Path, kept: list[tuple[int, str]], at: int, hints: Hints) -> None:
+    """Refuse lines above the header that nobody said to leave out.
+
+    Raises
+    ------
+    InputError
+        With these lines, and the key that says where the header is.
+    """
+    if at == 0 or hints.skip_rows is not None:
+        return
+    first, last = kept[0][0], kept[at - 1][0]
+    lines = f"line {first} is" if first == last else f"lines {first} to {last} are"
+    raise InputError(
+        f"{lines} no part of a table that seems to begin with line {kept[at][0]}",
+        where=f"{source}: line {first}",
+        value=kept[0][1][:80],
+        remedy=f"if line {kept[at][0]} names the columns ({kept[at][1][:60]!r}), say so in the record: "
+        f"header_row = {kept[at][0]}",
+    )
+
+
+def _decimal_comma(source: Path, layout: Layout) -> bool:
+    """Whether numbers have a decimal comma; if the first rows have neither comma nor point, all rows are seen.
+
+    Raises
+    ------
+    InputError
+        If a comma may as well part thousands.
+    """
+    odd = _split_decimals(layout)
+    if odd is not None:
+        raise InputError(
+            "a comma that may part decimals or cells",
+            where=str(source),
+            value=odd,
+            remedy='if it parts decimals, say so in the record: decimal = ","; if cells, write 5 for 05',
+        )
+    found = _commas(layout, layout.sample)
+    if not found and not any("." in line for line in layout.sample) and layout.separator != ",":
+        last = 0
+        rest: list[str] = []
+        for index, line in numbered_lines(source, layout.encoding):
+            if index < layout.first_row or is_remark(line) or not ("," in line or "." in line):
+                continue
+            rest.append(line)
+            last += 1
+            if last == _LINES_LOOKED_AT:
+                break
+        found = _commas(layout, tuple(rest))
+    if found and all(_THOUSANDS.fullmatch(cell) for cell in found):
+        raise InputError(
+            "a comma that may part decimals or thousands",
+            where=str(source),
+            value=found[0],
+            remedy='say in the record which sign parts decimals: decimal = "," (or export without thousands)',
+        )
+    return bool(found)
+
+
+def _split_decimals(layout: Layout) -> str | None:
+    """A line of whole numbers between commas, one of them as "05", which only decimals are; else None."""
+    if layout.separator != "," or any('"' in line or "." in line for line in layout.sample):
+        return None
+    for line in layout.sample:
+        if any(re.fullmatch(r"0\d+", cell) for cell in layout.cells(line)):
+            return line
+    return None
+
+
+def _commas(layout: Layout, lines: tuple[str, ...]) -> list[str]:
+    """Cells that are numbers with a comma."""
+    if layout.separator == ",":
+        lines = tuple(line for line in lines if '"' in line)
+    return [cell for line in lines for cell in layout.cells(line) if "," in cell and is_number(cell)]

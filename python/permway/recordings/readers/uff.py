@@ -23,6 +23,7 @@ from permway.errors import InputError
 
 _FENCE = re.compile(rb" *-1[ \t]*(?:\r?\n|\r|$)")
 _MOST_LINE = 4096
+_SHORT_EXPONENT = re.compile(r"([-+]?\d*\.\d+)([-+]\d{3})")
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,25 @@ class Text:
 
     source: str
     data: mmap.mmap | bytes
+    encoding: str | None = None
+
+    def decoded(self, raw: bytes) -> str:
+        """Text of some bytes, for fields are counted in characters: as was said, else UTF-8, else Latin-1.
+
+        Raises
+        ------
+        InputError
+            For bytes that are not of the character set that was said.
+        """
+        try:
+            return raw.decode(self.encoding or "utf-8")
+        except UnicodeDecodeError:
+            if self.encoding is not None:
+                remedy = "give the encoding in which it was written"
+                raise InputError(
+                    f"is not in {self.encoding}", where=self.source, value=raw[:40], remedy=remedy
+                ) from None
+            return raw.decode("latin-1")
 
     def line(self, at: int) -> tuple[str, int]:
         """The line at a position, without its end, and the position of the next.
@@ -47,7 +67,7 @@ class Text:
             if len(self.data) - at > _MOST_LINE:
                 raise self.error("no line of a universal file", at, value=self.data[at : at + 20])
             end = len(self.data)
-        return self.data[at:end].rstrip(b"\r").decode("latin-1"), end + 1
+        return self.decoded(self.data[at:end].rstrip(b"\r")), end + 1
 
     def fence(self, at: int) -> int | None:
         """The position after the line "    -1", if it stands here."""
@@ -73,8 +93,15 @@ class Text:
             raise self.error(f"{name} is not finite", at, value=cell)
         return value
 
-    def numbers(self, at: int, widths: tuple[int, ...], count: int) -> tuple[Reals, int]:
+    def numbers(self, at: int, widths: tuple[int, ...], count: int, *, keep: bool = False) -> tuple[Reals, int]:
         """So many numbers in lines of fixed-width fields, and the position after them.
+
+        Where the last line has room left, fields of zeros beyond the last number are fill.
+
+        Parameters
+        ----------
+        keep : bool
+            Keep numbers that are not finite, else they are refused.
 
         Raises
         ------
@@ -96,24 +123,38 @@ class Text:
             if end >= len(self.data):
                 raise self.error("the file ends within a dataset: cut short", end, remedy="export it again")
             end = min(stop + 1, len(self.data))
-        body = b" ".join(rows).replace(b"D", b"E").replace(b"d", b"e")
-        cells = body.split()
-        values: Reals | None = None
-        if len(cells) == count:
-            try:
-                values = np.array(cells, dtype="S").astype(np.float64)
-            except ValueError:
-                values = None
-        if values is None or not np.isfinite(values).all():
-            values = self._slowly(rows, starts, widths, count)
+        values = _at_once(b" ".join(rows), count)
+        if values is None or not (keep or np.isfinite(values).all()):
+            values = self._slowly(rows, starts, widths, count, keep)
         return values, end
 
-    def _slowly(self, rows: list[bytes], starts: list[int], widths: tuple[int, ...], count: int) -> Reals:
+    def loose(self, at: int, end: int, fields: int, count: int, *, keep: bool = False) -> Reals | None:
+        """So many numbers in lines of whole points, however many to a line; None if they do not stand so.
+
+        Parameters
+        ----------
+        fields : int
+            Numbers of one point.
+        """
+        rows = [row for row in self.data[at:end].splitlines() if row.strip()]
+        each = {len(row.split()) for row in rows[:-1]}
+        whole = len(each) <= 1 and all(number % fields == 0 for number in each)
+        values = (
+            _at_once(b" ".join(rows), count) if whole and sum(len(row.split()) for row in rows) == count else None
+        )
+        return values if values is not None and (keep or np.isfinite(values).all()) else None
+
+    def _slowly(
+        self, rows: list[bytes], starts: list[int], widths: tuple[int, ...], count: int, keep: bool
+    ) -> Reals:
         values: list[float] = []
         for row, at in zip(rows, starts, strict=True):
             line = row.rstrip(b"\r").decode("latin-1")
             expected = min(len(widths), count - len(values))
             cells = line.split()
+            fill = cells[expected:] if expected < len(widths) else []
+            if fill and all(_is_zero(cell) for cell in fill) and len(cells) <= len(widths):
+                cells = cells[:expected]
             if len(cells) != expected:
                 edges = np.concatenate(([0], np.cumsum(widths)))
                 cells = [line[edges[i] : edges[i + 1]].strip() for i in range(expected)]
@@ -121,27 +162,53 @@ class Text:
                     raise self.error(f"more than {expected} values in a line", at, value=line.strip())
             for cell in cells:
                 try:
-                    value = float(cell.replace("D", "E").replace("d", "e")) if "_" not in cell else float("nan")
+                    value = _number(cell)
                 except ValueError:
                     what = "a value is missing: cut short" if not cell or cell == "-1" else "not a number"
                     raise self.error(what, at, value=cell or line.strip()) from None
-                if not np.isfinite(value):
+                if not (keep or np.isfinite(value)):
                     raise self.error("not a finite number", at, value=cell)
                 values.append(value)
         return np.array(values)
 
     def binary(self, at: int, kind: str, count: int) -> NDArray[np.floating]:
-        """So many binary numbers, without a copy."""
+        """So many binary numbers, in a copy: what points into a mapped file keeps it from being closed."""
         size = count * np.dtype(kind).itemsize
         if size > len(self.data) - at:
             what = f"{count} values announced, {max(len(self.data) - at, 0)} bytes left: cut short"
             raise self.error(what, at, remedy="export it again")
-        return np.frombuffer(self.data, dtype=kind, count=count, offset=at)
+        return np.frombuffer(self.data[at : at + size], dtype=kind, count=count)
 
     def error(self, what: str, at: int, *, value: object = None, remedy: str = "correct the line") -> InputError:
         """An error with the line of a position."""
         line = self.data[: min(at, len(self.data))].count(b"\n") + 1
         return InputError(what, where=f"{self.source}: line {line}", value=value, remedy=remedy)
+
+
+def _at_once(body: bytes, count: int) -> Reals | None:
+    """All numbers of a text, if there are so many of them and nothing else."""
+    cells = body.replace(b"D", b"E").replace(b"d", b"e").split()
+    if len(cells) != count:
+        return None
+    try:
+        return np.array(cells, dtype="S").astype(np.float64)
+    except ValueError:
+        return None
+
+
+def _number(cell: str) -> float:
+    """A number as Fortran prints it: with D before the exponent, or without a letter where it has three digits."""
+    if "_" in cell:
+        raise ValueError(cell)
+    short = _SHORT_EXPONENT.fullmatch(cell)
+    return float(f"{short[1]}E{short[2]}" if short else cell.replace("D", "E").replace("d", "e"))
+
+
+def _is_zero(cell: str) -> bool:
+    try:
+        return _number(cell) == 0.0
+    except ValueError:
+        return False
 
 
 @dataclass(frozen=True)
@@ -155,10 +222,10 @@ class Block:
 
 
 @contextmanager
-def open_text(source: Path) -> Iterator[Text]:
+def open_text(source: Path, encoding: str | None = None) -> Iterator[Text]:
     """The file, mapped and not loaded."""
     with source.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-        yield Text(str(source), data)
+        yield Text(str(source), data, encoding)
 
 
 def next_block(text: Text, at: int) -> Block | None:

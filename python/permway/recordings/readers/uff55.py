@@ -87,6 +87,10 @@ def read_frf(source: Path, *, max_bytes: int = MOST_BYTES) -> FrfRecord:
     if not shapes:
         what = "holds no frequency response (dataset 55 of analysis type 5)"
         raise InputError(what, where=str(source), remedy="mode shapes are a table: use read_table")
+    real = next((shape for shape in shapes if not shape.complex), None)
+    if real is not None:
+        what = "the responses are of real numbers: magnitudes without a phase"
+        raise InputError(what, where=f"{source}: frequency step {real.number}", remedy="export them as complex")
     shapes.sort(key=lambda shape: shape.frequency_Hz)
     first = shapes[0]
     for shape in shapes[1:]:
@@ -169,6 +173,9 @@ def _nodes(text: Text, block: Block, at: int, axes: int, is_complex: bool) -> tu
         here = at
         line, at = text.line(at)
         node = text.field(line, here, 0, 10, "node")
+        if line[10:].strip():
+            what = "more than a node's number in its line, or one of more than ten columns"
+            raise text.error(what, here, value=line.strip(), remedy="the number ends in column 10 at the latest")
         if not line.strip() or node in nodes[-1:]:
             raise text.error("a line with a node's number is missing", here, value=line)
         numbers, at = text.numbers(at, _WIDTHS, axes * (2 if is_complex else 1))

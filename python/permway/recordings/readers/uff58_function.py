@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from permway.recordings.readers.headers import clean_unit
 from permway.recordings.readers.uff import Block, Text, next_block, skip_block
+from permway.recordings.readers.uff58_units import Axis, System, axis_of, system_of
 
 _AXES = ("", "X", "Y", "Z", "RX", "RY", "RZ")
 _LINES_BEFORE_VALUES = 11
@@ -26,6 +26,40 @@ WIDTHS: dict[tuple[int, bool], tuple[int, ...]] = {
     (6, False): (13, 20, 20),
 }
 
+# (I5, I10, I5, I10, 1X, 10A1, I10, I4, 1X, 10A1, I10, I4); a line that does not keep to it is read by its words.
+_BLANKS, _EDGES = (30, 55), (51, 76)
+_DEGREES = re.compile(
+    r"(?P<response>.*\S)?\s+(?P<node>-?\d+)\s+(?P<way>-?\d)\s+(?P<reference>\S.*?)?\s+"
+    r"(?P<other>-?\d+)\s+(?P<other_way>-?\d)\s*"
+)
+
+
+@dataclass(frozen=True)
+class End:
+    """One end of a function: a node with a direction, and the name of the body or sensor there."""
+
+    entity: str
+    node: int
+    way: int
+
+    @property
+    def degree(self) -> str | None:
+        """As "11632:+Z"; None where the node is 0."""
+        if self.node == 0:
+            return None
+        sign = "+" if self.way > 0 else "-"
+        return str(self.node) if self.way == 0 else f"{self.node}:{sign}{_AXES[abs(self.way)]}"
+
+    @property
+    def label(self) -> str:
+        """By node and direction, or the entity's name where the node is 0."""
+        return self.degree or (self.entity if self.named else "0" if self.way == 0 else f"0:{self.way:+d}")
+
+    @property
+    def named(self) -> bool:
+        """Whether there is a name."""
+        return self.entity.upper() not in ("", "NONE")
+
 
 @dataclass(frozen=True)
 class Function:
@@ -35,41 +69,50 @@ class Function:
     ----------
     function : int
         Type: 1 time, 4 frequency response, 6 coherence, ...
-    response, reference : str
-        Node and direction, as "11632:+Z".
-    label : str
-        First identification line.
+    number : int
+        Of the function, as its program counts.
+    response, reference : End
+    ids : tuple of str
+        Identification lines.
     kind : int
         Of the values: 2 and 4 real, 5 and 6 complex; single and double precision.
     count : int
         Of the points.
     even : bool
     start, step : float
-        Of an even abscissa.
-    axis : int
-        What the abscissa is: 17 time, 18 frequency.
-    unit : str or None
+        Of an even abscissa, as printed.
+    abscissa, ordinate, denominator : Axis
+    system : System or None
+        Of units, where a dataset 164 stands before.
     at : int
         Position of the header's line of the point count, for messages.
-    values_at : int
+    values_at, end : int
+        Where the values begin, and where the dataset ends.
     binary : str or None
         Type of binary values.
+    single_abscissa : bool
+        Whether an uneven abscissa has single precision beside ordinates of double.
     """
 
     function: int
-    response: str
-    reference: str
-    label: str
+    number: int
+    response: End
+    reference: End
+    ids: tuple[str, ...]
     kind: int
     count: int
     even: bool
     start: float
     step: float
-    axis: int
-    unit: str | None
+    abscissa: Axis
+    ordinate: Axis
+    denominator: Axis
+    system: System | None
     at: int
     values_at: int
+    end: int
     binary: str | None
+    single_abscissa: bool = False
 
     @property
     def complex(self) -> bool:
@@ -81,6 +124,16 @@ class Function:
         """Numbers for each point."""
         return (2 if self.complex else 1) + (0 if self.even else 1)
 
+    @property
+    def dtype(self) -> np.dtype[np.generic]:
+        """Of a point of binary values."""
+        assert self.binary is not None
+        first = [] if self.even else [self.binary[0] + "f4" if self.single_abscissa else self.binary]
+        names = [first[0]] if first else []
+        return np.dtype(
+            [(f"f{i}", kind) for i, kind in enumerate([*names, *[self.binary] * (2 if self.complex else 1)])]
+        )
+
 
 def functions(text: Text) -> Iterator[Function]:
     """The functions of a file, their headers checked against the extent of their values; other datasets are left.
@@ -90,20 +143,28 @@ def functions(text: Text) -> Iterator[Function]:
     InputError
         With the line.
     """
-    at = 0
+    at, system = 0, None
     while (block := next_block(text, at)) is not None:
         if block.kind != 58:
+            if block.kind == 164:
+                system = system_of(text, block)
             at = skip_block(text, block)
             continue
-        function, at = _function(text, block)
+        function, at = _function(text, block, system)
         yield function
 
 
-def _function(text: Text, block: Block) -> tuple[Function, int]:
+def _function(text: Text, block: Block, system: System | None) -> tuple[Function, int]:
     """The header of a dataset 58, and the position after the dataset."""
     lines: list[tuple[str, int]] = []
     at = block.body
-    for _ in range(_LINES_BEFORE_VALUES):
+    binary = block.head.ljust(80)[6:7].lower() == "b"
+    wanted = _LINES_BEFORE_VALUES
+    if binary:
+        wanted = max(text.field(block.head.ljust(80), block.head_at, 19, 12, "number of lines"), wanted)
+        if wanted > 4 * _LINES_BEFORE_VALUES:
+            raise text.error("more lines before binary values than can be", block.head_at, value=wanted)
+    for _ in range(wanted):
         line, after = text.line(at)
         lines.append((line, at))
         at = after
@@ -117,32 +178,45 @@ def _function(text: Text, block: Block) -> tuple[Function, int]:
         raise text.error("spacing must be 0 or 1", form_at, value=spacing)
     if count < 1:
         raise text.error("number of points must be 1 or more", form_at, value=count)
+    response, reference = _ends(text, dof, dof_at)
     item = Function(
         function=text.field(dof, dof_at, 0, 5, "type of the function"),
-        response=_degree(text, dof, dof_at, 41, 51),
-        reference=_degree(text, dof, dof_at, 66, 76),
-        label=ids[0].strip(),
+        number=text.field(dof, dof_at, 5, 10, "number of the function"),
+        response=response,
+        reference=reference,
+        ids=tuple(line.strip() for line in ids),
         kind=kind,
         count=count,
         even=spacing == 1,
         start=text.real(form, form_at, 30, 13, "first abscissa"),
         step=text.real(form, form_at, 43, 13, "step of the abscissa"),
-        axis=text.field(*lines[7], 0, 10, "type of the abscissa"),
-        unit=_unit(lines[8][0], lines[9][0]),
+        abscissa=axis_of(text, *lines[7]),
+        ordinate=axis_of(text, *lines[8]),
+        denominator=axis_of(text, *lines[9]),
+        system=system,
         at=form_at,
         values_at=at,
+        end=at,
         binary=_binary(text, block, kind),
     )
     if item.even and item.count > 1 and not item.step > 0.0:
         raise text.error("step of the abscissa must be above 0", form_at, value=item.step)
-    return item, _end(text, block, item)
+    if item.binary is not None:
+        size = text.field(block.head.ljust(80), block.head_at, 31, 12, "number of bytes")
+        single = replace(item, single_abscissa=True)
+        if not item.even and size == single.count * single.dtype.itemsize != item.count * item.dtype.itemsize:
+            item = single
+    end = _end(text, block, item)
+    return replace(item, end=end), end
 
 
 def _end(text: Text, block: Block, item: Function) -> int:
     total = item.count * item.fields
     if item.binary is not None:
-        text.binary(item.values_at, item.binary, total)
-        size = total * np.dtype(item.binary).itemsize
+        size = item.count * item.dtype.itemsize
+        if size > len(text.data) - item.values_at:
+            what = f"{total} values announced, {max(len(text.data) - item.values_at, 0)} bytes left: cut short"
+            raise text.error(what, item.values_at, remedy="export it again")
         found = re.compile(rb"(?:\r?\n)? *-1[ \t]*(?:\r?\n|\r|$)").match(
             text.data[item.values_at + size : item.values_at + size + 100]
         )
@@ -153,14 +227,60 @@ def _end(text: Text, block: Block, item: Function) -> int:
     if total > len(text.data) - item.values_at:
         raise text.error(f"{item.count} points announced, more than the file holds", item.at, value=item.count)
     end = skip_block(text, block)
-    # The dataset's own lines, the closing one left out.
-    body = text.data[item.values_at : end].rstrip()
-    lines = body.count(b"\n")
+    lines = _lines(text, item, end)
     wanted = -(-total // len(WIDTHS[item.kind, item.even]))
-    if lines != wanted:
+    if (
+        lines != wanted
+        and text.loose(item.values_at, values_end(text, item, end), item.fields, total, keep=True) is None
+    ):
         what = f"{item.count} points announced, which take {wanted} lines, but {lines} are there"
         raise text.error(what, item.at, remedy="the file is cut short or damaged; export it again")
     return end
+
+
+def values_end(text: Text, item: Function, end: int) -> int:
+    """Where the lines of printed values end: before the line that closes the dataset."""
+    return item.values_at + max(text.data[item.values_at : end].rstrip().rfind(b"\n"), 0)
+
+
+def _lines(text: Text, item: Function, end: int) -> int:
+    # The dataset's own lines, the closing one left out.
+    return text.data[item.values_at : end].rstrip().count(b"\n")
+
+
+def values_of(text: Text, item: Function, *, keep: bool = False) -> np.ndarray:
+    """All numbers of a function as printed, shape (point, field): the abscissa first if it is uneven.
+
+    Parameters
+    ----------
+    keep : bool
+        Keep numbers that are not finite.
+
+    Raises
+    ------
+    InputError
+        With the line of the first that is missing or, unless kept, not finite.
+    """
+    total = item.count * item.fields
+    if item.binary is not None:
+        points = np.frombuffer(
+            text.data[item.values_at : item.values_at + item.count * item.dtype.itemsize], dtype=item.dtype
+        )
+        table = np.stack([points[name].astype(np.float64) for name in item.dtype.names or ()], axis=1)
+        if not (keep or np.isfinite(table).all()):
+            point = int(np.flatnonzero(~np.isfinite(table).all(axis=1))[0])
+            what = f"point {point} of {item.response.label} / {item.reference.label} is not a finite number"
+            raise text.error(what, item.at, remedy="measure it again")
+        return table
+    widths = WIDTHS[item.kind, item.even]
+    numbers: np.ndarray | None
+    if _lines(text, item, item.end) == -(-total // len(widths)):
+        numbers, _ = text.numbers(item.values_at, widths, total, keep=keep)
+    else:
+        numbers = text.loose(item.values_at, values_end(text, item, item.end), item.fields, total, keep=keep)
+        if numbers is None:
+            raise text.error("holds a number that is not finite", item.at, remedy="measure it again")
+    return np.asarray(numbers, dtype=np.float64).reshape(item.count, item.fields)
 
 
 def _binary(text: Text, block: Block, kind: int) -> str | None:
@@ -179,18 +299,30 @@ def _binary(text: Text, block: Block, kind: int) -> str | None:
     return ("<" if order == 1 else ">") + ("f4" if kind in (2, 5) else "f8")
 
 
-def _degree(text: Text, line: str, at: int, node: int, direction: int) -> str:
-    number = text.field(line, at, node, 10, "node")
-    way = text.field(line, at, direction, 4, "direction")
-    if abs(way) > 6:
-        raise text.error("direction must lie between -6 and 6", at, value=way)
-    return str(number) if way == 0 else f"{number}:{'+' if way > 0 else '-'}{_AXES[abs(way)]}"
+def _ends(text: Text, line: str, at: int) -> tuple[End, End]:
+    """Response and reference, by columns; by words where a number stands across the edge of its field."""
+    line = line.expandtabs().ljust(80)
+    cut = any(line[edge].strip() for edge in (*_BLANKS, *_EDGES)) or bool(line[80:].strip())
+    if cut:
+        found = _DEGREES.fullmatch(line[30:].rstrip())
+        if found is None:
+            what = "the fields of nodes and directions are not in their columns"
+            raise text.error(what, at, value=line.strip(), remedy="they are (1X,10A1,I10,I4) from column 31 on")
+        ends = (
+            End((found["response"] or "").strip(), int(found["node"]), int(found["way"])),
+            End((found["reference"] or "").strip(), int(found["other"]), int(found["other_way"])),
+        )
+    else:
+        ends = _end_of(text, line, at, 31), _end_of(text, line, at, 56)
+    for end in ends:
+        if abs(end.way) > 6:
+            raise text.error("direction must lie between -6 and 6", at, value=end.way)
+    return ends
 
 
-def _unit(numerator: str, denominator: str) -> str | None:
-    over, under = clean_unit(numerator[46:66]), clean_unit(denominator[46:66])
-    if over is None or under is None:
-        return over
-    plain = re.fullmatch(r"[A-Za-zµ%]+", over)
-    bottom = under if re.fullmatch(r"[A-Za-zµ%]+", under) else f"({under})"
-    return f"{over if plain else f'({over})'}/{bottom}"
+def _end_of(text: Text, line: str, at: int, first: int) -> End:
+    return End(
+        line[first : first + 10].strip(),
+        text.field(line, at, first + 10, 10, "node"),
+        text.field(line, at, first + 20, 4, "direction"),
+    )

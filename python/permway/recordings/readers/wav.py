@@ -12,7 +12,7 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.errors import InputError
-from permway.recordings.readers.timefile import TimeFile
+from permway.recordings.readers.timefile import TimeFile, Timing
 
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
 _BITS = {_PCM: (8, 16, 24, 32), _FLOAT: (32, 64)}
@@ -48,9 +48,7 @@ def open_time(source: Path) -> Iterator[TimeFile]:
         source=str(source),
         channels=tuple(str(i + 1) for i in range(layout.channels)),
         units=(None,) * layout.channels,
-        samples=layout.size // frame,
-        sampling_Hz=float(layout.rate_Hz),
-        start_s=None,
+        timing=lambda _: Timing(samples=layout.size // frame, sampling_Hz=float(layout.rate_Hz)),
         read=read,
         notes=(scale,),
     )

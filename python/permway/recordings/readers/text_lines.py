@@ -1,0 +1,106 @@
+"""Lines and cells of a text table: character set, remarks, quotes."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+
+from permway.errors import InputError
+
+_PIECE_BYTES = 2**20
+_LONGEST_LINE = 2**20
+_REMARKS = ("#", "%", "//")
+
+
+def numbered_lines(source: Path, encoding: str | None = None) -> Iterator[tuple[int, str]]:
+    """Lines of a text file with their numbers from 1, in pieces.
+
+    Parameters
+    ----------
+    source : Path
+    encoding : str, optional
+        By default UTF-8, or else Latin-1 as older loggers write.
+
+    Raises
+    ------
+    InputError
+        If it is not text, or not of that character set, or a line is longer than any table's.
+    """
+    if encoding is not None:
+        yield from _as_said(source, encoding)
+        return
+    count, rest, first = 0, b"", True
+    with source.open("rb") as file:
+        while piece := file.read(_PIECE_BYTES):
+            if first:
+                piece, first = piece.removeprefix(b"\xef\xbb\xbf"), False
+            # Up to the last line's end; what follows is the beginning of the next piece.
+            whole, end, rest = (rest + piece).rpartition(b"\n")
+            if end:
+                for line in _decoded(whole, source, count):
+                    count += 1
+                    yield count, line
+            elif len(rest) > _LONGEST_LINE:
+                raise InputError("a line longer than a table's", where=f"{source}: line {count + 1}")
+    if rest:
+        for line in _decoded(rest, source, count):
+            count += 1
+            yield count, line
+
+
+def _as_said(source: Path, encoding: str) -> Iterator[tuple[int, str]]:
+    try:
+        with source.open(encoding=encoding, newline="\n") as file:
+            for index, line in enumerate(iter(lambda: file.readline(_LONGEST_LINE), ""), start=1):
+                yield index, line.rstrip("\r\n").removeprefix("\ufeff")
+    except UnicodeError as error:
+        remedy = "give the encoding in which it was written: utf-8, latin-1, cp1252 or utf-16"
+        raise InputError(
+            "is no text of this encoding", where=str(source), value=encoding, remedy=remedy
+        ) from error
+
+
+def _decoded(raw: bytes, source: Path, before: int) -> list[str]:
+    if b"\x00" in raw:
+        line = before + 1 + raw[: raw.index(b"\x00")].count(b"\n")
+        what = "not a text: it holds zero bytes"
+        raise InputError(what, where=f"{source}: line {line}", remedy="export it as CSV in UTF-8")
+    try:
+        text = raw.decode("utf-8")
+    except UnicodeDecodeError:
+        text = raw.decode("latin-1")
+    return [line.rstrip("\r") for line in text.split("\n")]
+
+
+def is_remark(line: str) -> bool:
+    """Whether a line says nothing of the table: empty, or a remark."""
+    bare = line.lstrip()
+    return not bare or bare.startswith(_REMARKS)
+
+
+def without_mark(line: str) -> str:
+    """A remark without the sign that makes it one."""
+    return line.lstrip().lstrip("#%/").strip()
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell is a number, with point or comma, finite or not."""
+    try:
+        float(cell.strip().strip('"').replace(",", ".", 1))
+    except ValueError:
+        return False
+    return True
+
+
+def cells_of(line: str, separator: str | None) -> list[str]:
+    """Cells of a line, without blanks and quotes around them; separators in quotes are part of a cell."""
+    if separator is None:
+        return line.split()
+    if '"' not in line:
+        return [cell.strip() for cell in line.split(separator)]
+    try:
+        cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True))
+    except (csv.Error, StopIteration):
+        cells = line.split(separator)
+    return [cell.strip().strip('"').strip() for cell in cells]

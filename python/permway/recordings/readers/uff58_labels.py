@@ -1,0 +1,70 @@
+"""Names of channels and pairs in a universal file, each its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from permway.recordings.readers.uff58_function import End, Function
+
+_TYPES = {
+    0: "general", 1: "time response", 2: "auto spectrum", 3: "cross spectrum", 4: "frequency response",
+    5: "transmissibility", 6: "coherence", 7: "auto correlation", 8: "cross correlation",
+    9: "power spectral density", 10: "energy spectral density", 12: "spectrum",
+}  # fmt: skip
+_QUANTITIES = {
+    1: "general", 2: "stress", 3: "strain", 5: "temperature", 6: "heat flux", 8: "displacement",
+    9: "reaction force", 11: "velocity", 12: "acceleration", 13: "force", 15: "pressure", 16: "mass", 17: "time",
+    18: "frequency", 19: "rpm", 20: "order",
+}  # fmt: skip
+
+# What tells two channels of one node and direction apart, the plainest first.
+_TELLS: tuple[Callable[[Function], str], ...] = (
+    lambda item: item.response.entity,
+    lambda item: _QUANTITIES.get(item.ordinate.kind, ""),
+    *(lambda item, line=line: item.ids[line] for line in range(5)),
+    lambda item: str(item.number),
+)
+
+
+def type_name(kind: int) -> str:
+    """What a function of a type is."""
+    return _TYPES.get(kind, "other")
+
+
+def channel_labels(items: Sequence[Function]) -> tuple[str, ...]:
+    """A label for each channel: node and direction, or its name; with what tells it apart where several tie."""
+    labels = [_channel(item) for item in items]
+    for label in dict.fromkeys(labels):
+        tied = [i for i, other in enumerate(labels) if other == label]
+        if len(tied) == 1:
+            continue
+        for tell in _TELLS:
+            found = [tell(items[i]) for i in tied]
+            if len(set(found)) == len(tied) and all(found):
+                for i, text in zip(tied, found, strict=True):
+                    # Where there is no node, the name alone is the label.
+                    labels[i] = text if items[i].response.degree is None else f"{label} ({text})"
+                break
+    return tuple(labels)
+
+
+def _channel(item: Function) -> str:
+    if item.response.degree is not None or item.response.named:
+        return item.response.label
+    line = item.ids[0]
+    return line if line.upper() not in ("", "NONE") else item.response.label
+
+
+def pair_labels(items: Sequence[Function]) -> list[tuple[str, str]]:
+    """Labels of response and reference of each pair; those that tie go by their names, too."""
+    plain = [(item.response.label, item.reference.label) for item in items]
+    if len(set(plain)) == len(plain):
+        return plain
+    named = [(_named(item.response), _named(item.reference)) for item in items]
+    tied = {pair for pair in plain if plain.count(pair) > 1}
+    labels = [name if pair in tied else pair for pair, name in zip(plain, named, strict=True)]
+    return labels if len(set(labels)) == len(labels) else plain
+
+
+def _named(end: End) -> str:
+    return f"{end.label} ({end.entity})" if end.degree is not None and end.named else end.label
