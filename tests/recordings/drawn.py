@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from permway.errors import InputError
 from permway.recordings.readers import read_frf, read_time
-from permway.recordings.units import parse_unit
+from permway.units import parse_unit
 
 UNITS = {
     "m/s2": 1.0, "m/s^2": 1.0, "m/s²": 1.0, "mm/s2": 1e-3, "g": 9.80665, "mg": 9.80665e-3, "m/s": 1.0,

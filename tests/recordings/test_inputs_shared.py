@@ -16,7 +16,7 @@ from permway.errors import InputError
 from permway.recordings.campaign import read_campaign
 from permway.recordings.readers import read_frf, read_time
 from permway.recordings.readers.hints import Hints
-from permway.recordings.units import parse_unit
+from permway.units import parse_unit
 
 INPUTS = Path(__file__).parents[3] / "shared" / "inputs"
 pytestmark = pytest.mark.skipif(not INPUTS.is_dir(), reason="../shared/inputs is absent")

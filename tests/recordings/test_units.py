@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from permway.errors import InputError
-from permway.recordings.units import QUANTITIES, Unit, check_same, parse_unit
+from permway.units import QUANTITIES, Unit, check_same, parse_unit
 
 
 # Factors from the definitions of the SI (BIPM, 9th ed.) and of standard gravity; none is computed by the package.

@@ -22,12 +22,12 @@ from permway.model.vehicle_presets import crh380a
 from permway.recordings.estimates.checks import as_reals, check_positive
 from permway.recordings.estimates.intervals import power_interval
 from permway.recordings.estimates.welch import cross_spectra
-from permway.recordings.units import parse_unit
 from permway.response.decay import decay_rate
 from permway.response.pseudo import power_spectrum, pseudo_excitation
 from permway.response.receptance import Place, receptance
 from permway.response.sensitivity import sensitivity
 from permway.response.train import Train, train_response
+from permway.units import parse_unit
 
 RAIL = Beam(
     theory="timoshenko",

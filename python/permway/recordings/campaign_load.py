@@ -17,8 +17,8 @@ from permway.recordings.campaign_parts import Condition, Record
 from permway.recordings.campaign_welch import cross_spectra_of
 from permway.recordings.readers import read_frf, time_blocks
 from permway.recordings.record import FrfRecord
-from permway.recordings.units import check_same
 from permway.response.receptance import frequency_coordinate
+from permway.units import check_same
 
 if TYPE_CHECKING:
     from permway.recordings.campaign import Campaign

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from permway.errors import InputError
 from permway.recordings.channel import UNITS
 from permway.recordings.record import FrfRecord
-from permway.recordings.units import parse_unit
+from permway.units import parse_unit
 
 if TYPE_CHECKING:
     from permway.recordings.look import Asked

@@ -15,7 +15,7 @@ from permway.recordings.readers.store_frf import COHERENCES, FREQUENCIES, REFERE
 from permway.recordings.readers.stored import is_one_of
 from permway.recordings.readers.table import read_text_table
 from permway.recordings.record import FrfRecord, TableRecord
-from permway.recordings.units import check_same
+from permway.units import check_same
 
 REAL, IMAGINARY = {"real", "re"}, {"imaginary", "imag", "im"}
 MAGNITUDE, PHASE = (
