@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from permway.errors import InputError
 from permway.recordings.readers.headers import clean_unit
 from permway.recordings.readers.uff import Block, Text
-from permway.recordings.unit_symbols import Dimension
+from permway.unit_symbols import Dimension
 from permway.units import parse_unit
 
 # Records 8 to 11 are (I10, 3I5, 2(1X, 20A1)): type, three exponents, label, unit.
