@@ -15,10 +15,10 @@ from scipy import linalg
 
 from permway.arrays import Reals
 from permway.diagnosis.catalogue._interval import spacing_of, stations_of
-from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.side_by_side import SMALL, each
 from permway.errors import InputError, SolveError
+from permway.posterior.cells import coordinate
 from permway.posterior.fit import Fit, Fitter
 
 STRETCH = ("centre_m", "length_m")
@@ -86,7 +86,7 @@ def _moves(fit: Fit, own: slice, hypothesis: Hypothesis) -> Iterator[tuple[Reals
         for name, value in to.items():
             index = names.index(name)
             at = own.start + index
-            found = _coordinate(free[index], value)
+            found = coordinate(free[index], value)
             if found is None:
                 return
             z[at] = found
@@ -122,21 +122,6 @@ def _stretches(
         a, b = first + left, last + right
         if 0 <= a <= b < stations.size:
             yield float(stations[a]), float(stations[b])
-
-
-def _coordinate(free: Free, value: float) -> float | None:
-    """Z of a value; None outside the parameter's limits."""
-    low, high = free.limits
-    ends = free.value(low), free.value(high)
-    if not min(ends) <= value <= max(ends):
-        return None
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if (free.value(middle) < value) == (ends[0] < ends[1]):
-            low = middle
-        else:
-            high = middle
-    return 0.5 * (low + high)
 
 
 def _scored(fit: Fit, moved: list[tuple[Reals, tuple[int, ...]]]) -> list[tuple[float, int]]:

@@ -35,10 +35,13 @@ class Scores:
         :attr:`permway.posterior.fit.Fit.objective`; infinite where it cannot be solved.
     gain : ndarray, shape (cells,)
         By how much its change in the most favourable measure lowers the fit's objective.
+    measure : ndarray, shape (cells,)
+        That measure: 1 is the change as it stands, 0 none.
     """
 
     objective: Reals
     gain: Reals
+    measure: Reals
 
 
 def screened(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object] = lambda _: None) -> Scores:
@@ -72,7 +75,7 @@ def screened(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object] 
             return None
         return found if np.isfinite(found).all() else None
 
-    objective, gain = np.full(len(cells), np.inf), np.zeros(len(cells))
+    objective, gain, measure = np.full(len(cells), np.inf), np.zeros(len(cells)), np.zeros(len(cells))
     before = fit.state.deviations
     uphill = solvable.T @ before
     for start in range(0, len(cells), BATCH):
@@ -94,6 +97,7 @@ def screened(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object] 
             at = start + np.array(list(solved_ones))
             objective[at] = square + np.array([float(cells[i].z @ cells[i].z) for i in at]) + rest
             # Of r + a d with a at least 0.
-            gain[at] = np.where((along < 0.0) & (size > 1e-9), along**2 / np.maximum(size, 1e-9), 0.0)
+            measure[at] = np.where(along < 0.0, -along / np.maximum(size, 1e-300), 0.0)
+            gain[at] = -measure[at] * along
         progress(min(start + BATCH, len(cells)))
-    return Scores(objective, gain)
+    return Scores(objective, gain, measure)

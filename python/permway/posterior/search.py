@@ -18,7 +18,7 @@ from permway.arrays import Reals
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.errors import InputError, SolveError
-from permway.posterior.cells import SOMETHING, Cell, cells
+from permway.posterior.cells import SOMETHING, Cell, cells, resized, small
 from permway.posterior.fit import Fit, Fitter, Model, estimated, grown
 from permway.posterior.neighbours import rested
 from permway.posterior.screening import screened
@@ -173,11 +173,11 @@ def _finished(fitter: Fitter, fit: Fit, amendments: Sequence[Hypothesis] = ()) -
 
 def _near(fitter: Fitter, root: Member, ruled_out: Collection[str], progress: Progress, what: str) -> list[Member]:
     """Sets with one amendment more, whose change is small: begun where the smaller set fits best."""
-    starts = cells(root.fit, ruled_out)
+    starts = small(cells(root.fit, ruled_out))
     scores = screened(root.fit, starts, lambda done: progress(f"small changes, {what}", done, len(starts)))
     promised = 0.5 * scores.gain + np.array([cell.log_prior for cell in starts])
     worth = [
-        (-promised[i], starts[i].hypothesis, starts[i])
+        (-promised[i], starts[i].hypothesis, resized(starts[i], float(scores.measure[i])))
         for i in range(len(starts))
         if promised[i] > np.log(NEGLECTED)
     ]
