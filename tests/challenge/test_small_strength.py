@@ -10,6 +10,7 @@ from permway.challenge.beams import Complexes
 from permway.challenge.small.errors import root
 from permway.challenge.small.make import draw_small
 from permway.challenge.small.recalibrated import best_deviance
+from permway.challenge.small.stated import noise_deviance
 from permway.challenge.small.strength import SURE, Blows, Ride, Scale
 
 FREQUENCY = np.linspace(10.0, 100.0, 9)
@@ -73,7 +74,7 @@ def test_of_drawn_campaigns_it_is_that_of_the_whole_covariance(tmp_path: Path, i
     rows[:, 1:] /= STEP
     (_, _, linear) = small.chosen[0]
     assert linear == pytest.approx(least(rows, covariance), rel=1e-4)
-    # A fit that takes slopes anew comes out no higher, but for where it rests.
+    # A fit that takes slopes anew, with more error of every line, comes out no higher, but for where it rests.
     assert small.deviances()[0] < 1.1 * linear
 
 
@@ -118,3 +119,14 @@ def test_what_a_parameter_can_take_up_is_no_deviance() -> None:
     # A standard deviation of the prior costs one, less what is hardly seen.
     assert scale.deviance([base * np.exp(along)]) == pytest.approx(1.0, abs=0.01)
     assert scale.deviance([base]) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_noise_of_a_sensor_shows_beside_four_others_at_least() -> None:
+    random = np.random.default_rng(6)
+    base = normal(random, 1, 6, 3, 40)
+    factors = {"s1": 20.0}
+    assert noise_deviance(base, factors) == pytest.approx(np.log(20.0) ** 2 / 0.7**2)
+    assert noise_deviance(base[:, :4], factors) == 0.0
+    # Where sensors differ by far more anyway, it tells less.
+    uneven = base * np.array([1.0, 10.0, 100.0, 1.0, 10.0, 100.0])[None, :, None, None]
+    assert noise_deviance(uneven, factors) < 1.0

@@ -165,6 +165,7 @@ def judged_case(random: np.random.Generator, index: int) -> Judged:
         family=entries()[str(random.choice(list(entries())))].FAMILY if something else "",
         rough=flag,
         deviance=float(np.exp(random.uniform(1.6, 9.2))) if something else None,
+        change_dB=float(np.exp(random.uniform(-4.0, 2.0))) if something else None,
         status="named",
         called=flag,
         found=flag if something else None,
@@ -204,7 +205,7 @@ def test_a_score_of_a_thousand_campaigns_is_small_and_adds_up() -> None:
     page = markdown(found, groups=["all", "deviance"])
     assert [line.split("|")[1].strip() for line in page.splitlines()[2:]] == [
         "all",
-        "deviance: 5 to 15",
+        "deviance: 0 to 15",
         "deviance: 15 to 50",
         "deviance: 50 to 200",
         "deviance: over 200",

@@ -31,7 +31,8 @@ class Judged:
         Kind of what is concealed: "null", "outside", "several", "fault" or "single".
     rough : bool
         Whether its smooth errors vary within half an octave.
-    deviance : float or None
+    deviance, change_dB : float or None
+        See :class:`permway.challenge.small.stated.Small`.
     status : str
         Of the verdict; "" if the diagnosis failed.
     failure : str
@@ -62,6 +63,7 @@ class Judged:
     family: str
     rough: bool
     deviance: float | None
+    change_dB: float | None = None
     status: str = ""
     failure: str = ""
     called: bool = False
@@ -131,6 +133,7 @@ def _bare(name: str, truth: Mapping[str, Any], out: Path) -> Judged:
         family=_strongest(truth)["family"] if effects else "",
         rough=truth["errors"]["length_octaves"] < ROUGH_OCTAVES,
         deviance=truth.get("deviance") if effects else None,
+        change_dB=truth.get("change_dB") if effects else None,
         truth=", ".join(effect["id"] or effect["mechanical"] for effect in effects) or "nothing",
         seconds=float(cost.get("processor_s", nan)),
         peak_MB=float(cost.get("peak_MB", nan)),

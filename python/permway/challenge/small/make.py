@@ -2,82 +2,26 @@
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from permway.challenge.beams import Complexes, Reals
+from permway.challenge.beams import Complexes
 from permway.challenge.small import errors as measured
 from permway.challenge.small.by_elements import STEP, ByElements
-from permway.challenge.small.by_model import LINES_HZ, ByModel
-from permway.challenge.small.concealed import Concealed
+from permway.challenge.small.by_model import ByModel
 from permway.challenge.small.draws import TIER, generator
 from permway.challenge.small.elements_effects import PATH
-from permway.challenge.small.kinds import FAULTS, Chosen, Maker, NoiseTells, conceal, draw_kind
-from permway.challenge.small.layouts import Layout, draw_layout
+from permway.challenge.small.kinds import FAULTS, Maker, NoiseTells, conceal, draw_kind
+from permway.challenge.small.layouts import draw_layout
 from permway.challenge.small.places import BLOWS, RUN_S, SAMPLING_HZ, Tests, draw_tests
-from permway.challenge.small.recalibrated import best_deviance
-from permway.challenge.small.strength import Blows, Part, Ride, Scale
+from permway.challenge.small.stated import Small, noise_of, noisier, parts_of, truth_of
+from permway.challenge.small.strength import Scale
 from permway.challenge.small.write import write_arrays, write_tables, write_truth
 from permway.challenge.weigh import keep
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.recordings.campaign import Campaign, read_campaign
-
-
-@dataclass(frozen=True)
-class Small:
-    """A campaign that is drawn, and what it is measured with.
-
-    Attributes
-    ----------
-    campaign : Campaign
-        As its file has it.
-    layout : Layout
-    tests : Tests
-    errors : Errors
-    maker : Maker
-    scale : Scale
-    chosen : list of (Concealed, share, deviance)
-    values : mapping of str to float
-        True parameters.
-    """
-
-    campaign: Campaign
-    layout: Layout
-    tests: Tests
-    errors: measured.Errors
-    maker: Maker
-    scale: Scale
-    chosen: Chosen
-    values: Mapping[str, float]
-
-    @property
-    def effects(self) -> list[tuple[Concealed, float]]:
-        """Effects with their shares."""
-        return [(effect, share) for effect, share, _ in self.chosen]
-
-    def deviances(self) -> list[float]:
-        """Of all effects together, and of each alone if there are several, against the best recalibrated base."""
-        groups = [self.effects] + ([[one] for one in self.effects] if len(self.effects) > 1 else [])
-        return [self._deviance(group) for group in groups] if self.effects else [0.0]
-
-    def _deviance(self, effects: list[tuple[Concealed, float]]) -> float:
-        told = _noise_tells(self.tests)
-        noise = sum(told(dict(effect.noise(share))) for effect, share in effects)
-        known = list(self.campaign.parameters.known.items())
-        # The base is the tool's own for both makers: what a mesh differs by is left out.
-        base = ByModel(self.campaign, self.tests, self.layout, self.values)
-
-        def predicted(z: Reals) -> list[Complexes]:
-            at = {name: k.value(k.z(self.values[name]) + float(v)) for (name, k), v in zip(known, z, strict=True)}
-            return base.at(at)
-
-        return best_deviance(self.scale.parts, self.maker.responses(effects), predicted, len(known)) + noise
 
 
 def name_of(seed: int, index: int) -> str:
@@ -106,7 +50,7 @@ def make_small(seed: int, index: int, folder: Path) -> str:
     deviance, *each = small.deviances()
     if small.chosen:
         keep(Path(folder), name, deviance, each)
-    write_truth(truth, _truth(small, seed, index, deviance))
+    write_truth(truth, truth_of(small, seed, index, deviance))
     return name
 
 
@@ -129,7 +73,7 @@ def draw_small(seed: int, index: int, folder: Path) -> Small:
     maker: Maker = (
         ByElements(tests, layout, values, beyond) if by_elements else ByModel(campaign, tests, layout, values)
     )
-    scale = Scale(_parts(maker.base, tests, errors), maker.slopes(), STEP)
+    scale = Scale(parts_of(maker.base, tests, errors, measured.ROUNDING), maker.slopes(), STEP)
     random = generator(seed, index, "effects")
     kind = draw_kind(random)
     names = [*PATH, *FAULTS] if by_elements else _possible(tests)
@@ -154,22 +98,6 @@ def true_values(campaign: Campaign, random: np.random.Generator) -> tuple[dict[s
     return values, beyond
 
 
-def _parts(base: list[Complexes], tests: Tests, errors: measured.Errors) -> list[Part]:
-    noise = _noise(base[0], errors, np.ones(len(tests.sensors)))
-    sigma = np.sqrt(noise[..., None] ** 2 / BLOWS + (measured.ROUNDING * np.abs(base[0])) ** 2)
-    functions = measured.root(tests.frequency_Hz, errors.length_octaves)
-    parts: list[Part] = [Blows(base[0], sigma, functions, (errors.size("sensor"), errors.size("force")))]
-    if tests.speed_m_per_s is not None:
-        functions = measured.root(LINES_HZ, errors.length_octaves)
-        parts.append(Ride(base[1], RUN_S, functions, errors.size("sensor")))
-    return parts
-
-
-def _noise(base: Complexes, errors: measured.Errors, factors: Reals) -> Reals:
-    """Of a blow, by test, sensor and point."""
-    return np.stack([measured.blow_noise(one, errors, factors) for one in base])
-
-
 def _noise_tells(tests: Tests) -> NoiseTells:
     """Deviance of factors on noise: twice the divergence of the exponential densities of all blows and lines."""
     count = 2 * (BLOWS - 1) * tests.frequency_Hz.size * len(tests.forces) * len(tests.temperatures_C)
@@ -185,11 +113,9 @@ def _noise_tells(tests: Tests) -> NoiseTells:
 def _measure(small: Small, random: np.random.Generator, folder: Path) -> None:
     """Write the records."""
     tests, errors = small.tests, small.errors
-    factors: dict[str, float] = {}
-    for effect, share in small.effects:
-        factors |= effect.noise(share)
-    noisier = np.array([factors.get(sensor["name"], 1.0) for sensor in tests.sensors])
-    noise = _noise(small.maker.base[0], errors, noisier)
+    factors = noisier(small.effects)
+    powers = np.array([factors.get(sensor["name"], 1.0) for sensor in tests.sensors])
+    noise = noise_of(small.maker.base[0], errors, powers)
     there = small.maker.responses(small.effects)
     functions = measured.root(tests.frequency_Hz, errors.length_octaves)
 
@@ -222,33 +148,3 @@ def _run(small: Small, random: np.random.Generator, folder: Path) -> None:
     series = measured.run_in_time(random, frequency, density, SAMPLING_HZ, RUN_S)
     content = {"fs": SAMPLING_HZ, "acceleration": series.astype(np.float32), "channels": np.array(names)}
     write_arrays(folder / "run.npz", content)
-
-
-def _truth(small: Small, seed: int, index: int, deviance: float) -> dict[str, Any]:
-    effects = [copy.deepcopy(effect.truth(share)) for effect, share in small.effects]
-    for effect in effects:
-        effect["place"]["near_m"] = small.layout.near_m
-    return {
-        "format": 1,
-        "tier": TIER,
-        "seed": seed,
-        "index": index,
-        "maker": small.maker.name,
-        "layout": small.layout.name,
-        "variant": small.layout.variant,
-        "records": {
-            "sensors": len(small.tests.sensors),
-            "points": len(small.tests.forces),
-            "temperatures": len(small.tests.temperatures_C),
-            "runs": int(small.tests.speed_m_per_s is not None),
-        },
-        "errors": {
-            "size_dB": small.errors.size_dB,
-            "length_octaves": small.errors.length_octaves,
-            "noise": small.errors.noise,
-        },
-        "deviance": round(deviance, 4),
-        "linear_deviances": [round(one, 4) for _, _, one in small.chosen],
-        "effects": effects,
-        "parameters": {name: float(value) for name, value in small.values.items()},
-    }

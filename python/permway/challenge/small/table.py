@@ -14,10 +14,13 @@ from permway.challenge.score import NOVEL
 from permway.challenge.small.judge import SURE, Judged
 from permway.challenge.summary import interval
 
-DEVIANCES = (5.0, 15.0, 50.0, 200.0, float("inf"))
+DEVIANCES = (0.0, 15.0, 50.0, 200.0, float("inf"))
 """Ends of the classes of deviance."""
 
-WORST = 40
+CHANGES_DB = (0.0, 0.1, 0.5, float("inf"))
+"""Ends of the classes of what effects change: clean campaigns show less than an engineer would look for."""
+
+WORST = 30
 """Cases that are listed."""
 
 Count = list[float]
@@ -51,19 +54,19 @@ def table(found: Sequence[Judged]) -> dict[str, Any]:
     return {"rows": rows, "reliability": _reliability(found), "worst": _worst(found)}
 
 
-def _deviance(j: Judged) -> str:
-    if j.deviance is None or j.tier != "small":
+def _class(value: float | None, ends: Sequence[float], unit: str = "") -> str:
+    """The class of a value, by its name; "" of none."""
+    if value is None:
         return ""
-    low, high = next(
-        (pair for pair in pairwise(DEVIANCES) if j.deviance < pair[1]), (DEVIANCES[-2], DEVIANCES[-1])
-    )
-    return f"over {low:g}" if np.isinf(high) else f"{low:g} to {high:g}"
+    low, high = next(pair for pair in pairwise(ends) if value < pair[1])
+    return f"over {low:g}{unit}" if np.isinf(high) else f"{low:g} to {high:g}{unit}"
 
 
 _GROUPS: dict[str, Callable[[Judged], str]] = {
     "tier": lambda j: j.tier,
     "kind": lambda j: j.kind if j.tier == "small" else "",
-    "deviance": _deviance,
+    "deviance": lambda j: _class(j.deviance, DEVIANCES),
+    "change": lambda j: _class(j.change_dB, CHANGES_DB, " dB"),
     "errors": lambda j: "rough" if j.rough else "smooth",
     "layout": lambda j: j.layout,
     "maker": lambda j: j.maker,
@@ -99,7 +102,7 @@ def _row(group: str, name: str, found: Sequence[Judged]) -> dict[str, Any]:
 
 def _count(values: Sequence[bool]) -> Count:
     low, high = interval(sum(values), len(values))
-    return [sum(values), len(values), round(100.0 * low, 1), round(100.0 * high, 1)]
+    return [sum(values), len(values), round(100.0 * low), round(100.0 * high)]
 
 
 def _reliability(found: Iterable[Judged]) -> list[dict[str, Any]]:
@@ -165,7 +168,8 @@ def markdown(found: dict[str, Any], *, groups: Sequence[str] | None = None) -> s
     found : dict
         As :func:`table` gives it, or `score.json`.
     groups : sequence of str, optional
-        Which rows: "all", "tier", "kind", "deviance", "errors", "layout", "maker", "family"; by default all.
+        Which rows: "all", "tier", "kind", "deviance", "change", "errors", "layout", "maker", "family"; all by
+        default.
     """
     lines = [f"| | {' | '.join(HEADS.values())} |", f"|---|{'---|' * len(HEADS)}"]
     for row in found["rows"]:
