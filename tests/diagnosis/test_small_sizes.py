@@ -1,4 +1,8 @@
-"""Every size of everything is a campaign, down to one of it, and to no parameter at all."""
+"""Every size of everything is a campaign, down to one of it, and to no parameter at all.
+
+Every check diagnoses each size once. The other commands of each size, and effects put into it, are run with the
+injections: each costs a whole diagnosis.
+"""
 
 from __future__ import annotations
 
@@ -65,10 +69,17 @@ def _known(campaign: Campaign) -> Iterable[tuple[str, Known]]:
     return campaign.parameters.known.items()
 
 
+@pytest.mark.injection
+@pytest.mark.parametrize("size", SIZES)
+def test_every_command_finishes_for_one_of_everything(size: str, tmp_path: Path) -> None:
+    finishes(SIZES[size].made(tmp_path / "c").campaign, tmp_path)
+
+
 @pytest.mark.parametrize("size", SIZES)
 def test_nothing_is_called_missing_of_one_of_everything(size: str, tmp_path: Path) -> None:
     case = SIZES[size].made(tmp_path / "c")
-    verdict = finishes(case.campaign, tmp_path)
+    verdict = diagnose(case.campaign, threads=1).verdict
+    assert list(verdict.recalibrated.before) == [p.name for p in case.campaign.said.parameters]
     # The pads' true stiffness is 2.04 standard deviations from the stated one.
     beyond = [z for z in (known.z(case.truth[name]) for name, known in _known(case.campaign)) if abs(z) > 2.0]
     assert verdict.status in (UNPROVED if beyond else ("recalibrated", "insufficient"))
@@ -77,11 +88,11 @@ def test_nothing_is_called_missing_of_one_of_everything(size: str, tmp_path: Pat
 @pytest.mark.parametrize(
     ("size", "amend"),
     [
-        ("one pad", softened),
-        ("one sensor", softened),
-        ("one line, no parameters", softened),
-        ("a mass on a spring", softened),
-        ("a mass on a spring, no parameters", loud),
+        pytest.param("one pad", softened, marks=pytest.mark.injection),
+        pytest.param("one sensor", softened, marks=pytest.mark.injection),
+        pytest.param("one line, no parameters", softened, marks=pytest.mark.injection),
+        pytest.param("a mass on a spring", softened, marks=pytest.mark.injection),
+        pytest.param("a mass on a spring, no parameters", loud, marks=pytest.mark.injection),
         ("one of everything", softened),
     ],
 )
@@ -96,8 +107,13 @@ def test_effects_are_tried_about_any_size(
 
 @pytest.mark.parametrize("record", TABLES)
 def test_one_record_of_one_line_is_a_campaign(record: str, tmp_path: Path) -> None:
-    finishes(alone(tmp_path / "none", TABLES[record], parameters=0), tmp_path / "none")
     assert compare(alone(tmp_path / "one", TABLES[record], parameters=1), threads=1).records
+
+
+@pytest.mark.injection
+@pytest.mark.parametrize("record", TABLES)
+def test_every_command_finishes_for_one_record_of_one_line(record: str, tmp_path: Path) -> None:
+    finishes(alone(tmp_path, TABLES[record], parameters=0), tmp_path)
 
 
 def test_without_parameters_the_base_is_the_nominal_model(tmp_path: Path) -> None:
@@ -122,6 +138,7 @@ def test_without_parameters_effects_are_named(tmp_path: Path) -> None:
     assert effect.parameters["gain"].value == pytest.approx(1.5, rel=0.03)
 
 
+@pytest.mark.injection
 @settings(max_examples=8)
 @given(
     parameters=st.integers(0, 2),
@@ -171,7 +188,7 @@ def test_a_step_leaves_what_has_no_room(fixed: list[int]) -> None:
     np.testing.assert_allclose((normal @ shift + slope)[free], 0.0, atol=1e-12)
 
 
-@pytest.mark.parametrize("parameters", [0, 1])
+@pytest.mark.parametrize("parameters", [0, pytest.param(1, marks=pytest.mark.injection)])
 @pytest.mark.parametrize("command", ["compare", "diagnose", "separability"])
 def test_the_commands_take_a_campaign_of_few_parameters(command: str, parameters: int, tmp_path: Path) -> None:
     case = SIZES["one parameter" if parameters else "no parameters"].made(tmp_path / "c", amend=softened)
