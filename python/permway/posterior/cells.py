@@ -33,7 +33,7 @@ WIDER = 4.0
 engineers meet is a factor of 40 of what clean records show. Twice as much costs every such effect ln 2 nats."""
 
 SMALL = 0.03
-"""Share of a start's size at which the direction of a small effect is taken: resonances then move in proportion."""
+"""Share of a start's size at which a small effect's direction is taken: resonances then move in proportion."""
 
 SOMETHING = 0.5
 """Prior probability that something is missing: shared by the entries, and in each by its places."""

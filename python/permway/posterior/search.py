@@ -30,7 +30,7 @@ WIDTHS, PER_FORM = (72, 32, 12), (3, 2, 2)
 """Cells that are refined at each level, and at most so many of one form: sizes of the beam."""
 
 FEW = (24, 8, 6)
-"""The same where the nominal model fits as it is: then what is missing is small, or hidden by errors."""
+"""The same where the nominal model fits."""
 
 LACKING = 0.5
 """Probability that a fit lacks something, from which large changes are tried beside it."""
@@ -129,6 +129,7 @@ def explored(
         what = f"{count} amendment{'s' if count > 1 else ''}"
         lacking = best.fit.hyper.novel > LACKING
         found = [] if lacking else _near(fitter, best, ruled_out, progress, what)
+        # What the nominal parameters took up shows about their stated values only.
         if lacking or count == 1:
             root = far if count == 1 else best
             found += _far(fitter, root, ruled_out, progress, what, WIDTHS if lacking else FEW)
@@ -149,7 +150,7 @@ def _weighed(
     best = fits[0]
     again = Fitter(fitter.frame.about(best.state.solved, best.covariance, best.state.deviations))
     begun = [again.begin(fit.model, fit.z, fit.hyper) for fit in fits]
-    return again, [_finished(again, fit, own) for fit, own in zip(begun, amendments, strict=True)]
+    return again, [_finished(again, fit, own, ROUNDS) for fit, own in zip(begun, amendments, strict=True)]
 
 
 def _annealed(fitter: Fitter, fit: Fit) -> Fit:
@@ -159,9 +160,9 @@ def _annealed(fitter: Fitter, fit: Fit) -> Fit:
     return _finished(fitter, fit)
 
 
-def _finished(fitter: Fitter, fit: Fit, amendments: Sequence[Hypothesis] = ()) -> Fit:
+def _finished(fitter: Fitter, fit: Fit, amendments: Sequence[Hypothesis] = (), rounds: int = 1) -> Fit:
     """With hyperparameters and parameters estimated by turns, each amendment moved to better neighbours."""
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         fit = fitter.settled(fit)
         stop = len(fit.model.free)
         for amendment in reversed(amendments):
