@@ -29,6 +29,8 @@ _NILPOTENT = _DRIFT + np.eye(STATES)
 _DRIVE = 16.0 / 3.0
 """Intensity of the white noise that drives it, for a standard deviation and a rate of 1."""
 
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(10)
+
 _STATIONARY = np.array([[1.0, 0.0, -1.0 / 3.0], [0.0, 1.0 / 3.0, 0.0], [-1.0 / 3.0, 0.0, 1.0]])
 """Covariance of value, slope and curvature, each in units of the rate's power, for a standard deviation of 1."""
 
@@ -131,15 +133,14 @@ def _gained(u: Reals) -> Reals:
     u : ndarray, shape (K, 1, 1)
         Steps in units of the rate, at most about 1.
     """
-    points, weights = np.polynomial.legendre.leggauss(10)
-    s = 0.5 * u * (points + 1.0)
+    s = 0.5 * u * (_POINTS + 1.0)
     driven = (
         np.eye(STATES)[:, 2, None]
         + s * _NILPOTENT[:, 2, None]
         + 0.5 * s**2 * (_NILPOTENT @ _NILPOTENT)[:, 2, None]
     )
     driven = driven * np.exp(-s)
-    return np.asarray(_DRIVE * np.einsum("kip,kjp,kp->kij", driven, driven, 0.5 * u[:, 0] * weights))
+    return np.asarray(_DRIVE * np.einsum("kip,kjp,kp->kij", driven, driven, 0.5 * u[:, 0] * _WEIGHTS))
 
 
 def _quintic() -> Reals:

@@ -51,9 +51,6 @@ MOVING = 5.0
 STEPS = (4, 8, 8, 20)
 """Of the fit at each level, and at the end."""
 
-ROUNDS = 2
-"""Times that hyperparameters and parameters are estimated by turns."""
-
 MOST = 3
 """Amendments of one set, at most."""
 
@@ -150,7 +147,7 @@ def _weighed(
     best = fits[0]
     again = Fitter(fitter.frame.about(best.state.solved, best.covariance, best.state.deviations))
     begun = [again.begin(fit.model, fit.z, fit.hyper) for fit in fits]
-    return again, [_finished(again, fit, own, ROUNDS) for fit, own in zip(begun, amendments, strict=True)]
+    return again, [_finished(again, fit, own) for fit, own in zip(begun, amendments, strict=True)]
 
 
 def _annealed(fitter: Fitter, fit: Fit) -> Fit:
@@ -160,15 +157,14 @@ def _annealed(fitter: Fitter, fit: Fit) -> Fit:
     return _finished(fitter, fit)
 
 
-def _finished(fitter: Fitter, fit: Fit, amendments: Sequence[Hypothesis] = (), rounds: int = 1) -> Fit:
-    """With hyperparameters and parameters estimated by turns, each amendment moved to better neighbours."""
-    for _ in range(rounds):
-        fit = fitter.settled(fit)
-        stop = len(fit.model.free)
-        for amendment in reversed(amendments):
-            own = slice(stop - len(amendment.free), stop)
-            fit, stop = rested(fitter, fit, own, amendment, STEPS[-1]), own.start
-        fit = fitter.fit(estimated(fitter.settled(fit)), steps=STEPS[-1])
+def _finished(fitter: Fitter, fit: Fit, amendments: Sequence[Hypothesis] = ()) -> Fit:
+    """Each amendment moved to better neighbours, then with hyperparameters of its own."""
+    fit = fitter.settled(fit)
+    stop = len(fit.model.free)
+    for amendment in reversed(amendments):
+        own = slice(stop - len(amendment.free), stop)
+        fit, stop = rested(fitter, fit, own, amendment, STEPS[-1]), own.start
+    fit = fitter.fit(estimated(fitter.settled(fit)), steps=STEPS[-1])
     return fitter.settled(fit)
 
 
