@@ -17,7 +17,7 @@ BOXES = {
     "rust/core": (5.2, 2.9, 2.6, "chain and receptance\nformulations, threads;\nno Python in it"),
     "recordings": (8.7, 5.0, 2.6, "readers, estimates,\ncampaign, prediction of\nevery sensor"),
     "study": (8.7, 2.9, 2.6, "many models, resumable,\non a Dask cluster"),
-    "diagnosis": (12.2, 5.0, 2.6, "likelihood, recalibration,\nlocation, catalogue,\ndecision, verdict"),
+    "diagnosis": (12.2, 5.0, 2.6, "recalibration, catalogue,\ndecision, verdict;\nposterior: a second method"),
     "challenge": (12.2, 2.9, 2.6, "campaigns by finite\nelements of its own;\nruns and scores"),
     "report": (12.2, 7.1, 2.6, "pages and pictures"),
     "paper": (5.2, 7.1, 2.6, "the paper's numbers,\nreproduced"),

@@ -14,7 +14,7 @@ import pytest
 
 ROOT = Path(permway.__file__).parent
 PAGE = (Path(__file__).parents[2] / "docs" / "architecture.md").read_text("utf-8")
-CHAIN = ("laws", "model", "response", "recordings", "diagnosis", "report")
+CHAIN = ("laws", "model", "response", "recordings", "diagnosis", "posterior", "report")
 """In the order of the page: each may import those before it."""
 
 EXCEPTIONS = {
@@ -25,14 +25,27 @@ EXCEPTIONS = {
 }
 """Module, and the package further on from which it imports; the page names them."""
 
-BESIDE = {"challenge": set(), "study": {"model", "response"}, "paper": {"laws", "model", "response"}}
+SMALL = "challenge/small"
+"""The one part of the challenge that uses the tool's own model: to make half of its campaigns by it."""
+
+BESIDE = {
+    "challenge": set(),
+    SMALL: {"laws", "model", "recordings", "diagnosis"},
+    "study": {"model", "response"},
+    "paper": {"laws", "model", "response"},
+}
 """Of the chain, what the packages beside it import."""
 
 
 def imported(package: str) -> Iterator[tuple[str, str]]:
-    """Module by module, the packages of permway that it imports anywhere, but for type checkers."""
+    """Module by module, the packages of permway that it imports anywhere, but for type checkers.
+
+    The challenge is without its small campaigns, which are asked for by themselves.
+    """
     for path in sorted((ROOT / package).rglob("*.py")):
         name = path.relative_to(ROOT).as_posix()
+        if package == "challenge" and name.startswith(SMALL + "/"):
+            continue
         tree = ast.parse(path.read_text("utf-8"))
         typing = [n for n in ast.walk(tree) if isinstance(n, ast.If) and ast.unparse(n.test) == "TYPE_CHECKING"]
         left_out = {id(inner) for block in typing for inner in ast.walk(block)}
@@ -64,7 +77,7 @@ def test_nothing_else_is_imported_of_what_is_further_on(package: str) -> None:
 @pytest.mark.parametrize("package", BESIDE)
 def test_packages_beside_import_what_the_page_says(package: str) -> None:
     found = {of for _, of in imported(package)}
-    assert found & {*CHAIN, *BESIDE} - {package} == BESIDE[package]
+    assert found & {*CHAIN, *BESIDE} - {package.partition("/")[0]} == BESIDE[package]
 
 
 def test_the_challenge_imports_errors_only() -> None:
