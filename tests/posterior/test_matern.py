@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from permway.posterior import matern
 from permway.posterior.matern import CLOSEST, STATES, Nodes
 
 
@@ -37,6 +38,19 @@ def test_states_have_the_covariance_of_the_process(length: float, steps: list[fl
     values = np.linalg.inv(matrix)[::STATES, ::STATES]
     assert values == pytest.approx(kernel(nodes.x, length), abs=2e-6)
     assert log_determinant == pytest.approx(np.linalg.slogdet(matrix)[1], rel=1e-6, abs=1e-3)
+
+
+@pytest.mark.parametrize("length", [0.15, 1.0, 4.0])
+def test_what_it_gains_over_a_step_is_no_difference_that_rounds(length: float) -> None:
+    """Between near nodes: the variance of the value given the node before, against a series of the kernel."""
+    step = np.array([0.05, 0.2])
+    u = (np.sqrt(5.0) / length * step)[:, None, None]
+    found = matern._gained(u)[:, 0, 0]
+    s = np.linspace(0.0, 1.0, 20001)
+    for value, one in zip(found, u[:, 0, 0], strict=True):
+        # The value answers white noise by s^2 exp(-s) / 2.
+        answer = 0.25 * (s * one) ** 4 * np.exp(-2.0 * s * one)
+        assert value == pytest.approx(16.0 / 3.0 * one * np.trapezoid(answer, s), rel=1e-6)
 
 
 @pytest.mark.parametrize(("length", "lost"), [(0.15, 1e-4), (0.3, 1e-5), (1.0, 1e-6)])

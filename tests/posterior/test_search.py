@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._interval import weakened
+from permway.diagnosis.verdict import UNPROVED
 from permway.posterior.diagnose import diagnose
 from permway.recordings.campaign import Campaign
 from simulated import simulate
@@ -42,7 +43,8 @@ def test_two_of_three_seeds_are_named_rightly_and_no_other_name_is_given(
     right = 0
     for seed in (31, 32, 33):
         verdict = diagnose(simulate(tmp_path / str(seed), seed, amend=amend).campaign, threads=1).verdict
-        found = {effect.name for effect in verdict.effects if effect.name is not None}
+        called = verdict.effects if verdict.status not in UNPROVED else ()
+        found = {effect.name for effect in called if effect.name is not None}
         assert found <= names
         right += found == names
     assert right >= 2

@@ -29,7 +29,11 @@ NAMED = 0.9
 """Posterior probability from which an effect is named."""
 
 LIKELY = 0.5
-"""Posterior probability from which the records are said to lack nothing, or something of no catalogue."""
+"""Posterior probability from which nothing is said to be missing, or something of no catalogue."""
+
+SUSPECTED = 0.05
+"""Posterior probability of nothing missing from which an effect is a suspicion and no more: one campaign in twenty
+of those that are called then lacks nothing."""
 
 WIDTH = 1.6449
 """Half of a 90 % interval, in standard deviations."""
@@ -81,7 +85,7 @@ def _status(masses: Masses, effects: tuple[Effect, ...], before: Mapping[str, Mo
     best = masses.best
     if masses.nothing >= LIKELY:
         return "outside_tolerance" if outside(before) else "recalibrated"
-    if not best.amendments:
+    if not best.amendments or masses.nothing >= SUSPECTED:
         return "insufficient"
     if best.fit.hyper.novel >= LIKELY:
         return "located" if any(e.domain == "path" for e in effects) else "insufficient"

@@ -97,14 +97,18 @@ class Frame:
     def first(self) -> Hyper:
         """Hyperparameters at the medians of their priors."""
         kinds = dict.fromkeys(kind for chains in self.chains for kind in chains.kinds)
-        return Hyper.first(tuple(kinds), tuple(np.unique(self.statistic)))
+        return Hyper.first(tuple(kinds), tuple(self.of_statistic))
+
+    @cached_property
+    def of_statistic(self) -> dict[str, np.ndarray]:
+        """Rows of each kind of record."""
+        return {str(name): np.flatnonzero(self.statistic == name) for name in np.unique(self.statistic)}
 
     def covariance(self, hyper: Hyper, keep: np.ndarray | None = None) -> Covariance:
         """With these hyperparameters; of some rows only, if that is asked for: others then have no precision."""
         weights = np.empty(self.sigma.size)
-        for name in np.unique(self.statistic):
-            mine = self.statistic == name
-            weights[mine] = 1.0 / (1.0 + (hyper.discrepancy(str(name)) / self.sigma[mine]) ** 2)
+        for name, mine in self.of_statistic.items():
+            weights[mine] = 1.0 / (1.0 + (hyper.discrepancy(name) / self.sigma[mine]) ** 2)
         noise = -float(np.log(weights if keep is None else weights[keep]).sum())
         if keep is not None:
             weights = np.where(keep, weights, 0.0)

@@ -28,6 +28,9 @@ ENOUGH = 0.1
 TRUSTED = 0.9
 """Ratio of a step's gain to the predicted gain from which slopes serve once more."""
 
+SETTLED, MOST_ESTIMATES = 1e-5, 25
+"""Relative change of the objective at which hyperparameters are found, and steps at most."""
+
 CURVED = 0.5
 """The same, below which the step is taken again with the curvature that it met."""
 
@@ -246,18 +249,11 @@ def estimated(fit: Fit) -> Fit:
         least = float(inner[0, 0]) + float(fit.z @ fit.z) - float(moved)
         return least + curvature + covariance.log_determinant - 2.0 * hyper.log_prior
 
-    starts = [fit.hyper.log]
-    found = min(
-        (
-            optimize.minimize(
-                objective,
-                at,
-                method="L-BFGS-B",
-                bounds=list(zip(low, high, strict=True)),
-                options={"maxiter": 25, "ftol": 1e-6, "eps": 1e-3},
-            )
-            for at in starts
-        ),
-        key=lambda result: float(result.fun),
+    found = optimize.minimize(
+        objective,
+        fit.hyper.log,
+        method="L-BFGS-B",
+        bounds=list(zip(low, high, strict=True)),
+        options={"maxiter": MOST_ESTIMATES, "ftol": SETTLED, "eps": 1e-3},
     )
     return replace(fit, hyper=fit.hyper.moved(found.x))

@@ -26,6 +26,11 @@ and 2e-3 at twice the spacing."""
 
 _DRIFT = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, -3.0, -3.0]])
 _NILPOTENT = _DRIFT + np.eye(STATES)
+_DRIVE = 16.0 / 3.0
+"""Intensity of the white noise that drives it, for a standard deviation and a rate of 1."""
+
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(10)
+
 _STATIONARY = np.array([[1.0, 0.0, -1.0 / 3.0], [0.0, 1.0 / 3.0, 0.0], [-1.0 / 3.0, 0.0, 1.0]])
 """Covariance of value, slope and curvature, each in units of the rate's power, for a standard deviation of 1."""
 
@@ -105,7 +110,7 @@ class Nodes:
         rate = np.sqrt(5.0) / length
         u = (rate * np.diff(self.x))[:, None, None]
         go = np.exp(-u) * (np.eye(STATES) + u * _NILPOTENT + 0.5 * u**2 * (_NILPOTENT @ _NILPOTENT))
-        left = _STATIONARY - go @ _STATIONARY @ go.swapaxes(1, 2)
+        left = np.where(u < 1.0, _gained(u), _STATIONARY - go @ _STATIONARY @ go.swapaxes(1, 2))
         inverse = np.linalg.inv(left)
         first = np.linalg.inv(_STATIONARY)
         diagonal = np.zeros((self.x.size, STATES, STATES))
@@ -118,6 +123,24 @@ class Nodes:
         log_determinant = -float(np.linalg.slogdet(left)[1].sum()) - float(np.linalg.slogdet(_STATIONARY)[1])
         log_determinant += 2.0 * self.x.size * float(np.log(scale).sum())
         return diagonal * both, below * both, log_determinant
+
+
+def _gained(u: Reals) -> Reals:
+    """Covariance that the process gains over steps, by Gauss's rule: between near nodes a difference would round.
+
+    Parameters
+    ----------
+    u : ndarray, shape (K, 1, 1)
+        Steps in units of the rate, at most about 1.
+    """
+    s = 0.5 * u * (_POINTS + 1.0)
+    driven = (
+        np.eye(STATES)[:, 2, None]
+        + s * _NILPOTENT[:, 2, None]
+        + 0.5 * s**2 * (_NILPOTENT @ _NILPOTENT)[:, 2, None]
+    )
+    driven = driven * np.exp(-s)
+    return np.asarray(_DRIVE * np.einsum("kip,kjp,kp->kij", driven, driven, 0.5 * u[:, 0] * _WEIGHTS))
 
 
 def _quintic() -> Reals:

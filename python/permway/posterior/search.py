@@ -30,7 +30,7 @@ WIDTHS, PER_FORM = (72, 32, 12), (3, 2, 2)
 """Cells that are refined at each level, and at most so many of one form: sizes of the beam."""
 
 FEW = (24, 8, 6)
-"""The same where the nominal model fits as it is: then what is missing is small, or hidden by errors."""
+"""The same where the nominal model fits."""
 
 LACKING = 0.5
 """Probability that a fit lacks something, from which large changes are tried beside it."""
@@ -50,9 +50,6 @@ MOVING = 5.0
 
 STEPS = (4, 8, 8, 20)
 """Of the fit at each level, and at the end."""
-
-ROUNDS = 2
-"""Times that hyperparameters and parameters are estimated by turns."""
 
 MOST = 3
 """Amendments of one set, at most."""
@@ -129,6 +126,7 @@ def explored(
         what = f"{count} amendment{'s' if count > 1 else ''}"
         lacking = best.fit.hyper.novel > LACKING
         found = [] if lacking else _near(fitter, best, ruled_out, progress, what)
+        # What the nominal parameters took up shows about their stated values only.
         if lacking or count == 1:
             root = far if count == 1 else best
             found += _far(fitter, root, ruled_out, progress, what, WIDTHS if lacking else FEW)
@@ -160,14 +158,13 @@ def _annealed(fitter: Fitter, fit: Fit) -> Fit:
 
 
 def _finished(fitter: Fitter, fit: Fit, amendments: Sequence[Hypothesis] = ()) -> Fit:
-    """With hyperparameters and parameters estimated by turns, each amendment moved to better neighbours."""
-    for _ in range(ROUNDS):
-        fit = fitter.settled(fit)
-        stop = len(fit.model.free)
-        for amendment in reversed(amendments):
-            own = slice(stop - len(amendment.free), stop)
-            fit, stop = rested(fitter, fit, own, amendment, STEPS[-1]), own.start
-        fit = fitter.fit(estimated(fitter.settled(fit)), steps=STEPS[-1])
+    """Each amendment moved to better neighbours, then with hyperparameters of its own."""
+    fit = fitter.settled(fit)
+    stop = len(fit.model.free)
+    for amendment in reversed(amendments):
+        own = slice(stop - len(amendment.free), stop)
+        fit, stop = rested(fitter, fit, own, amendment, STEPS[-1]), own.start
+    fit = fitter.fit(estimated(fitter.settled(fit)), steps=STEPS[-1])
     return fitter.settled(fit)
 
 
