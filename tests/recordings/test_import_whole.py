@@ -114,8 +114,10 @@ def test_whatever_call_fails(which: str, older: bool, given: dict[str, Path], tm
         profiled(lambda: IMPORTERS[which](given[which], tmp_path / "counted"), count)
         shutil.rmtree(tmp_path / "counted")
     for number in np.unique(np.linspace(1, count.seen, STEPS).round()).astype(int):
-        with pytest.raises(BrokenError):
+        with pytest.raises((BrokenError, InputError)) as failed:
             profiled(lambda: IMPORTERS[which](given[which], out), FailsAt(int(number)))
+        # Whatever fails while a file is read, its reader says that the file cannot be read, and why.
+        assert isinstance(failed.value, BrokenError) or "BrokenError" in str(failed.value)
         assert tree(tmp_path) == was, f"after call {number} of {count.seen}"
 
 
