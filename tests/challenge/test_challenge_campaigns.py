@@ -26,20 +26,52 @@ PACKAGE = Path(permway.challenge.__file__).parent
 ALLOWED = {"numpy", "scipy", "pyuff", *sys.stdlib_module_names}
 
 
+BY_THE_TOOL = {
+    f"permway.challenge.small.{name}"
+    for name in ("alone", "by_model", "fixture", "make", "outside_model", "stated", "stretches", "write")
+}
+"""Makes small campaigns by the tool's own model on purpose, reads or diagnoses them."""
+
+
+def imports_of(file: Path) -> set[str]:
+    """Modules that a file imports anywhere; of a package that it imports from, what may be its modules, too."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, file
+            names |= {str(node.module)}
+            if str(node.module).startswith("permway.challenge"):
+                names |= {f"{node.module}.{alias.name}" for alias in node.names}
+    return names
+
+
+def foreign(name: str) -> bool:
+    own = name == "permway.errors" or name.split(".")[:2] == ["permway", "challenge"]
+    return not own and name.split(".")[0] not in ALLOWED
+
+
+MODULES = {
+    ".".join(["permway.challenge", *file.relative_to(PACKAGE).with_suffix("").parts]): imports_of(file)
+    for file in sorted(PACKAGE.rglob("*.py"))
+}
+
+
 def test_package_shares_nothing_with_the_solver() -> None:
-    files = sorted(PACKAGE.rglob("*.py"))
-    assert len(files) > 10
-    for file in files:
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-            names: list[str] = []
-            if isinstance(node, ast.Import):
-                names = [alias.name for alias in node.names]
-            elif isinstance(node, ast.ImportFrom):
-                assert node.level == 0, file
-                names = [str(node.module)]
-            for name in names:
-                own = name == "permway.errors" or name.split(".")[:2] == ["permway", "challenge"]
-                assert own or name.split(".")[0] in ALLOWED, f"{file} imports {name}"
+    assert len(MODULES) > 10
+    shared = {module: set(filter(foreign, names)) for module, names in MODULES.items()}
+    assert {module for module, names in shared.items() if names} == BY_THE_TOOL, shared
+
+
+def test_finite_elements_of_small_campaigns_share_nothing_with_the_solver() -> None:
+    reached, left = set[str](), {"permway.challenge.small.by_elements"}
+    while left:
+        module = left.pop()
+        reached.add(module)
+        left |= (MODULES[module] & set(MODULES)) - reached
+    assert "permway.challenge.small.elements_line" in reached
+    assert not reached & BY_THE_TOOL
 
 
 @pytest.mark.parametrize("text", [True, False], ids=["uff and csv", "mat and npz"])

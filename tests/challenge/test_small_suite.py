@@ -82,18 +82,25 @@ def test_each_campaign_ends_in_a_verdict_or_a_failure_and_none_is_diagnosed_twic
 
 
 def test_ctrl_c_ends_what_runs(tmp_path: Path, stub: str) -> None:
+    # A program that is started in the background ignores SIGINT, and what it starts inherits that.
     code = (
-        "import sys; from pathlib import Path; from permway.challenge.small.diagnose import diagnose_all; "
+        "import signal, sys; from pathlib import Path; "
+        "from permway.challenge.small.diagnose import diagnose_all; "
+        "signal.signal(signal.SIGINT, signal.default_int_handler); "
         "p = Path(sys.argv[1]); diagnose_all([(p / 'sleeps' / 'campaign.toml', p / 'out')], method=sys.argv[2])"
     )
     process = subprocess.Popen([sys.executable, "-c", code, str(tmp_path), stub], stderr=subprocess.DEVNULL)
     log = tmp_path / "log"
-    while not log.is_file():
-        time.sleep(0.05)
-        assert process.poll() is None
-    process.send_signal(signal.SIGINT)
-    # The campaign sleeps for a minute.
-    assert process.wait(timeout=20.0) != 0
+    try:
+        while not log.is_file():
+            time.sleep(0.05)
+            assert process.poll() is None
+        process.send_signal(signal.SIGINT)
+        # The campaign sleeps for a minute.
+        assert process.wait(timeout=20.0) != 0
+    finally:
+        process.kill()
+        process.wait()
     assert not (tmp_path / "out" / "verdict.json").exists()
 
 
