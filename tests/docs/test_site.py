@@ -61,6 +61,26 @@ def test_the_page_of_results_is_that_of_the_committed_run() -> None:
     assert all((DOCS / "images" / f"{name}.png").is_file() for name in made.pictures(summary))
 
 
+def test_the_page_of_small_campaigns_is_that_of_the_committed_runs() -> None:
+    made = import_module("make_baseline")
+    assert made.SUMMARY.stat().st_size <= SUMMARY_BYTES
+    assert made.page() == (DOCS / "baseline.md").read_text("utf-8")
+
+
+def test_the_readme_and_the_page_of_small_campaigns_say_the_same() -> None:
+    """Counts of the status table against the committed runs."""
+    summary = json.loads(import_module("make_baseline").SUMMARY.read_text("utf-8"))
+    readme = (ROOT / "README.md").read_text("utf-8")
+    for part, group, name, column in (
+        ("first", "deviance", "over 200", "class"),
+        ("posterior", "deviance", "over 200", "class"),
+        ("first_fixture", "all", "", "first"),
+        ("posterior_fixture", "all", "", "first"),
+    ):
+        (row,) = [r for r in summary[part]["rows"] if (r["group"], r["name"]) == (group, name)]
+        assert f"{row[column][0]:g}/{row[column][1]:g}" in readme
+
+
 def test_the_readme_and_the_page_of_results_say_the_same() -> None:
     """Counts of the status table against the committed run."""
     made = import_module("make_challenge")

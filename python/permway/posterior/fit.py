@@ -21,7 +21,6 @@ from permway.diagnosis.tangent import Problem, State
 from permway.errors import InputError
 from permway.posterior.covariance import Covariance, Frame
 from permway.posterior.hyper import Hyper
-from permway.recordings.campaign import Campaign
 
 ENOUGH = 0.1
 """Of minus two log posterior: a step that gains less is the last."""
@@ -130,13 +129,9 @@ class Fit:
 
 def grown(fit: Fit, hypothesis: Hypothesis, prefix: str) -> Model:
     """A fit's model with an amendment more, whose parameters' names get a prefix."""
-    return extended(fit.model, hypothesis, prefix, fit.frame.evidence.campaign)
-
-
-def extended(model: Model, hypothesis: Hypothesis, prefix: str, campaign: Campaign) -> Model:
-    """A model with an amendment more; the campaign is that of the nominal parameters."""
-    build, free = stacked(model.build, hypothesis, prefix, campaign)
-    return Model(build, (*model.free, *free))
+    campaign = fit.frame.evidence.campaign
+    build, free = stacked(fit.model.build, hypothesis, prefix, campaign)
+    return Model(build, (*fit.model.free, *free))
 
 
 class Fitter:

@@ -19,7 +19,7 @@ from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.errors import InputError, SolveError
 from permway.posterior.cells import SOMETHING, Cell, cells, resized, small
-from permway.posterior.fit import Fit, Fitter, Model, estimated, extended, grown
+from permway.posterior.fit import Fit, Fitter, Model, estimated, grown
 from permway.posterior.neighbours import rested
 from permway.posterior.screening import screened
 
@@ -70,18 +70,13 @@ class Member:
     ----------
     amendments : tuple of Hypothesis
     fit : Fit
-    log_priors : tuple of float
-        Of each amendment, nats.
+    log_prior : float
+        Of the set, nats.
     """
 
     amendments: tuple[Hypothesis, ...]
     fit: Fit
-    log_priors: tuple[float, ...]
-
-    @property
-    def log_prior(self) -> float:
-        """Of the set, nats."""
-        return float(np.log(1.0 - SOMETHING)) + sum(self.log_priors)
+    log_prior: float
 
     @property
     def log_mass(self) -> float:
@@ -123,9 +118,9 @@ def explored(
     start = fitter.begin(nominal, np.zeros(len(nominal.free)), coarse)
     fitter, (first,) = _weighed(fitter, [_annealed(fitter, start)], [()])
     start = fitter.begin(nominal, np.zeros(len(nominal.free)), coarse)
-    empty = Member((), first, ())
+    empty = Member((), first, float(np.log(1.0 - SOMETHING)))
     members = [empty]
-    far = Member((), start, ())
+    far = Member((), start, empty.log_prior)
     for count in range(1, MOST + 1):
         best = members[0]
         what = f"{count} amendment{'s' if count > 1 else ''}"
@@ -136,7 +131,6 @@ def explored(
             root = far if count == 1 else best
             found += _far(fitter, root, ruled_out, progress, what, WIDTHS if lacking else FEW)
         members = sorted([*members, *found], key=lambda m: -m.log_mass)
-        members = _pruned(fitter, members, empty.fit.model)
         # A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it.
         if len(members[0].amendments) < count:
             break
@@ -154,41 +148,6 @@ def _weighed(
     again = Fitter(fitter.frame.about(best.state.solved, best.covariance, best.state.deviations))
     begun = [again.begin(fit.model, fit.z, fit.hyper) for fit in fits]
     return again, [_finished(again, fit, own) for fit, own in zip(begun, amendments, strict=True)]
-
-
-def _pruned(fitter: Fitter, members: list[Member], nominal: Model) -> list[Member]:
-    """With the best set's subsets, each begun where the set has it, as long as one is better.
-
-    What came first may have stood in for what came after it.
-    """
-    while True:
-        best = members[0]
-        found = []
-        for index in range(len(best.amendments) if len(best.amendments) > 1 else 0):
-            kept = [i for i in range(len(best.amendments)) if i != index]
-            fit = _without(fitter, best, kept, nominal)
-            if fit is not None:
-                own = tuple(best.amendments[i] for i in kept)
-                found.append(Member(own, _finished(fitter, fit, own), tuple(best.log_priors[i] for i in kept)))
-        members = sorted([*members, *found], key=lambda m: -m.log_mass)
-        if members[0] is best:
-            return members
-
-
-def _without(fitter: Fitter, member: Member, kept: Sequence[int], nominal: Model) -> Fit | None:
-    """The set of some of a member's amendments, at the values that they have in it; the discrepancy falls anew."""
-    fit = member.fit
-    z = fit.z[: len(nominal.free)]
-    model = nominal
-    for number, index in enumerate(kept, start=1):
-        model = extended(model, member.amendments[index], f"{number}.", fitter.frame.evidence.campaign)
-        z = np.concatenate([z, fit.z[member.own(index)]])
-    try:
-        found = fitter.begin(model, z, fit.hyper.with_discrepancy(LEVELS[1]))
-        found = fitter.fit(found, steps=STEPS[1])
-        return fitter.fit(replace(found, hyper=found.hyper.with_discrepancy(LEVELS[2])), steps=STEPS[2])
-    except (InputError, SolveError):
-        return None
 
 
 def _annealed(fitter: Fitter, fit: Fit) -> Fit:
@@ -282,7 +241,7 @@ def _members(
     for done, (fit, cell) in enumerate(beam):
         progress(f"{what}, to the end", done, len(beam))
         amendments = (*root.amendments, cell.hypothesis)
-        found.append(Member(amendments, _finished(fitter, fit, amendments), (*root.log_priors, cell.log_prior)))
+        found.append(Member(amendments, _finished(fitter, fit, amendments), root.log_prior + cell.log_prior))
     return found
 
 
