@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from permway.diagnosis.fit import WIDTH
 from permway.diagnosis.speak_effect import bands_of
 from permway.diagnosis.tolerances import outside
 from permway.diagnosis.verdict import NOVEL, RIGHT, Status, Verdict
@@ -23,7 +24,6 @@ from permway.diagnosis.verdict_parts import (
 from permway.posterior.fit import Fit
 from permway.posterior.held_out import Gain
 from permway.posterior.masses import CLASS, Masses
-from permway.posterior.search import Member
 
 NAMED = 0.9
 """Posterior probability from which an effect is named."""
@@ -32,11 +32,7 @@ LIKELY = 0.5
 """Posterior probability from which nothing is said to be missing, or something of no catalogue."""
 
 SUSPECTED = 0.05
-"""Posterior probability of nothing missing from which an effect is a suspicion and no more: one campaign in twenty
-of those that are called then lacks nothing."""
-
-WIDTH = 1.6449
-"""Half of a 90 % interval, in standard deviations."""
+"""Posterior probability of nothing missing from which an effect is a suspicion and no more."""
 
 
 def verdict_of(
@@ -148,9 +144,3 @@ def _misfit(fit: Fit) -> float:
     hyper = fit.hyper.exact()
     covariance = fit.frame.covariance(hyper)
     return covariance.square(fit.state.deviations) / fit.state.deviations.size
-
-
-def describe(member: Member) -> str:
-    """A set of amendments in a line."""
-    each = [f"{a.entry} ({a.locate(member.values(i)).label})" for i, a in enumerate(member.amendments)]
-    return " and ".join(each) or "nothing missing"

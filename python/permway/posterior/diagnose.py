@@ -7,6 +7,7 @@ from collections.abc import Collection
 from permway.diagnosis.catalogue import known
 from permway.diagnosis.clock import Clock, Progress
 from permway.diagnosis.compare import assemble
+from permway.diagnosis.fit import WIDTH
 from permway.diagnosis.fit import Fit as Base
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.labels import mislabelled
@@ -21,9 +22,6 @@ from permway.posterior.held_out import gains
 from permway.posterior.masses import Masses
 from permway.posterior.search import Member, explored
 from permway.recordings.campaign import Campaign
-
-WIDTH = 1.6449
-"""Half of a 90 % interval, in standard deviations."""
 
 
 @one_thread_of_blas()

@@ -117,11 +117,6 @@ class Fit:
         curvature = float(np.linalg.slogdet(self.normal)[1]) if self.z.size else 0.0
         return -0.5 * (self.objective + curvature)
 
-    @property
-    def misfit(self) -> float:
-        """Mean square of the residuals, by the covariance with the discrepancy of a model that lacks nothing."""
-        return self.covariance.square(self.state.deviations) / self.state.deviations.size
-
     def values(self) -> dict[str, float]:
         """By name."""
         return self.model.values(self.z)
