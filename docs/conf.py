@@ -21,7 +21,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "mathml",
     "docstrings",
-    "effects",
+    "effects_page",
     "homes",
     "outside",
 ]

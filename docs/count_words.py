@@ -13,6 +13,8 @@ from pathlib import Path
 DOCS = Path(__file__).parent
 sys.path.insert(0, str(DOCS / "_extensions"))
 
+import effects_page  # noqa: E402
+
 _WHOLE = re.compile(r"% of (\S+)\s*")
 _WORD = re.compile(r"[^\s]*\w[^\s]*")
 _INCLUDED = re.compile(r"^```\{literalinclude\} (\S+)", re.MULTILINE)
@@ -26,13 +28,11 @@ def text(page: Path) -> str:
     page : Path
         A Markdown file of the site.
     """
-    import effects
-
     source = page.read_text("utf-8")
     if whole := _WHOLE.fullmatch(source):
         return (DOCS.parent / whole[1]).read_text("utf-8")
     included = [(page.parent / name).read_text("utf-8") for name in set(_INCLUDED.findall(source))]
-    return "\n".join([effects.page(source), *included])
+    return "\n".join([effects_page.page(source), *included])
 
 
 def pages() -> list[Path]:
