@@ -9,7 +9,8 @@ import pytest
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather
 from permway.posterior.covariance import Frame
-from permway.posterior.fit import Fitter, Model, estimated
+from permway.posterior.estimate import estimated
+from permway.posterior.fit import Fitter, Model
 from permway.posterior.hyper import COARSEST, EXACT, Hyper
 from scipy import integrate, stats
 from simulated import simulate

@@ -6,9 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from permway.diagnosis.catalogue._change import with_chain
+from permway.diagnosis.catalogue._change import with_chain, with_joints
 from permway.diagnosis.catalogue._interval import weakened
-from permway.diagnosis.verdict import UNPROVED
+from permway.diagnosis.verdict import NOVEL, UNPROVED
+from permway.laws import Springpot
+from permway.model.joints import GROUND, Joints
 from permway.posterior.diagnose import diagnose
 from permway.recordings.campaign import Campaign
 from simulated import simulate
@@ -25,6 +27,12 @@ def loud(campaign: Campaign) -> Campaign:
     """A sensor reads 1.4 times what is there."""
     chain = campaign.sensor("deck@3").chain
     return with_chain(campaign, "deck@3", chain.model_copy(update={"gain": 1.4}))
+
+
+def leaning(campaign: Campaign) -> Campaign:
+    """The deck leans on the ground by a springpot that no catalogue has."""
+    joint = Joints(between=("deck", GROUND), law="lean", at=(4.6,))
+    return with_joints(campaign, joint, laws={"lean": Springpot(coefficient=3.0e5, order=0.6)})
 
 
 def nothing(campaign: Campaign) -> Campaign:
@@ -48,6 +56,19 @@ def test_two_of_three_seeds_are_named_rightly_and_no_other_name_is_given(
         assert found <= names
         right += found == names
     assert right >= 2
+
+
+def test_what_no_catalogue_has_is_described_at_its_place_and_gets_no_name(tmp_path: Path) -> None:
+    described = 0
+    for seed in (35, 36, 37):
+        verdict = diagnose(simulate(tmp_path / str(seed), seed, amend=leaning).campaign, threads=1).verdict
+        assert not {effect.name for effect in verdict.effects} - {None}
+        if verdict.status == "described":
+            effect = verdict.effects[0]
+            assert effect.class_[0].name == NOVEL
+            assert effect.place.x is not None
+            described += "springpot" in effect.law.words and abs(effect.place.x[0] - 4.6) < 0.5
+    assert described >= 2
 
 
 def test_the_answer_does_not_depend_on_how_many_processes_share_the_work(tmp_path: Path) -> None:

@@ -27,8 +27,11 @@ from permway.records import FrozenModel
 _NAME = re.compile(r"^[A-Za-z][A-Za-z0-9_-]*$")
 
 
-_LAST: dict[str, tuple[weakref.ref[Line], JointTable]] = {}
-"""The line whose joints were compiled last, and they."""
+_KEPT = 8
+"""Lines whose joints stay compiled: a search goes back and forth between a few."""
+
+_COMPILED: dict[int, tuple[weakref.ref[Line], JointTable]] = {}
+"""The lines whose joints were compiled last, and they."""
 
 
 class Line(FrozenModel):
@@ -104,11 +107,13 @@ class Line(FrozenModel):
         InputError
             If a joint lies off one of its bodies, or nothing holds a mass of a row.
         """
-        # A line is solved for several records one after the other.
-        known, table = _LAST.get("table", (None, None))
+        known, table = _COMPILED.get(id(self), (None, None))
         if table is None or known is None or known() is not self:
             table = joint_table(self.bodies, self.joints, list(self.laws), self.segments())
-            _LAST["table"] = weakref.ref(self), table
+            _COMPILED.pop(id(self), None)
+            _COMPILED[id(self)] = weakref.ref(self), table
+            for old in list(_COMPILED)[:-_KEPT]:
+                _COMPILED.pop(old, None)
         return table
 
     def stiffness(self, frequency_Hz: ArrayLike, temperature_C: float | None = None) -> Complexes:

@@ -86,7 +86,8 @@ def _status(masses: Masses, effects: tuple[Effect, ...], before: Mapping[str, Mo
     if best.fit.hyper.novel >= LIKELY:
         return "located" if any(e.domain == "path" for e in effects) else "insufficient"
     if any(effect.name is None for effect in effects):
-        return "ambiguous"
+        first = effects[0].class_[0]
+        return "described" if first.name == NOVEL and first.probability >= NAMED else "ambiguous"
     return "measurement" if all(effect.domain == "measurement" for effect in effects) else "named"
 
 

@@ -19,7 +19,7 @@ from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
 from permway.diagnosis.quick import weaker
 from permway.diagnosis.spot import Found, Spot
-from permway.posterior import stated
+from permway.posterior import generic, stated
 from permway.posterior.fit import Fit
 
 SPACING_M = 1.0
@@ -34,6 +34,9 @@ engineers meet is a factor of 40 of what clean records show. Twice as much costs
 
 SMALL = 0.03
 """Share of a start's size at which a small effect's direction is taken: resonances then move in proportion."""
+
+BESIDE = {stated.ID: cast(Entry, stated), generic.ID: cast(Entry, generic)}
+"""What is tried beside the catalogue: values that are stated wrongly, and elements of no catalogue."""
 
 SOMETHING = 0.5
 """Prior probability that something is missing: shared by the entries, and in each by its places."""
@@ -74,14 +77,15 @@ def cells(base: Fit, ruled_out: Collection[str] = ()) -> list[Cell]:
     """
     offered: dict[str, list[Hypothesis]] = {}
     situations = list(_situations(base))
-    for name, entry in {**entries(), stated.ID: cast(Entry, stated)}.items():
+    for name, entry in {**entries(), **BESIDE}.items():
         if name not in ruled_out:
             found = [widened(hypothesis) for hypothesis in _offered(entry, situations)]
             if found:
                 offered[name] = found
     found_cells = []
-    share = math.log(SOMETHING / max(len(offered), 1))
-    for hypotheses in offered.values():
+    named = max(sum(name != generic.ID for name in offered), 1)
+    for name, hypotheses in offered.items():
+        share = math.log(SOMETHING * (generic.PRIOR if name == generic.ID else (1.0 - generic.PRIOR) / named))
         forms: dict[tuple[str, ...], list[Hypothesis]] = defaultdict(list)
         for hypothesis in hypotheses:
             forms[hypothesis.form].append(hypothesis)

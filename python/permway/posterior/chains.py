@@ -48,6 +48,13 @@ class Chains:
     entries : Entries
     relative : ndarray, shape (n,), optional
         Of each row what an error of 1 neper does to it.
+
+    Attributes
+    ----------
+    local : slice or ndarray of int
+        The rows that the processes act on, ascending.
+    acts : sparse array, shape (local rows, parts states)
+        How the states act on them; where rows are turned, log gains are the first part and phases the second.
     """
 
     def __init__(
@@ -67,12 +74,18 @@ class Chains:
         weights = value * entries.value[:, None] + slope * entries.slope[:, None]
         first = (before * width + STATES * entries.process)[:, None] + np.arange(STATES)
         columns = np.concatenate([first, first + width], axis=1)
-        inside = columns < self.size
+        # A line at a node has that node's value, and no other state.
+        inside = (columns < self.size) & (np.abs(weights) > 1e-12)
         row = np.broadcast_to(entries.row[:, None], columns.shape)
         self.design = sparse.csr_array(
             (weights[inside], (row[inside], columns[inside])), shape=(len(rows), self.size)
         )
         self.band = 2 * width if self.nodes.x.size > 1 else width
+        self.parts = 1 if turn is None else 2
+        local = rows if turn is None else rows.T.reshape(-1)
+        order = np.argsort(local)
+        self.acts = sparse.csr_array((self.design if turn is None else _turned(self.design, turn))[order])
+        self.local = _contiguous(local[order])
         self._pairs()
 
     def _pairs(self) -> None:
@@ -127,6 +140,18 @@ class Chains:
         return Factor(self, factor, weights, log_determinant)
 
 
+def _contiguous(rows: np.ndarray) -> slice | np.ndarray:
+    """Ascending rows, as a slice if none lies between: that copies nothing."""
+    first, last = int(rows[0]), int(rows[-1])
+    return slice(first, last + 1) if last + 1 - first == rows.size else rows
+
+
+def _turned(design: sparse.csr_array, turn: Complexes) -> sparse.csr_array:
+    """From states of log gains, then of phases, to real parts, then imaginary parts of rows."""
+    along, across = (design.multiply(part[:, None]) for part in (turn.real, turn.imag))
+    return sparse.csr_array(sparse.block_array([[along, across], [-across, along]]))
+
+
 @dataclass(frozen=True)
 class Factor:
     """Applies the inverse of D + C K C', D diagonal, K that of the processes (Woodbury's identity)."""
@@ -137,23 +162,33 @@ class Factor:
     log_determinant: float
     """Of I + C K C' D^-1."""
 
-    def explained(self, values: Reals) -> Reals:
-        """What the processes most probably do to rows, shape (n, 1), whose values are these."""
-        return np.asarray(values - self.apply(values) / self.weights[:, None])
+    def pulled(self, weighted: Reals) -> Reals:
+        """C' times columns that are weighted already, as the factor solves for it: shape (states, parts k)."""
+        chains = self.chains
+        each = np.asarray(chains.acts.T @ weighted).reshape(chains.parts, chains.size, -1)
+        return np.ascontiguousarray(np.moveaxis(each, 0, 1).reshape(chains.size, -1))
 
-    def apply(self, values: Reals) -> Reals:
-        """Inverse times columns, shape (n rows of the chains, k)."""
-        design = self.chains.design
-        weighted = values * self.weights[:, None]
-        pulled = np.asarray(design.T @ weighted)
-        if np.iscomplexobj(pulled):
-            both = np.concatenate([pulled.real, pulled.imag], axis=1)
-            solved = linalg.cho_solve_banded((self.factor, True), both, check_finite=False)
-            half = pulled.shape[1]
-            moved = solved[:, :half] + 1j * solved[:, half:]
-        else:
-            moved = linalg.cho_solve_banded((self.factor, True), pulled, check_finite=False)
-        return np.asarray(weighted - self.weights[:, None] * (design @ moved))
+    def half(self, weighted: Reals) -> Reals:
+        """L^-1 C' times columns that are weighted already, L the factor: shape (states parts, k)."""
+        count = weighted.shape[1]
+        if not count:
+            # LAPACK reads beyond arrays that hold nothing.
+            return np.zeros((self.chains.parts * self.chains.size, 0))
+        solved, _ = linalg.lapack.dtbtrs(self.factor, self.pulled(weighted), uplo="L")
+        return np.asarray(solved).reshape(-1, count)
+
+    def states(self, weighted: Reals) -> Reals:
+        """Most probable states of the processes, given what rows are: shape (parts states, k)."""
+        chains = self.chains
+        if not weighted.shape[1]:
+            return np.zeros((chains.parts * chains.size, 0))
+        solved = linalg.cho_solve_banded((self.factor, True), self.pulled(weighted), check_finite=False)
+        each = solved.reshape(chains.size, chains.parts, -1)
+        return np.ascontiguousarray(np.moveaxis(each, 1, 0).reshape(chains.parts * chains.size, -1))
+
+    def apply(self, weighted: Reals) -> Reals:
+        """What the processes take off columns that are weighted already, but for the weights."""
+        return np.asarray(self.chains.acts @ self.states(weighted))
 
 
 def of_responses(blocks: list[tuple[int, FrfBlock]]) -> Chains:

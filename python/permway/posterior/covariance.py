@@ -160,6 +160,24 @@ def _own(evidence: Evidence, block: Block) -> dict[str, Reals]:
 
 
 @dataclass(frozen=True)
+class Roots:
+    """Columns X as A and B of which A' A - B' B is the inner product of X by the inverse of a covariance."""
+
+    above: Reals
+    below: Reals
+
+    def times(self, other: Roots) -> Reals:
+        """Inner products with other columns, shape (k, other's k)."""
+        return np.asarray(self.above.T @ other.above - self.below.T @ other.below)
+
+    def squares(self) -> Reals:
+        """Inner product of each column with itself, shape (k,)."""
+        return np.asarray(
+            np.einsum("nk,nk->k", self.above, self.above) - np.einsum("nk,nk->k", self.below, self.below)
+        )
+
+
+@dataclass(frozen=True)
 class Covariance:
     """Of the residuals, for given hyperparameters; it applies its inverse and has its determinant."""
 
@@ -169,25 +187,26 @@ class Covariance:
     noise: float
     factors: tuple[Factor, ...]
 
-    def _chains(self, values: Reals) -> Reals:
-        """Inverse of all but the columns' part, times values (n, k)."""
-        found = values * self.weights[:, None]
-        for factor in self.factors:
-            chains = factor.chains
-            if chains.turn is None:
-                found[chains.rows] = factor.apply(values[chains.rows])
-            else:
-                real, imaginary = chains.rows.T
-                turned = (values[real] + 1j * values[imaginary]) * chains.turn[:, None]
-                solved = factor.apply(turned) * chains.turn.conj()[:, None]
-                found[real], found[imaginary] = solved.real, solved.imag
-        return found
-
     @cached_property
-    def _spanned(self) -> tuple[Reals, Reals]:
-        solved = self._chains(self.frame.columns)
-        inner = self.frame.columns.T @ solved + np.eye(solved.shape[1])
-        return solved, linalg.cholesky(inner, lower=True)
+    def _spanned(self) -> tuple[Roots, Reals]:
+        """Of the columns: themselves, and the factor of their part."""
+        columns = self._of_chains(self.frame.columns)
+        return columns, linalg.cholesky(columns.times(columns) + np.eye(columns.below.shape[1]), lower=True)
+
+    def _of_chains(self, values: Reals) -> Roots:
+        root = np.sqrt(self.weights)[:, None]
+        above = root * values
+        below = [f.half(root[f.chains.local] * above[f.chains.local]) for f in self.factors]
+        return Roots(above, np.concatenate([np.zeros((0, values.shape[1])), *below]))
+
+    def roots(self, values: Reals) -> Roots:
+        """What inner products by the inverse are made of, of columns (n, k): half the work of applying it."""
+        found = self._of_chains(values)
+        if not self.frame.columns.shape[1]:
+            return found
+        spanned, lower = self._spanned
+        beside = linalg.solve_triangular(lower, spanned.times(found), lower=True)
+        return Roots(found.above, np.concatenate([found.below, beside]))
 
     def errors(self, residuals: Reals) -> Reals:
         """Most probable errors of chains at rows of frequency responses: log gains, then phases; else 0."""
@@ -195,25 +214,33 @@ class Covariance:
         for factor in self.factors:
             chains = factor.chains
             if chains.turn is not None:
-                real, imaginary = chains.rows.T
-                turned = (residuals[real] + 1j * residuals[imaginary]) * chains.turn
-                moved = factor.explained(turned[:, None])[:, 0]
+                states = factor.states((self.weights * residuals)[chains.local, None])
+                moved = np.asarray(chains.design @ states.reshape(chains.parts, chains.size).T)
                 with np.errstate(divide="ignore", invalid="ignore"):
-                    each = np.where(chains.relative > 0.0, moved / chains.relative, 0.0)
-                found[real], found[imaginary] = each.real, each.imag
+                    each = np.where(chains.relative[:, None] > 0.0, moved / chains.relative[:, None], 0.0)
+                found[chains.rows] = each
         return found
 
     def apply(self, values: Reals) -> Reals:
         """Inverse times values, shape (n, k)."""
-        found = self._chains(values)
+        found = self._without_columns(values)
         if self.frame.columns.shape[1]:
-            solved, lower = self._spanned
-            found -= solved @ linalg.cho_solve((lower, True), solved.T @ values)
+            spanned, lower = self._spanned
+            inner = linalg.cho_solve((lower, True), spanned.times(self._of_chains(values)))
+            found -= self._without_columns(self.frame.columns @ inner)
+        return found
+
+    def _without_columns(self, values: Reals) -> Reals:
+        """The inverse of all but the columns' part."""
+        found = values * self.weights[:, None]
+        for factor in self.factors:
+            at = factor.chains.local
+            found[at] -= self.weights[at, None] * factor.apply(found[at])
         return found
 
     def square(self, values: Reals) -> float:
         """Quadratic form of one vector."""
-        return float(values @ self.apply(values[:, None])[:, 0])
+        return float(self.roots(values[:, None]).squares()[0])
 
     @cached_property
     def log_determinant(self) -> float:

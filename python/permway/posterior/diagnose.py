@@ -16,11 +16,12 @@ from permway.diagnosis.result import Candidate, Diagnosis
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.speak_measurement import mixed_up, with_spoilt
 from permway.posterior.answer import verdict_of
+from permway.posterior.beam import Member
 from permway.posterior.covariance import Frame
 from permway.posterior.fit import Fit, Fitter
 from permway.posterior.held_out import gains
 from permway.posterior.masses import Masses
-from permway.posterior.search import Member, explored
+from permway.posterior.search import explored
 from permway.recordings.campaign import Campaign
 
 

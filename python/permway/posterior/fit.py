@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy import linalg, optimize
+from scipy import linalg
 
 from permway.arrays import Reals
 from permway.diagnosis.bounded import bounded_step
@@ -19,17 +19,15 @@ from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.quick import stacked
 from permway.diagnosis.tangent import Problem, State
 from permway.errors import InputError
-from permway.posterior.covariance import Covariance, Frame
+from permway.posterior.covariance import Covariance, Frame, Roots
 from permway.posterior.hyper import Hyper
+from permway.recordings.campaign import Campaign
 
 ENOUGH = 0.1
 """Of minus two log posterior: a step that gains less is the last."""
 
 TRUSTED = 0.9
 """Ratio of a step's gain to the predicted gain from which slopes serve once more."""
-
-SETTLED, MOST_ESTIMATES = 1e-5, 25
-"""Relative change of the objective at which hyperparameters are found, and steps at most."""
 
 CURVED = 0.5
 """The same, below which the step is taken again with the curvature that it met."""
@@ -74,6 +72,8 @@ class Fit:
         Parameters z, predictions and residuals.
     jacobian : ndarray, shape (n, p)
         Slopes of the residuals at, or near, the state.
+    bend : ndarray, shape (h, h), optional
+        Curvature of the objective by the logarithms of hyperparameters, as it was met where they were estimated.
     """
 
     model: Model
@@ -81,6 +81,7 @@ class Fit:
     hyper: Hyper
     state: State
     jacobian: Reals
+    bend: Reals | None = None
 
     @cached_property
     def covariance(self) -> Covariance:
@@ -102,9 +103,18 @@ class Fit:
         return self.covariance.log_determinant - 2.0 * self.hyper.log_prior
 
     @cached_property
+    def roots(self) -> Roots:
+        """Of the slopes."""
+        return self.covariance.roots(self.jacobian)
+
+    def slope(self, residuals: Reals) -> Reals:
+        """Half the slope of the objective by z where the residuals are these, shape (p,)."""
+        return self.roots.times(self.covariance.roots(residuals[:, None]))[:, 0]
+
+    @cached_property
     def normal(self) -> Reals:
         """Half the curvature of the objective by z, (p, p)."""
-        return np.asarray(self.jacobian.T @ self.covariance.apply(self.jacobian) + np.eye(self.z.size))
+        return self.roots.times(self.roots) + np.eye(self.z.size)
 
     @cached_property
     def spread(self) -> Reals:
@@ -124,9 +134,13 @@ class Fit:
 
 def grown(fit: Fit, hypothesis: Hypothesis, prefix: str) -> Model:
     """A fit's model with an amendment more, whose parameters' names get a prefix."""
-    campaign = fit.frame.evidence.campaign
-    build, free = stacked(fit.model.build, hypothesis, prefix, campaign)
-    return Model(build, (*fit.model.free, *free))
+    return extended(fit.model, hypothesis, prefix, fit.frame.evidence.campaign)
+
+
+def extended(model: Model, hypothesis: Hypothesis, prefix: str, campaign: Campaign) -> Model:
+    """A model with an amendment more; the campaign is that of the nominal parameters."""
+    build, free = stacked(model.build, hypothesis, prefix, campaign)
+    return Model(build, (*model.free, *free))
 
 
 class Fitter:
@@ -140,7 +154,9 @@ class Fitter:
     def __init__(self, frame: Frame) -> None:
         self.frame = frame
 
-    def begin(self, model: Model, z: Reals, hyper: Hyper, jacobian: Reals | None = None) -> Fit:
+    def begin(
+        self, model: Model, z: Reals, hyper: Hyper, jacobian: Reals | None = None, bend: Reals | None = None
+    ) -> Fit:
         """A model at some parameters, slopes taken there unless they are given.
 
         Raises
@@ -152,7 +168,8 @@ class Fitter:
         state = problem.at(np.clip(z, *model.limits))
         if state is None:
             raise InputError("the model cannot be solved there", where="start", value=z.tolist())
-        return Fit(model, self.frame, hyper, state, problem.jacobian(state) if jacobian is None else jacobian)
+        slopes = problem.jacobian(state) if jacobian is None else jacobian
+        return Fit(model, self.frame, hyper, state, slopes, bend)
 
     def fit(self, start: Fit, *, steps: int, fixed: int = 0) -> Fit:
         """Descend by at most so many steps.
@@ -166,9 +183,9 @@ class Fitter:
         """
         problem = Problem(self.frame.evidence, start.model.build, start.model.free)
         low, high = start.model.limits
-        fit, damping, fresh = start, 1e-3, True
+        fit, damping, fresh, exact = start, 1e-3, True, not fixed
         for _ in range(steps):
-            slope = fit.jacobian.T @ fit.covariance.apply(fit.state.deviations[:, None])[:, 0] + fit.z
+            slope = fit.slope(fit.state.deviations) + fit.z
             moved = None
             for _ in range(6):
                 shift = bounded_step(fit.normal, slope, fit.z, low, high, damping)
@@ -183,13 +200,15 @@ class Fitter:
                     break
                 moved, damping = None, max(10.0 * damping, 1e-4)
             if moved is None:
-                if fresh or predicted < ENOUGH:
+                if predicted < ENOUGH or (fresh and exact):
                     break
-                fit, fresh, damping = self.sloped(problem, fit, fixed), True, 1e-3
+                # Where slopes that were kept lead nowhere, all are taken anew.
+                exact = exact or fresh
+                fit, fresh, damping = self.sloped(problem, fit, 0 if exact else fixed), True, 1e-3
                 continue
             gained = fit.objective - moved.objective
             trusted = TRUSTED * predicted < gained < predicted / TRUSTED
-            fit, fresh = moved, False
+            fit, fresh, exact = moved, False, not fixed
             if not trusted:
                 fit, fresh = self.sloped(problem, fit, fixed), True
             if gained < ENOUGH:
@@ -212,43 +231,15 @@ class Fitter:
         if state is None:
             return None
         new = replace(fit, state=state)
-        new.__dict__["covariance"] = fit.covariance
+        for known in ("covariance", "roots", "normal"):
+            new.__dict__[known] = getattr(fit, known)
         return new
 
     def _corrected(self, problem: Problem, fit: Fit, tried: Fit, damping: float) -> Fit | None:
         """A step again, with the part of the residuals' change that slopes did not foretell."""
         bent = tried.state.deviations - fit.jacobian @ (tried.z - fit.z)
-        slope = fit.jacobian.T @ fit.covariance.apply(bent[:, None])[:, 0] + fit.z
+        slope = fit.slope(bent) + fit.z
         low, high = fit.model.limits
         shift = bounded_step(fit.normal, slope, fit.z, low, high, damping)
         other = self._tried(problem, fit, np.clip(fit.z + shift, low, high))
         return other if other is not None and other.objective < tried.objective else None
-
-
-def estimated(fit: Fit) -> Fit:
-    """With its most probable hyperparameters, the parameters moving along in a straight line."""
-    columns = np.column_stack([fit.state.deviations, fit.jacobian])
-    low, high = fit.hyper.bounds()
-
-    def objective(log: Reals) -> float:
-        hyper = fit.hyper.moved(log)
-        try:
-            covariance = fit.frame.covariance(hyper)
-        except linalg.LinAlgError:
-            return 1e300
-        inner = columns.T @ covariance.apply(columns)
-        normal = inner[1:, 1:] + np.eye(fit.z.size)
-        slope = inner[1:, 0] + fit.z
-        moved = slope @ np.linalg.solve(normal, slope) if fit.z.size else 0.0
-        curvature = float(np.linalg.slogdet(normal)[1]) if fit.z.size else 0.0
-        least = float(inner[0, 0]) + float(fit.z @ fit.z) - float(moved)
-        return least + curvature + covariance.log_determinant - 2.0 * hyper.log_prior
-
-    found = optimize.minimize(
-        objective,
-        fit.hyper.log,
-        method="L-BFGS-B",
-        bounds=list(zip(low, high, strict=True)),
-        options={"maxiter": MOST_ESTIMATES, "ftol": SETTLED, "eps": 1e-3},
-    )
-    return replace(fit, hyper=fit.hyper.moved(found.x))

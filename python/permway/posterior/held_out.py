@@ -76,7 +76,8 @@ def _marginal(fit: Fit, keep: np.ndarray) -> tuple[float, np.ndarray]:
     """Log marginal likelihood of some rows, and by how far the parameters are elsewhere without the others."""
     covariance = _of_rows(fit.covariance, keep)
     columns = np.column_stack([fit.state.deviations, fit.jacobian])
-    inner = columns.T @ covariance.apply(columns)
+    roots = covariance.roots(columns)
+    inner = roots.times(roots)
     normal = inner[1:, 1:] + np.eye(fit.z.size)
     slope = inner[1:, 0] + fit.z
     shift = -np.linalg.solve(normal, slope) if fit.z.size else np.zeros(0)

@@ -62,7 +62,7 @@ def rested(fitter: Fitter, fit: Fit, own: slice, hypothesis: Hypothesis, steps: 
         if not promised[best] < fit.objective - WORTH:
             return fit
         try:
-            start = fitter.begin(fit.model, moved[best][0], fit.hyper, fit.jacobian)
+            start = fitter.begin(fit.model, moved[best][0], fit.hyper, fit.jacobian, fit.bend)
             new = fitter.fit(fitter.settled(start, fixed=own.start), steps=steps)
         except (InputError, SolveError):
             return fit
@@ -87,6 +87,10 @@ def _moves(fit: Fit, own: slice, hypothesis: Hypothesis) -> Iterator[tuple[Reals
             index = names.index(name)
             at = own.start + index
             found = coordinate(free[index], value)
+            if name == hypothesis.size:
+                # It moves along; a size beyond its limits stays as it is.
+                z[at] = z[at] if found is None else found
+                continue
             if found is None:
                 return
             z[at] = found
@@ -95,7 +99,12 @@ def _moves(fit: Fit, own: slice, hypothesis: Hypothesis) -> Iterator[tuple[Reals
 
     if all(name in names for name in STRETCH):
         for low, high in _stretches(values, stations_of(line, what) if what in line.laws else None, hypothesis):
-            yield from changed({"centre_m": 0.5 * (low + high), "length_m": high - low})
+            to = {"centre_m": 0.5 * (low + high), "length_m": high - low}
+            if hypothesis.size in names and np.isfinite(hypothesis.none):
+                # More joints have less each: halfway between as much each and as much together.
+                share = np.sqrt((values["length_m"] + step) / (high - low + step))
+                to[hypothesis.size] = hypothesis.none + share * (values[hypothesis.size] - hypothesis.none)
+            yield from changed(to)
     elif "x_m" in names:
         for away in PLACES:
             yield from changed({"x_m": values["x_m"] + away * step})
@@ -128,7 +137,6 @@ def _scored(fit: Fit, moved: list[tuple[Reals, tuple[int, ...]]]) -> list[tuple[
     """The least objective of each neighbour while all that was not set moves along, and its index."""
     evidence = fit.frame.evidence
     rest = fit.objective - fit.covariance.square(fit.state.deviations) - float(fit.z @ fit.z)
-    solved = fit.covariance.apply(fit.jacobian)
 
     def residuals(one: tuple[Reals, tuple[int, ...]]) -> Reals | None:
         try:
@@ -145,8 +153,9 @@ def _scored(fit: Fit, moved: list[tuple[Reals, tuple[int, ...]]]) -> list[tuple[
             continue
         z, places = moved[index]
         moving = np.setdiff1d(np.arange(z.size), places)
-        slope = solved[:, moving].T @ values + z[moving]
+        roots = fit.covariance.roots(values[:, None])
+        slope = fit.roots.times(roots)[moving, 0] + z[moving]
         normal = fit.normal[np.ix_(moving, moving)]
         gain = float(slope @ linalg.solve(normal, slope, assume_a="pos")) if moving.size else 0.0
-        found.append((fit.covariance.square(values) + float(z @ z) - gain + rest, index))
+        found.append((float(roots.squares()[0]) + float(z @ z) - gain + rest, index))
     return found

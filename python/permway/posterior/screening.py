@@ -57,7 +57,6 @@ def screened(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object] 
     """
     evidence, solved, build = fit.frame.evidence, fit.state.solved, fit.model.build
     base = build(fit.values())
-    solvable = fit.covariance.apply(fit.jacobian)
     factor = linalg.cho_factor(fit.normal) if fit.z.size else None
     rest = fit.objective - fit.covariance.square(fit.state.deviations) - float(fit.z @ fit.z)
 
@@ -76,24 +75,24 @@ def screened(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object] 
         return found if np.isfinite(found).all() else None
 
     objective, gain, measure = np.full(len(cells), np.inf), np.zeros(len(cells)), np.zeros(len(cells))
-    before = fit.state.deviations
-    uphill = solvable.T @ before
+    before = fit.covariance.roots(fit.state.deviations[:, None])
+    least = float(before.squares()[0])
+    uphill = fit.roots.times(before)[:, 0] + fit.z
     for start in range(0, len(cells), BATCH):
         batch = each(residuals, cells[start : start + BATCH], threads=evidence.threads, least=SMALL)
         solved_ones = {index: found for index, found in enumerate(batch) if found is not None}
         if solved_ones:
-            columns = np.stack(list(solved_ones.values()), axis=1)
-            weighted = fit.covariance.apply(columns)
-            square = np.einsum("nk,nk->k", columns, weighted)
-            change = columns - before[:, None]
-            along = before @ weighted - fit.covariance.square(before)
-            size = square - 2.0 * before @ weighted + fit.covariance.square(before)
+            roots = fit.covariance.roots(np.stack(list(solved_ones.values()), axis=1))
+            square, across = roots.squares(), before.times(roots)[0]
+            # Of r + a d: d' r, and d' d, by the inverse of the covariance.
+            along, size = across - least, square - 2.0 * across + least
             if factor is not None:
-                slope = solvable.T @ columns + fit.z[:, None]
+                slope = fit.roots.times(roots) + fit.z[:, None]
                 square += float(fit.z @ fit.z) - np.einsum("pk,pk->k", slope, linalg.cho_solve(factor, slope))
-                turned = linalg.cho_solve(factor, solvable.T @ change)
-                along = along - (uphill + fit.z) @ turned
-                size = size - np.einsum("pk,pk->k", solvable.T @ change, turned)
+                change = slope - uphill[:, None]
+                turned = linalg.cho_solve(factor, change)
+                along = along - uphill @ turned
+                size = size - np.einsum("pk,pk->k", change, turned)
             at = start + np.array(list(solved_ones))
             objective[at] = square + np.array([float(cells[i].z @ cells[i].z) for i in at]) + rest
             # Of r + a d with a at least 0.

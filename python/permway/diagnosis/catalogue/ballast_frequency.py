@@ -38,6 +38,14 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             yield _of(name)
 
 
+def everywhere(situation: Situation) -> Iterator[Hypothesis]:
+    """One for each hysteretic law of any bed: mats below a slab relax, too."""
+    line = situation.campaign.model.line
+    for name in laws_of(beds(line)):
+        if isinstance(line.laws[name], Hysteretic):
+            yield _of(name)
+
+
 def _of(name: str) -> Hypothesis:
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         return relaxing(campaign, name, **values)

@@ -1,0 +1,261 @@
+"""Sets of amendments on their way to the end: fitted further, ranked, and the best of each form kept.
+
+What is kept of a fit between two stages is its parameters. So hundreds take no memory, and several processes may
+share the work.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+from permway.arrays import Reals
+from permway.diagnosis.hypothesis import Hypothesis, Where
+from permway.diagnosis.side_by_side import each
+from permway.errors import InputError, SolveError
+from permway.posterior.cells import SOMETHING, Cell
+from permway.posterior.estimate import estimated
+from permway.posterior.fit import Fit, Fitter, Model, grown
+from permway.posterior.hyper import Hyper
+from permway.posterior.neighbours import STRETCH, rested
+
+STEPS = (4, 8, 8, 20)
+"""Of the fit at each discrepancy, and at the end."""
+
+SAME, ALIKE = 2.0, 0.01
+"""Of the objective, and of each value in proportion: two fits of one form this near are one."""
+
+Item = TypeVar("Item")
+Progress = Callable[[str, int, int], object]
+
+
+@dataclass(frozen=True)
+class Member:
+    """A set of amendments with its fit.
+
+    Attributes
+    ----------
+    amendments : tuple of Hypothesis
+    fit : Fit
+    log_priors : tuple of float
+        Of each amendment, nats.
+    """
+
+    amendments: tuple[Hypothesis, ...]
+    fit: Fit
+    log_priors: tuple[float, ...]
+
+    @property
+    def log_prior(self) -> float:
+        """Of the set, nats."""
+        return float(np.log(1.0 - SOMETHING)) + sum(self.log_priors)
+
+    @property
+    def log_mass(self) -> float:
+        """Logarithm of prior times evidence, up to a constant of the records."""
+        return self.log_prior + self.fit.log_evidence
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Entries of the catalogue, in alphabetical order."""
+        return tuple(sorted(a.entry for a in self.amendments))
+
+    def own(self, index: int) -> slice:
+        """Where the parameters of one amendment stand among all."""
+        counts = [len(a.free) for a in self.amendments]
+        start = len(self.fit.model.free) - sum(counts) + sum(counts[:index])
+        return slice(start, start + counts[index])
+
+    def values(self, index: int) -> dict[str, float]:
+        """Of one amendment's parameters, by their own names."""
+        free, z = self.amendments[index].free, self.fit.z[self.own(index)]
+        return {f.name: f.value(float(v)) for f, v in zip(free, z, strict=True)}
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A set with one amendment more, on its way.
+
+    Attributes
+    ----------
+    cell : Cell
+        Of the amendment.
+    z : ndarray
+        Of all parameters.
+    hyper : Hyper
+    bend : ndarray, optional
+        See :class:`permway.posterior.fit.Fit`.
+    objective, log_evidence : float
+        Of the fit; infinite, and minus that, before there is one.
+    """
+
+    cell: Cell
+    z: Reals
+    hyper: Hyper
+    bend: Reals | None
+    objective: float = np.inf
+    log_evidence: float = -np.inf
+
+    @staticmethod
+    def of(root: Member, cell: Cell, discrepancy: float | None = None) -> Trial:
+        """Where the first look has it, by default with the hyperparameters of the smaller set."""
+        hyper = root.fit.hyper if discrepancy is None else root.fit.hyper.with_discrepancy(discrepancy)
+        return Trial(cell, np.concatenate([root.fit.z, cell.z]), hyper, root.fit.bend)
+
+    def with_discrepancy(self, value: float) -> Trial:
+        """The same with another discrepancy."""
+        return replace(self, hyper=self.hyper.with_discrepancy(value))
+
+
+def advanced(
+    fitter: Fitter,
+    root: Member,
+    trials: Sequence[Trial],
+    *,
+    steps: int,
+    moves: bool,
+    progress: Callable[[int], object],
+) -> list[Trial]:
+    """Fitted further; those that cannot be solved are left out.
+
+    Parameters
+    ----------
+    fitter : Fitter
+    root : Member
+        The set that each extends.
+    trials : sequence of Trial
+    steps : int
+        Of the fit.
+    moves : bool
+        Whether each is moved to better neighbours.
+    progress : callable
+        Called with how many are begun.
+    """
+    fixed = len(root.fit.model.free)
+
+    def work(trial: Trial) -> Trial | None:
+        hypothesis = trial.cell.hypothesis
+        own = slice(fixed, fixed + len(hypothesis.free))
+        # Slopes of what was there before the amendment serve as long as they lead somewhere.
+        blank = np.zeros((root.fit.jacobian.shape[0], len(hypothesis.free)))
+        slopes = np.hstack([root.fit.jacobian, blank])
+        try:
+            fit = fitter.begin(_model(root, trial.cell), trial.z, trial.hyper, slopes, trial.bend)
+            fit = fitter.fit(fitter.settled(fit, fixed=fixed), steps=steps, fixed=fixed)
+            if moves:
+                fit = rested(fitter, fitter.settled(fit), own, hypothesis, steps)
+        except (InputError, SolveError):
+            return None
+        return _kept(trial, fit)
+
+    return _shared(fitter, work, trials, progress)
+
+
+def completed(
+    fitter: Fitter, root: Member, trials: Sequence[Trial], progress: Callable[[int], object]
+) -> list[Member]:
+    """Fitted to the end, each amendment moved to better neighbours."""
+
+    def work(trial: Trial) -> Trial | None:
+        amendments = (*root.amendments, trial.cell.hypothesis)
+        try:
+            begun = fitter.begin(_model(root, trial.cell), trial.z, trial.hyper, bend=trial.bend)
+            return _kept(trial, finished(fitter, begun, amendments))
+        except (InputError, SolveError):
+            return None
+
+    found = []
+    for trial in _shared(fitter, work, trials, progress):
+        fit = fitter.begin(_model(root, trial.cell), trial.z, trial.hyper, bend=trial.bend)
+        amendments = (*root.amendments, trial.cell.hypothesis)
+        found.append(Member(amendments, fit, (*root.log_priors, trial.cell.log_prior)))
+    return found
+
+
+def _shared(
+    fitter: Fitter,
+    work: Callable[[Trial], Trial | None],
+    trials: Sequence[Trial],
+    progress: Callable[[int], object],
+) -> list[Trial]:
+    """The work shared between processes, hypotheses put back: they cannot be handed over."""
+
+    def bare(trial: Trial) -> Trial | None:
+        found = work(trial)
+        return None if found is None else replace(found, cell=None)  # type: ignore[arg-type]
+
+    found = each(bare, trials, threads=fitter.frame.evidence.threads, least=2, told=progress)
+    return [replace(one, cell=trial.cell) for one, trial in zip(found, trials, strict=True) if one is not None]
+
+
+def _model(root: Member, cell: Cell) -> Model:
+    return grown(root.fit, cell.hypothesis, f"{len(root.amendments) + 1}.")
+
+
+def _kept(trial: Trial, fit: Fit) -> Trial:
+    return Trial(trial.cell, fit.z, fit.hyper, fit.bend, fit.objective, fit.log_evidence)
+
+
+def finished(fitter: Fitter, fit: Fit, amendments: Sequence[Hypothesis] = ()) -> Fit:
+    """Each amendment moved to better neighbours, then with hyperparameters of its own."""
+    fit = fitter.settled(fit)
+    stop = len(fit.model.free)
+    for amendment in reversed(amendments):
+        own = slice(stop - len(amendment.free), stop)
+        fit, stop = rested(fitter, fit, own, amendment, STEPS[-1]), own.start
+    fit = fitter.fit(estimated(fitter.settled(fit)), steps=STEPS[-1])
+    return fitter.settled(fit)
+
+
+def chosen(ranked: Sequence[tuple[float, Hypothesis, Item]], width: int, per_form: int) -> list[Item]:
+    """The best, at most so many of one form."""
+    kept: list[Item] = []
+    count: Counter[tuple[str, ...]] = Counter()
+    for score, hypothesis, item in sorted(ranked, key=lambda one: one[0]):
+        if len(kept) == width or not score < np.inf:
+            break
+        if count[hypothesis.form] < per_form:
+            count[hypothesis.form] += 1
+            kept.append(item)
+    return kept
+
+
+Row = tuple[float, Hypothesis, Trial]
+"""What ranks a trial, lowest first; its hypothesis; and it."""
+
+
+def leading(rows: list[Row], behind: float) -> list[Row]:
+    """Those that are not farther behind the best."""
+    best = min((row[0] for row in rows), default=np.inf)
+    return [row for row in rows if row[0] < best + behind]
+
+
+def distinct(rows: list[Row]) -> list[Row]:
+    """Without fits that came to where a better one of the same form is."""
+    kept: list[Row] = []
+    for one in sorted(rows, key=lambda row: row[0]):
+        if not any(other[1].form == one[1].form and _same(other, one) for other in kept):
+            kept.append(one)
+    return kept
+
+
+def _same(one: Row, other: Row) -> bool:
+    """Whether both came to the same values: at a large discrepancy, other values may predict much the same."""
+    if abs(one[0] - other[0]) > SAME:
+        return False
+    (first, where), (second, elsewhere) = _reached(one), _reached(other)
+    return where == elsewhere and bool(np.allclose(first, second, rtol=ALIKE, atol=0.0))
+
+
+def _reached(row: Row) -> tuple[list[float], Where]:
+    """Values of a row's last amendment, and its place without what the values say of it."""
+    _, hypothesis, trial = row
+    z = trial.z[trial.z.size - len(hypothesis.free) :]
+    values = {f.name: f.value(float(v)) for f, v in zip(hypothesis.free, z, strict=True)}
+    where = hypothesis.locate(values)
+    moving = {"x_m", *STRETCH} & set(values)
+    return list(values.values()), replace(where, x_m=None) if moving else where

@@ -1,0 +1,118 @@
+"""Mechanics of no catalogue: a spring, dashpot, springpot, Maxwell pair or inertance at a place.
+
+It ties two bodies that a layer ties, or a body to the ground. What fits is a description and no name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from permway.diagnosis.catalogue._change import fresh, with_joints
+from permway.diagnosis.catalogue._roles import Layer, layers
+from permway.diagnosis.elements import ELEMENTS, Element
+from permway.diagnosis.fit import Free
+from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free, log_free
+from permway.diagnosis.verdict import NOVEL
+from permway.model.bodies import Beam
+from permway.model.joints import GROUND, Joints
+from permway.model.segments import Segment
+from permway.recordings.campaign import Campaign
+
+ID = NOVEL
+DOMAIN: Domain = "path"
+FAMILY = "no catalogue"
+
+PRIOR = 0.05
+"""Share of what is missing that no catalogue holds: as of the discrepancy."""
+
+SPACING_M = 2.0
+"""Between places where an element is begun, and the standard deviation of its place, m."""
+
+AT_HZ = 50.0
+"""Where the stiffness of a layer is taken for a typical one."""
+
+SIZE, SIZE_FACTOR = 0.1, 3.0
+"""Of an element over what a joint beside it has: median, and the factor of one standard deviation, before
+:data:`permway.posterior.cells.WIDER`."""
+
+
+def everywhere(situation: Situation) -> Iterator[Hypothesis]:
+    """Each element along each beam: to the ground, and to what a layer ties it to."""
+    line = situation.campaign.model.line
+    carrying = [layer for layer in layers(line) if isinstance(line.bodies.get(layer.upper), Beam)]
+    if not carrying:
+        return
+    temperature = situation.campaign.model.temperature_C
+    typical = {layer.law: float(np.abs(line.laws[layer.law].complex(AT_HZ, temperature))) for layer in carrying}
+    stiffest = max(typical.values())
+    for _, segment in line.beams():
+        for x in _places(segment, carrying):
+            yield from _elements(segment, GROUND, x, stiffest)
+    for layer in carrying:
+        if layer.lower == GROUND or not isinstance(line.bodies.get(layer.lower), Beam):
+            continue
+        for segment in (s for _, s in line.beams() if s.body == layer.upper):
+            for x in _places(segment, [layer]):
+                yield from _elements(segment, layer.lower, x, typical[layer.law])
+
+
+hypotheses = everywhere
+
+
+def _places(segment: Segment, carrying: list[Layer]) -> np.ndarray:
+    """Along a beam, where joints are."""
+    low = max(segment.start, min(float(layer.x.min()) for layer in carrying))
+    high = min(segment.stop, max(float(layer.x.max()) for layer in carrying))
+    count = max(1, round((high - low) / SPACING_M))
+    return low + (np.arange(count) + 0.5) * (high - low) / count
+
+
+def _elements(segment: Segment, lower: str, x: float, typical: float) -> Iterator[Hypothesis]:
+    for element in ELEMENTS:
+        if element.ground:
+            # What hangs on a body is in the catalogue.
+            continue
+        if element.name == "spring":
+            yield _of(segment, lower, x, typical, element, 1.0)
+        yield _of(segment, lower, x, typical, element, -1.0 if element.name == "spring" else 1.0)
+
+
+def _of(segment: Segment, lower: str, x: float, typical: float, element: Element, sign: float) -> Hypothesis:
+    own = element.free(typical, AT_HZ)
+    size = own[0].name
+    scale = typical / (2.0 * np.pi * AT_HZ) ** _POWER.get(element.name, 0)
+    free: tuple[Free, ...] = (
+        log_free(size, own[0].unit, SIZE * scale, SIZE_FACTOR),
+        *own[1:],
+        linear_free("x_m", "m", x, SPACING_M, segment.start + 1e-6, segment.stop - 1e-6),
+    )
+
+    def signed(values: Mapping[str, float]) -> dict[str, float]:
+        return {**values, size: sign * values[size]}
+
+    def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
+        law = fresh(NOVEL, campaign.model.line.laws)
+        joint = Joints(between=(segment.name, lower), law=law, at=(values["x_m"],))
+        return with_joints(campaign, joint, laws={law: element.law(signed(values))})
+
+    made = Hypothesis(
+        entry=ID,
+        domain=DOMAIN,
+        family=FAMILY,
+        free=free,
+        amend=amend,
+        locate=lambda v: Where(segment.name, (v["x_m"], v["x_m"])),
+        starts=((0.0,) * len(free),),
+        law=lambda v: f"{element.words(signed(v))}, from {segment.body} to {lower}",
+        size=size,
+        none=0.0,
+        variant=f"{element.name} {sign:+g} from {segment.name} to {lower}",
+    )
+    return replace(made, starts=(*made.starts, (1.0, *made.starts[0][1:])))
+
+
+_POWER = {"dashpot": 1, "inerter": 2}
+"""By which power of an angular frequency an element's constant is less than a stiffness."""
