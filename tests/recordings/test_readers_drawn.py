@@ -20,7 +20,8 @@ from hypothesis import strategies as st
 from permway.recordings.readers import hdf5
 
 WRITERS: dict[str, Writer] = {
-    "text": drawn_text.times, "text frf": drawn_text.frf, "uff": drawn_uff.times, "uff frf": drawn_uff.frf,
+    "text": drawn_text.times, "text frf": drawn_text.frf, "text frf wide": drawn_text.frf_wide,
+    "uff": drawn_uff.times, "uff frf": drawn_uff.frf,
     "mat": drawn_arrays.mat, "mat73": drawn_arrays.mat73, "npz": drawn_arrays.npz, "hdf5": drawn_arrays.hdf5,
     "netcdf": drawn_arrays.netcdf, "tdms": drawn_arrays.tdms, "mat frf": drawn_arrays.frf_mat,
     "mat73 frf": drawn_arrays.frf_mat73, "npz frf": drawn_arrays.frf_npz, "hdf5 frf": drawn_arrays.frf_hdf5,

@@ -102,7 +102,7 @@ Band = Annotated[tuple[Number, Number], BeforeValidator(_band)]
 """From and to, Hz."""
 
 
-_HINTS = ("header_row", "skip_rows", "time_column", "decimal", "encoding", "unit", "axes")
+_HINTS = ("header_row", "skip_rows", "time_column", "decimal", "encoding", "unit", "axes", "pairs")
 
 
 class Record(FrozenModel):
@@ -132,7 +132,7 @@ class Record(FrozenModel):
     sampling_Hz : float, optional
         Of a record in time whose file does not say it. It wins over a remark in a text; with times or a rate of
         the file's own the two must agree, but for `time_column = "none"`.
-    header_row, skip_rows, time_column, decimal, encoding, unit, axes
+    header_row, skip_rows, time_column, decimal, encoding, unit, axes, pairs
         What the file does not say or says wrongly, and wins over it; see
         :class:`permway.recordings.readers.hints.Hints`.
     segment_s : float
@@ -181,6 +181,7 @@ class Record(FrozenModel):
     encoding: str | None = None
     unit: str | dict[str, str] | None = None
     axes: tuple[str, str, str] | None = None
+    pairs: dict[str, tuple[str, str]] | None = None
 
     @property
     def hints(self) -> Hints:
@@ -226,9 +227,8 @@ class Record(FrozenModel):
         except InputError as error:
             raise fault(f"{error.what}; {error.remedy}", error.where, value=error.value) from error
         for key in _HINTS:
-            wanted = (
-                ("frf",) if key == "axes" else ("csd", "psd") if key == "time_column" else ("frf", "csd", "psd")
-            )
+            of_frf = key in ("axes", "pairs")
+            wanted = ("frf",) if of_frf else ("csd", "psd") if key == "time_column" else ("frf", "csd", "psd")
             if getattr(self, key) is not None and self.statistic not in wanted:
                 raise fault(f"goes with statistic {' or '.join(map(repr, wanted))}", key)
 

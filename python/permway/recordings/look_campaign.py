@@ -164,6 +164,9 @@ def _hints(asked: Asked, stated: Mapping[str, str]) -> list[str]:
         lines.append(f"unit = {_table({**(unit or {}), **stated})}")
     if asked.hints.axes is not None:
         lines.append(f"axes = {json.dumps(list(asked.hints.axes))}")
+    if asked.hints.pairs:
+        pairs = ", ".join(f"{_quoted(key)} = {json.dumps(list(pair))}" for key, pair in asked.hints.pairs.items())
+        lines.append(f"pairs = {{ {pairs} }}")
     if asked.part is not None:
         lines.append(f"part = {_quoted(asked.part)}")
     if asked.format is not None:

@@ -15,6 +15,7 @@ from permway.recordings.readers.limits import MOST_BYTES, check_size, existing_f
 from permway.recordings.readers.store import as_time
 from permway.recordings.readers.store_frf import as_frf, as_table
 from permway.recordings.readers.stored import Store
+from permway.recordings.readers.text_numbers import in_decibels
 from permway.recordings.readers.timefile import (
     TimeFile,
     Timing,
@@ -179,13 +180,19 @@ def read_frf(
             with _store(source, kind, part, max_bytes) as (store, array):
                 record = as_frf(store, array, hints=hints, max_bytes=max_bytes)
         elif kind == "text":
-            record = text_frf.read_frf(source, hints=hints, max_bytes=max_bytes)
+            record = text_frf.read_frf(
+                source, responses=responses, references=references, hints=hints, max_bytes=max_bytes
+            )
         else:
             remedy = "give UFF, MAT, NPZ, HDF5, NetCDF, or a table of text"
             raise InputError(
                 "frequency responses are not read from this format", where=str(source), value=kind, remedy=remedy
             )
-    record = record.of(responses, references).with_unit(hints.unit if isinstance(hints.unit, str) else None)
+    stated = hints.unit if isinstance(hints.unit, str) else None
+    if kind == "text" and in_decibels(stated):
+        # The levels of a table were taken by it.
+        stated = None
+    record = record.of(responses, references).with_unit(stated)
     record.check_ratio()
     record.check_coherence()
     if not keep_nonfinite:
