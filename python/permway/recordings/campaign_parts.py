@@ -126,7 +126,8 @@ class Record(FrozenModel):
     responses, references : dict of file's label to sensor, and to force point
         Of frequency responses; the force points are in [[forces]].
     averages : float, optional
-        Averages behind an FRF, if the file does not say.
+        Averages behind an FRF, if the file does not say. Of "csd" and "psd" it says that the file holds spectra,
+        not samples, and how many independent averages are behind them.
     band_Hz : (low, high), optional
         What of the record is used; by default all.
     sampling_Hz : float, optional
@@ -184,6 +185,11 @@ class Record(FrozenModel):
     pairs: dict[str, tuple[str, str]] | None = None
 
     @property
+    def sampled(self) -> bool:
+        """Whether its file holds samples over time."""
+        return self.statistic in ("csd", "psd") and self.averages is None
+
+    @property
     def hints(self) -> Hints:
         """What is said of how its file is read."""
         return Hints(**{key: getattr(self, key) for key in _HINTS})
@@ -211,8 +217,10 @@ class Record(FrozenModel):
             raise fault('goes with statistic = "decay", which needs it', "spacing_m")
         if self.loss_file is not None and self.law is None:
             raise fault('goes with statistic = "material"', "loss_file")
-        if self.averages is not None and not frf:
-            raise fault("of an FRF only: other statistics count their own", "averages")
+        if self.averages is not None and self.statistic not in ("frf", "csd", "psd"):
+            raise fault('goes with statistic "frf", or with "csd" or "psd" of a file of spectra', "averages")
+        if self.averages is not None and self.sampling_Hz is not None:
+            raise fault("averages say that the file holds spectra, which have no sampling rate", "sampling_Hz")
         if self.within_dB is not None and self.statistic not in ("transmissibility", "material"):
             raise fault('goes with statistic "transmissibility" or "material"', "within_dB")
         _check_lines(self.interpolated_Hz or ())

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from permway.errors import InputError
-from permway.recordings.look_campaign import Places, frf_part, time_part
+from permway.recordings.look_campaign import Places, frf_part, spectra_part, time_part
 from permway.recordings.readers.formats import recognise
 from permway.recordings.readers.front import opened, read_frf, read_table
 from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES, existing_file
 from permway.recordings.readers.timefile import TimeFile, Timing
+from permway.recordings.readers.uff58_spectra import spectra_held
 from permway.recordings.readers.uff_nodes import read_nodes
 from permway.recordings.record import FrfRecord
 
@@ -55,9 +56,10 @@ def look(path: str | Path, asked: Asked | None = None) -> dict[str, Any]:
     -------
     dict
         `file` and `format`; `channels` of records in time, a dict each: channel, unit, samples, sampling_Hz,
-        start_s, and `problem` where it cannot be used; `responses`: pairs, frequencies, unit, coherence; or else
-        `columns` of a table. `notes` are what was left aside; `missing` is what the campaign file has to state;
-        `problems` why the file is not read as one of these; `campaign` is the part of a campaign file, in TOML.
+        start_s, and `problem` where it cannot be used; `responses`: pairs, frequencies, unit, coherence;
+        `spectra`: channel, unit and lines of each; or else `columns` of a table. `notes` are what was left aside;
+        `missing` is what the campaign file has to state; `problems` why the file is not read as one of these;
+        `campaign` is the part of a campaign file, in TOML.
 
     Raises
     ------
@@ -88,6 +90,10 @@ def look(path: str | Path, asked: Asked | None = None) -> dict[str, Any]:
             result |= _in_time(source, asked, result.get("campaign", ""), places)
         except InputError as error:
             problems.append(error)
+    if kind == "uff" and "channels" not in result and "responses" not in result:
+        held = spectra_held(source, asked.hints)
+        if held:
+            return result | {"spectra": held, "campaign": spectra_part(held, source.name, asked, places)}
     if "channels" not in result and "responses" not in result:
         result |= _columns(source, asked)
         # Of a table of text that is no record in time, what it lacks of a table of responses helps nobody.
