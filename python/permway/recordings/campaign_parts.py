@@ -219,8 +219,8 @@ class Record(FrozenModel):
             raise fault('goes with statistic = "material"', "loss_file")
         if self.averages is not None and self.statistic not in ("frf", "csd", "psd"):
             raise fault('goes with statistic "frf", or with "csd" or "psd" of a file of spectra', "averages")
-        if self.averages is not None and self.sampling_Hz is not None:
-            raise fault("averages say that the file holds spectra, which have no sampling rate", "sampling_Hz")
+        if not frf and self.averages is not None and self.sampling_Hz is not None:
+            raise fault("averages say that the file holds spectra, which have no sampling_Hz", "averages")
         if self.within_dB is not None and self.statistic not in ("transmissibility", "material"):
             raise fault('goes with statistic "transmissibility" or "material"', "within_dB")
         _check_lines(self.interpolated_Hz or ())

@@ -62,7 +62,7 @@ def read_time(
     format : str, optional
         One of :data:`permway.recordings.readers.formats.Format`; by default told from content and name.
     part : str, optional
-        Group of a TDMS or HDF5 file, or array of samples, if there are several.
+        Group of a TDMS or HDF5 file, array of samples, or number of a segment of LVM, if there are several.
     hints : Hints
         What is known of the file and wins over what it says.
     keep_nonfinite : bool
@@ -266,7 +266,7 @@ def opened(
                 if kind == "text":
                     entered = text.open_time(source, keep, hints)
                 elif kind == "lvm":
-                    entered = lvm.open_time(source, hints, max_bytes=max_bytes)
+                    entered = lvm.open_time(source, hints, part=part, max_bytes=max_bytes)
                 elif kind == "uff":
                     entered = uff58.open_time(source, hints, keep=keep)
                 else:
