@@ -21,7 +21,7 @@ looking = typer.Typer(rich_markup_mode=None)
     )
 )
 def look(
-    file: Annotated[Path, typer.Argument(help="UFF, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS or WAV.")],
+    file: Annotated[Path, typer.Argument(help="UFF, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS, LVM, MDF or WAV.")],
     header_row: Annotated[int | None, typer.Option(help="Line that names the columns, from 1; 0: none.")] = None,
     skip_rows: Annotated[int | None, typer.Option(help="Lines at the beginning that are no table.")] = None,
     time_column: Annotated[

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 
 import drawn_arrays
+import drawn_mdf
 import drawn_text
 import drawn_uff
 import numpy as np
@@ -27,6 +29,8 @@ WRITERS: dict[str, Writer] = {
     "mat73 frf": drawn_arrays.frf_mat73, "npz frf": drawn_arrays.frf_npz, "hdf5 frf": drawn_arrays.frf_hdf5,
     "netcdf frf": drawn_arrays.frf_netcdf,
 }  # fmt: skip
+if find_spec("asammdf") is not None:
+    WRITERS["mdf"] = drawn_mdf.times
 
 
 @pytest.fixture(autouse=True, scope="module")

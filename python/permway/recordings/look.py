@@ -77,7 +77,7 @@ def look(path: str | Path, asked: Asked | None = None) -> dict[str, Any]:
             places = read_nodes(source)
         except InputError as error:
             problems.append(error)
-    if kind not in ("tdms", "wav", "lvm"):
+    if kind not in ("tdms", "wav", "lvm", "mdf"):
         try:
             record = read_frf(source, format=asked.format, part=asked.part, hints=asked.hints, keep_nonfinite=True)
         except InputError as error:

@@ -8,7 +8,21 @@ from dataclasses import replace
 from pathlib import Path
 
 from permway.errors import InputError
-from permway.recordings.readers import hdf5, lvm, mat, netcdf3, npz, table, tdms, text, text_frf, uff55, uff58, wav
+from permway.recordings.readers import (
+    hdf5,
+    lvm,
+    mat,
+    mdf,
+    netcdf3,
+    npz,
+    table,
+    tdms,
+    text,
+    text_frf,
+    uff55,
+    uff58,
+    wav,
+)
 from permway.recordings.readers.formats import Format, recognise
 from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES, check_size, existing_file, foreign
@@ -50,7 +64,7 @@ def read_time(
     Parameters
     ----------
     path : path
-        UFF 58 or 58b, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS, LVM or WAV.
+        UFF 58 or 58b, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS, LVM, MDF or WAV.
     channels : sequence of str, optional
         Which, in which order; by default all. Only these have to be sound, and to go together.
     units : str or dict of channel to str, optional
@@ -62,7 +76,7 @@ def read_time(
     format : str, optional
         One of :data:`permway.recordings.readers.formats.Format`; by default told from content and name.
     part : str, optional
-        Group of a TDMS or HDF5 file, array of samples, or number of a segment of LVM, if there are several.
+        Group of a TDMS, MDF or HDF5 file, array of samples, or number of a segment of LVM, if there are several.
     hints : Hints
         What is known of the file and wins over what it says.
     keep_nonfinite : bool
@@ -269,6 +283,8 @@ def opened(
                     entered = lvm.open_time(source, hints, part=part, max_bytes=max_bytes)
                 elif kind == "uff":
                     entered = uff58.open_time(source, hints, keep=keep)
+                elif kind == "mdf":
+                    entered = mdf.open_time(source, group=part, hints=hints, max_bytes=max_bytes)
                 else:
                     entered = (
                         tdms.open_time(source, group=part, hints=hints)
