@@ -12,6 +12,7 @@ from pathlib import Path
 
 import drawn_arrays
 import drawn_mdf
+import drawn_tables
 import drawn_text
 import drawn_uff
 import numpy as np
@@ -19,7 +20,7 @@ import pytest
 from drawn import Writer, outcome
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from permway.recordings.readers import hdf5
+from permway.recordings.readers import hdf5, mat_objects, mat_objects_child
 
 WRITERS: dict[str, Writer] = {
     "text": drawn_text.times, "text frf": drawn_text.frf, "text frf wide": drawn_text.frf_wide,
@@ -31,13 +32,16 @@ WRITERS: dict[str, Writer] = {
 }  # fmt: skip
 if find_spec("asammdf") is not None:
     WRITERS["mdf"] = drawn_mdf.times
+if find_spec("matio") is not None:
+    WRITERS["tables"] = drawn_tables.times
 
 
 @pytest.fixture(autouse=True, scope="module")
 def _no_trial() -> Iterator[None]:
-    """No file here is damaged: that the HDF5 library comes to an end need not be tried in a process of its own."""
+    """No file here is damaged: that libraries come to an end need not be tried in a process of its own."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(hdf5, "check_sound", lambda _: None)
+        patch.setattr(mat_objects, "_extract", lambda source, to: mat_objects_child.main(str(source), str(to)))
         yield
 
 
