@@ -93,6 +93,15 @@ def test_several_segments(tmp_path: Path) -> None:
         np.testing.assert_allclose(record.values, factor * X, rtol=1e-12)
 
 
+def test_a_segment_that_begins_with_notes(tmp_path: Path) -> None:
+    text = write(tmp_path).read_text()
+    second = text.partition("***End_of_Header***")[2].replace("Channels", "Notes\tX is guaranteed\nChannels", 1)
+    path = tmp_path / "a.lvm"
+    path.write_text(f"{text}\n{second}")
+    for part in ("1", "2"):
+        np.testing.assert_array_equal(read_time(path, part=part).values, X)
+
+
 @settings(max_examples=25)
 @given(
     seed=st.integers(0, 2**31),

@@ -10,7 +10,8 @@ import pytest
 from permway.cli import app
 from permway.errors import InputError
 from permway.recordings.campaign_parts import Record
-from permway.recordings.readers import read_frf
+from permway.recordings.look import look
+from permway.recordings.readers import read_frf, read_time
 from permway.recordings.readers.hints import Hints
 from permway.recordings.readers.text_numbers import complex_number, is_complex
 from typer.testing import CliRunner
@@ -134,3 +135,42 @@ def test_a_row_for_each_frequency_with_complex_text(tmp_path: Path) -> None:
     record = read_frf(path)
     np.testing.assert_array_equal(record.values[0], H)
     assert (record.responses, record.unit) == (("a",), "g/N")
+
+
+def test_a_coherence_that_names_no_response(tmp_path: Path) -> None:
+    columns = [cells(F), cells(H.real), cells(H.imag), ["0.9"] * 3]
+    coherence = read_frf(wide(tmp_path, ["f;a/1 re;a/1 im;Coherence"], columns)).coherence
+    assert coherence is not None
+    np.testing.assert_array_equal(coherence[0], 0.9)
+
+
+def test_a_magnitude_on_a_logarithmic_scale_is_a_level(tmp_path: Path) -> None:
+    columns = [cells(F), ["1", "2", "3"], ["10", "20", "30"]]
+    with pytest.raises(InputError, match="decibels without a reference"):
+        read_frf(wide(tmp_path, ["f;a/1 Log Mag;a/1 phase [deg]"], columns))
+    size = np.abs(read_frf(wide(tmp_path, ["f;a/1 Lin Mag;a/1 phase [deg]"], columns)).values[0])
+    np.testing.assert_allclose(size, [1.0, 2.0, 3.0])
+
+
+@pytest.mark.parametrize("name", ["Gxy a/1", "a/1 CSD".lower(), "Cross spectrum a/1".lower()])
+def test_a_spectrum_is_no_response(name: str, tmp_path: Path) -> None:
+    columns = [cells(F), cells(H.real), cells(H.imag)]
+    with pytest.raises(InputError, match="seems to be a spectrum"):
+        read_frf(wide(tmp_path, [f"f;{name} re;{name} im"], columns))
+
+
+def test_lines_above_the_header(tmp_path: Path) -> None:
+    head = ["Test 3", "Operator: x", "f;a/1 re;a/1 im"]
+    path = wide(tmp_path, head, [cells(F), cells(H.real), cells(H.imag)])
+    with pytest.raises(InputError, match=r"header_row = 3"):
+        read_frf(path)
+    found = look(path)
+    assert found["responses"]["pairs"] == 1
+    assert "header_row = 3" in found["campaign"]
+
+
+def test_a_spectrum_is_no_record_in_time(tmp_path: Path) -> None:
+    path = wide(tmp_path, ["Frequency [Hz];PSD [g^2/Hz]"], [cells(F), ["1", "2", "3"]])
+    with pytest.raises(InputError, match=r"stands over frequency, not over time \(got 'Frequency'\)"):
+        read_time(path)
+    assert read_time(path, hints=Hints(time_column="none"), sampling_Hz=512.0).channels == ("Frequency", "PSD")

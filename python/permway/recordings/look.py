@@ -79,12 +79,12 @@ def look(path: str | Path, asked: Asked | None = None) -> dict[str, Any]:
             problems.append(error)
     if kind not in ("tdms", "wav", "lvm", "mdf"):
         try:
-            record = read_frf(source, format=asked.format, part=asked.part, hints=asked.hints, keep_nonfinite=True)
+            record, known = _frf(source, asked)
         except InputError as error:
             problems.append(error)
         else:
             result |= _responses(record)
-            result["campaign"] = frf_part(record, source.name, asked, places)
+            result["campaign"] = frf_part(record, source.name, known, places)
     if not (kind == "text" and "responses" in result):
         try:
             result |= _in_time(source, asked, result.get("campaign", ""), places)
@@ -100,6 +100,22 @@ def look(path: str | Path, asked: Asked | None = None) -> dict[str, Any]:
         result["problems"] = [str(error) for error in (problems[-1:] if kind == "text" else problems)]
     result.setdefault("campaign", "")
     return result
+
+
+def _frf(source: Path, asked: Asked) -> tuple[FrfRecord, Asked]:
+    """Frequency responses; where lines stand above the table, with the header's line, which is stated."""
+
+    def read(known: Asked) -> FrfRecord:
+        return read_frf(source, format=known.format, part=known.part, hints=known.hints, keep_nonfinite=True)
+
+    try:
+        return read(asked), asked
+    except InputError as error:
+        found = _HEADER_ROW.search(error.remedy)
+        if found is None or asked.hints.header_row is not None:
+            raise
+        known = replace(asked, hints=replace(asked.hints, header_row=int(found[1])))
+        return read(known), known
 
 
 def _responses(record: FrfRecord) -> dict[str, Any]:

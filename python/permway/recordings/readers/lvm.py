@@ -20,7 +20,7 @@ from permway.laws.textfile import number
 from permway.recordings.readers.headers import clean_unit
 from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES, check_size
-from permway.recordings.readers.text_lines import numbered_lines
+from permway.recordings.readers.text_lines import is_number, numbered_lines
 from permway.recordings.readers.timefile import TimeFile, Timing
 
 START = b"LabVIEW Measurement"
@@ -127,23 +127,26 @@ def _segment(source: Path, hints: Hints, part: str | None) -> _Segment:
 
 
 def _heads(lines: list[tuple[int, str]], ends: list[int], separator: str, where: str) -> list[tuple[int, int]]:
-    """First line and end of the head of each segment: that of a later one begins with its number of channels.
+    """First line and end of the head of each segment: that of a later one begins with a word, which no row does.
 
     Raises
     ------
     InputError
-        For a segment without this line, whose rows would be taken for those of the one before.
+        For a segment without a head, whose rows would be taken for those of the one before.
     """
     found = [(ends[0] + 1, ends[1])]
     for before, end in pairwise(ends[1:]):
-        first = next(
-            (i for i in range(before + 2, end) if lines[i][1].split(separator)[0].strip() == "Channels"), None
-        )
+        first = next((i for i in range(before + 2, end) if _is_word(lines[i][1].split(separator)[0])), None)
         if first is None:
-            what = "the head of a segment does not begin with Channels"
+            what = "a segment without its head"
             raise InputError(what, where=f"{where}: line {lines[end][0]}", remedy="export each segment by itself")
         found.append((first, end))
     return found
+
+
+def _is_word(cell: str) -> bool:
+    """Whether the first cell of a line is the key of a head rather than a value of x or empty."""
+    return bool(cell.strip()) and not is_number(cell)
 
 
 def _number(heads: list[tuple[int, int]], lines: list[tuple[int, str]], part: str | None, where: str) -> int:

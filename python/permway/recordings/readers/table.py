@@ -107,11 +107,20 @@ def check_rows(source: Path, names: list[str], rows: list[Line]) -> None:
                 f"{len(row.cells)} cells where there are {len(names)} columns",
                 where=f"{source}: line {row.number}",
                 value=",".join(row.cells),
-                remedy="complete or remove the line (a file cut short ends like this)",
+                remedy=_begins(names, rows) or "complete or remove the line (a file cut short ends like this)",
             )
         bad = next((cell for cell in row.cells if "\x00" in cell), None)
         if bad is not None:
             raise InputError("not a text: it holds zero bytes", where=f"{source}: line {row.number}", value=bad)
+
+
+def _begins(names: list[str], rows: list[Line]) -> str:
+    """That the header may stand further down, where it has as many cells as the last row, and no numbers."""
+    width = len(rows[-1].cells)
+    head = next((row for row in rows if len(row.cells) == width), rows[-1])
+    if width == len(names) or any(is_number(cell) for cell in head.cells):
+        return ""
+    return f"if line {head.number} names the columns, say so in the record: header_row = {head.number}"
 
 
 def _decimal_comma(source: Path, rows: list[Line]) -> bool:

@@ -34,7 +34,8 @@ MAGNITUDE, PHASE = (
 )
 REMEDY = (
     "give a row for each frequency, sensor and point, with columns frequency, sensor, force, real and imaginary "
-    "(or magnitude, and phase [deg] or phase [rad]), and coherence"
+    "(or magnitude, and phase [deg] or phase [rad]), and coherence; or side by side, named "
+    "'read / struck real' and 'read / struck imaginary'"
 )
 
 

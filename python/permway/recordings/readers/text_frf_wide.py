@@ -49,6 +49,8 @@ _AT_START = re.compile(rf"(?P<word>{_WORD})(?:$|[\s_\-.:|,;(\[{{]+(?P<stem>.*?)[
 _FUNCTION = re.compile(
     r"(?:frf|h|h1|h2|hv|tf|transfer function)\s*(?:[\s:_]\s*(?P<a>.+)|[(\[](?P<b>.+)[)\]])", re.I
 )
+_SCALE = re.compile(r"(?P<stem>.*?)(?:^|[\s_\-.]+)(?P<scale>log|lin)", re.IGNORECASE)
+_SPECTRUM = re.compile(r"\b(?:[GSP](?:xx|xy|yx|yy)|psd|csd|asd|(?:cross|auto|power)[ -]?spec\w*)\b")
 _MOST_HEADS = 4
 _LOOKED_AT = 50
 ALONE = ("response", "reference")
@@ -103,6 +105,11 @@ def read_frf(
     check_rows(source, names, rows)
     table = _Table(source, rows, columns, hints)
     pairs = _pairs(source, stems, hints)
+    spectrum = next((stem for stem in stems if _SPECTRUM.search(stem)), None)
+    if spectrum is not None and not hints.pairs:
+        what = "seems to be a spectrum, and no frequency response"
+        remedy = "if it is one, say what was read and struck: pairs = { ... }; else export the record in time"
+        raise InputError(what, where=str(source), value=spectrum, remedy=remedy)
     chosen = [
         stem
         for stem in stems
@@ -171,6 +178,9 @@ def _name_and_unit(text: str) -> tuple[str, str | None]:
 
 def _frequency(names: list[str], units: list[str | None]) -> int | None:
     found = [i for i, name in enumerate(names) if is_one_of(name, _FREQUENCY)]
+    if not found and names and names[0].lower() in ("hz", "khz"):
+        units[0] = units[0] or names[0]
+        found = [0]
     if not found and names and (units[0] or "").lower() in ("hz", "khz", "rad/s"):
         found = [0]
     return found[0] if len(found) == 1 else None
@@ -190,7 +200,12 @@ def _columns(names: list[str], units: list[str | None], rows: list[Line], at: in
         elif part is not None:
             # Of "H1 [g/N] real" the unit stands within.
             stem, within = _name_and_unit((part["stem"] or "").strip(" _-.:|,;"))
-            found.append(_Column(name, _agreed(unit, within, name), _WORDS[part["word"].lower()], stem, index))
+            unit = _agreed(unit, within, name)
+            if (scale := _SCALE.fullmatch(stem)) is not None:
+                # A magnitude on a logarithmic scale is a level, whether it says so by its unit or not.
+                stem = scale["stem"]
+                unit = "dB" if scale["scale"].lower() == "log" and not in_decibels(unit) else unit
+            found.append(_Column(name, unit, _WORDS[part["word"].lower()], stem, index))
     return found
 
 
@@ -269,6 +284,8 @@ class _Table:
     def coherence(self, stem: str) -> Reals | None:
         """Of a response; of the only one also without its name."""
         column = self._one(stem, "coherence")
+        if column is None and len({other.stem for other in self._columns if other.part != "coherence"}) == 1:
+            column = self._one("", "coherence")
         if column is None:
             return None
         return self.reals(column) / (100.0 if column.unit == "%" else 1.0)
