@@ -11,8 +11,11 @@ from drawn import RATES, Meaning, Times, chance, pick, signals
 
 def times(random: np.random.Generator, folder: Path) -> tuple[Path, Meaning]:
     """A table with a column of times, or a timetable by durations or dates; alone or beside a text."""
-    import pandas as pd
-    from matio import save_to_mat
+    with warnings.catch_warnings():
+        # Importing it sets an option of pandas that is on its way out.
+        warnings.simplefilter("ignore")
+        import pandas as pd
+        from matio import save_to_mat
 
     count, samples = int(random.integers(1, 5)), int(random.integers(3, 200))
     x = signals(random, count, samples).astype(pick(random, "f8", "f4"))

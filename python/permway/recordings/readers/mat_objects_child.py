@@ -23,12 +23,12 @@ _DEEPEST = 4
 
 def main(source: str, target: str) -> None:
     """Read the one, write the other."""
-    from matio import load_from_mat
-
     tables: list[dict[str, Any]] = []
     arrays: dict[str, Any] = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
+        from matio import load_from_mat
+
         held = load_from_mat(source, raw_data=True)
     for name, item in held.items():
         if not name.startswith("_"):
