@@ -1,4 +1,4 @@
-"""The command that checks a campaign before it is diagnosed."""
+"""The commands of a campaign's first minutes: begin one from a folder, and check it before it is diagnosed."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from permway.cli_output import Json, Outside, Threads, examples, say
+from permway.cli_output import Folder, Json, Outside, Threads, examples, say
 
 checks = typer.Typer(rich_markup_mode=None)
 
@@ -54,6 +54,19 @@ def check(
         if picture is not None:
             result["picture"] = str(picture)
     say(result, as_json)
+
+
+@checks.command(epilog=examples("permway new exports", "permway new exports --json"))
+def new(folder: Folder, as_json: Json = False) -> None:
+    """A campaign and a model, begun from a folder.
+
+    Looks at every export of the folder (UFF, MAT, CSV, NPZ, HDF5, TDMS, LVM, WAV) as `permway look` does, and
+    writes campaign.toml and model.toml into it: every channel, unit, rate and label that was found, and what only
+    you know as comments that begin with "question". Nothing is written before everything is read.
+    """
+    from permway.recordings.skeleton import write_skeleton
+
+    say(write_skeleton(folder), as_json)
 
 
 def told(row: dict[str, Any]) -> str:
