@@ -77,7 +77,7 @@ def check(campaign: Campaign, *, threads: int | None = None) -> Checked:
     records: list[tuple[Dataset, Compared, Compared]] = []
     usable = [one for one in reading.kept if one.record.statistic in COMPARABLE]
     for dataset, predicted in zip(usable, _predicted(campaign, usable, blunders, threads), strict=False):
-        given = compared(dataset, predicted, _common(campaign, dataset))
+        given = compared(dataset, predicted, common(campaign, dataset))
         sensors = [campaign.sensor(name) for name in given.channels]
         points = [campaign.point(name) for name in given.points]
         changes, right = told(given, sensors, [point.unit for point in points])
@@ -103,7 +103,7 @@ def _predicted(
         return []
 
 
-def _common(campaign: Campaign, dataset: Dataset) -> tuple[float, float]:
+def common(campaign: Campaign, dataset: Dataset) -> tuple[float, float]:
     """Standard deviations of a level that all rows share, and of its slope: neper, and neper an octave."""
     least_known = max((k.sigma for k in campaign.parameters.known.values() if k.log), default=0.0)
     level = float(np.hypot(LEVEL, FROM_TOLERANCE * least_known))
