@@ -90,18 +90,6 @@ class Condition(FrozenModel):
         return self
 
 
-def _band(value: object) -> object:
-    if isinstance(value, list | tuple) and len(value) == 2:
-        low, high = value
-        if isinstance(low, int | float) and isinstance(high, int | float) and not 0.0 <= low < high:
-            raise fault("must run from low to high", value=value)
-    return value
-
-
-Band = Annotated[tuple[Number, Number], BeforeValidator(_band)]
-"""From and to, Hz."""
-
-
 def _labels(value: object) -> object:
     if isinstance(value, list | tuple) and all(isinstance(label, str) for label in value):
         if len(set(value)) < len(value):
@@ -112,6 +100,18 @@ def _labels(value: object) -> object:
 
 Labels = Annotated[dict[str, str], BeforeValidator(_labels)]
 """File's labels to names; as a list where the labels are the names."""
+
+
+def _band(value: object) -> object:
+    if isinstance(value, list | tuple) and len(value) == 2:
+        low, high = value
+        if isinstance(low, int | float) and isinstance(high, int | float) and not 0.0 <= low < high:
+            raise fault("must run from low to high", value=value)
+    return value
+
+
+Band = Annotated[tuple[Number, Number], BeforeValidator(_band)]
+"""From and to, Hz."""
 
 
 _HINTS = ("header_row", "skip_rows", "time_column", "decimal", "encoding", "unit", "axes")

@@ -32,6 +32,9 @@ LEFT_ALONE = {
 MOST_FILES = 2000
 """Files of a folder: a look takes up to a second each."""
 
+FEWEST_SAMPLES = 16
+"""Samples below which a table is a list of something, and no record in time."""
+
 _UNSAID = re.compile(r"^(\w+) = [^#\n]*# .*does not say.*$", re.MULTILINE)
 _BLOCK = re.compile(r"^(?=\[\[)", re.MULTILINE)
 _REMARK = re.compile(r"^# (.*)$", re.MULTILINE)
@@ -111,6 +114,9 @@ def _export(folder: Path, path: Path) -> Export:
     part = str(seen.get("campaign", ""))
     said = tomllib.loads(part)
     remarks = [*_REMARK.findall(part), *(str(one) for one in seen.get("notes", ()))]
+    if _short(seen):
+        said, part = {}, ""
+        remarks = [f"fewer than {FEWEST_SAMPLES} rows: no record is made of it"]
     if not said.get("records"):
         remarks += [str(one) for one in seen.get("problems", ())][:1] or ["no record of it can be used"]
     return Export(
@@ -123,6 +129,11 @@ def _export(folder: Path, path: Path) -> Export:
         list(dict.fromkeys(remark.replace(f"{path}: ", "") for remark in remarks)),
         _shown(seen),
     )
+
+
+def _short(seen: Mapping[str, Any]) -> bool:
+    rows = seen.get("channels", ())
+    return "responses" not in seen and bool(rows) and all((row["samples"] or 0) < FEWEST_SAMPLES for row in rows)
 
 
 def _tables(part: str, said: Mapping[str, Any], key: str) -> list[Found]:
