@@ -21,7 +21,7 @@ looking = typer.Typer(rich_markup_mode=None)
     )
 )
 def look(
-    file: Annotated[Path, typer.Argument(help="UFF, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS or WAV.")],
+    file: Annotated[Path, typer.Argument(help="UFF, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS, LVM, MDF or WAV.")],
     header_row: Annotated[int | None, typer.Option(help="Line that names the columns, from 1; 0: none.")] = None,
     skip_rows: Annotated[int | None, typer.Option(help="Lines at the beginning that are no table.")] = None,
     time_column: Annotated[
@@ -33,6 +33,9 @@ def look(
         list[str] | None, typer.Option(help="LABEL=UNIT of a channel or the times, or UNIT of all; repeatable.")
     ] = None,
     sampling_hz: Annotated[float | None, typer.Option("--sampling-Hz", help="Sampling rate, Hz.")] = None,
+    pair: Annotated[
+        list[str] | None, typer.Option(help="COLUMN=READ/STRUCK of a response in a table; repeatable.")
+    ] = None,
     part: Annotated[str | None, typer.Option(help="Group, struct or array of several.")] = None,
     form: Annotated[str | None, typer.Option("--format", help="Format; by default told from the file.")] = None,
     as_json: Json = False,
@@ -55,6 +58,7 @@ def look(
         decimal=decimal,  # type: ignore[arg-type]
         encoding=encoding,
         unit=_units(unit or []),
+        pairs=_pairs(pair or []),
     )
     result = run(file, Asked(form, part, sampling_hz, hints))
     say(result if as_json else _shown(result), as_json)
@@ -67,6 +71,17 @@ def _units(said: list[str]) -> str | dict[str, str] | None:
     if bad is not None:
         raise InputError("one unit for all, or LABEL=UNIT each", where="--unit", value=bad)
     return {label: unit for label, _, unit in (text.rpartition("=") for text in said)} or None
+
+
+def _pairs(said: list[str]) -> dict[str, tuple[str, str]] | None:
+    found: dict[str, tuple[str, str]] = {}
+    for text in said:
+        column, _, pair = text.rpartition("=")
+        read, _, struck = pair.partition("/")
+        if not (column and read and struck):
+            raise InputError("must be COLUMN=READ/STRUCK", where="--pair", value=text)
+        found[column] = (read, struck)
+    return found or None
 
 
 def _shown(result: dict[str, Any]) -> dict[str, Any]:

@@ -163,3 +163,77 @@ def frf(random: np.random.Generator, folder: Path) -> tuple[Path, Meaning]:
     meant = by_pair(values, sensors, points, factor)
     cohere = by_pair(coherence, sensors, points)
     return path, Responses(f, meant, cohere, None if unit is None else factor)
+
+
+def _complex_text(z: complex, comma: bool, style: str) -> str:
+    sign = "-" if z.imag < 0 or (z.imag == 0 and np.signbit(z.imag)) else "+"
+    text = style.format(repr(float(z.real)), sign, repr(abs(float(z.imag))))
+    return text.replace(".", ",") if comma else text
+
+
+def frf_wide(random: np.random.Generator, folder: Path) -> tuple[Path, Meaning]:
+    """Frequency responses side by side: a column of complex text, or two columns, for each."""
+    f, values, coherence = responses(random)
+    sensors, points = ([f"{k}{i}" for i in range(n)] for k, n in zip("sp", values.shape[1:], strict=True))
+    unit, factor = pick(random, (None, 1.0), ("(m/s2)/N", 1.0), ("mm/kN", 1e-6), ("g/N", 9.80665))
+    hz, scale = pick(random, ("Hz", 1.0), (None, 1.0), ("kHz", 1e-3), ("rad/s", 2.0 * np.pi))
+    form = pick(random, "complex", "parts", "deg", "rad", "dB", "no unit")
+    words = pick(random, ("Real", "Imag"), ("re", "im"), ("Real part", "Imaginary part"))
+    words = words if form == "parts" else pick(random, ("Magnitude", "Phase"), ("mag", "angle"))
+    style = pick(random, "{}{}{}j", "{} {} {}i", "({}{}{}j)", "{}{}j{}")
+    separator = pick(random, ",", ";", "\t")
+    comma, quoted = chance(random, 0.4), chance(random, 0.2)
+    comma = comma and (separator != "," or quoted)
+    named = pick(random, "{} / {}", "H({}/{})", "FRF {} < {}", "{}{}")
+    with_coherence, two_lines, unit_row = chance(random, 0.7), chance(random, 0.3), chance(random, 0.3)
+    frequency = f * scale
+    heads, units, columns = [["frequency", ""]], [hz or ""], [[repr(float(v)) for v in frequency]]
+    pairs: dict[str, tuple[str, str]] = {}
+    for i, sensor in enumerate(sensors):
+        for j, point in enumerate(points):
+            name, z = named.format(sensor, point), values[:, i, j]
+            pairs[name] = (sensor, point)
+            if form == "complex":
+                heads.append([name, ""])
+                units.append(unit or "")
+                columns.append([_complex_text(complex(v), comma, style) for v in z])
+            else:
+                size, second = np.abs(z), unit or ""
+                angle = np.angle(z) if form == "rad" else np.rad2deg(np.angle(z))
+                if form == "dB":
+                    size, unit_of_size = 20.0 * np.log10(size), f"dB re 1 {unit}" if unit else "dB"
+                else:
+                    unit_of_size = unit or ""
+                if form != "parts":
+                    second = {"no unit": ""}.get(form, "deg" if form == "dB" else form)
+                parts = (z.real, z.imag) if form == "parts" else (size, angle)
+                heads += [[name, word] for word in words]
+                units += [unit_of_size, second]
+                columns += [[_number(float(v), ".17g", comma) for v in part] for part in parts]
+            if with_coherence:
+                heads.append([name, "coherence"])
+                units.append("")
+                columns.append([_number(float(v), ".17g", comma) for v in coherence[:, i, j]])
+    if comma:
+        columns[0] = [cell.replace(".", ",") for cell in columns[0]]
+    if not unit_row:
+        at = 0 if not two_lines or form == "complex" else 1
+        for head, said in zip(heads[1:], units[1:], strict=True):
+            head[at] += f" [{said}]" if said else ""
+        heads[0][0] += f" [{hz}]" if hz else ""
+    lines = [[" ".join(part for part in head if part) for head in heads]]
+    if two_lines and form != "complex":
+        lines = [[head[0] for head in heads], [head[1] for head in heads]]
+    rows = [*lines, *([units] if unit_row and any(units) else []), *map(list, zip(*columns, strict=True))]
+    path = folder / "wide.csv"
+    path.write_text(_written(rows, separator, quoted), encoding="utf-8")
+    stated = named == "{}{}" and (len(pairs) == 1 or chance(random, 0.8))
+    ask = {"hints": Hints(pairs=pairs)} if stated else {}
+    return path, Responses(
+        f,
+        by_pair(values, sensors, points, factor),
+        by_pair(coherence, sensors, points) if with_coherence else None,
+        factor if unit else None,
+        precision=1e-9,
+        ask=ask,
+    )

@@ -136,7 +136,7 @@ FAULTS: list[tuple[Callable[[Table], None], str, str]] = [
     (_set("records", 1, "references", to={"a": "hit"}), "records[1].references", "of an FRF"),
     (_drop("records", 1, "channels"), "records[1].channels", "missing"),
     (_set("records", 1, "segment_s", to=0.0), "records[1].segment_s", "greater than 0"),
-    (_set("records", 1, "averages", to=5.0), "records[1].averages", "FRF only"),
+    (_set("records", 1, "averages", to=5.0), "records[1].averages", "holds spectra"),
     (_set("records", 1, "interpolated_Hz", to=[[1.0, 1.0]]), "records[1].interpolated_Hz[0]", "from 0 Hz"),
     (_set("records", 1, "interpolated_Hz", to=[[0.0, 0.0]]), "records[1].interpolated_Hz[0]", "above 0"),
     (_set("records", 1, "interpolated_Hz", to=[[0.0, 2.0], [3.0, 1.0]]), "records[1].interpolated_Hz[1]", "whole"),

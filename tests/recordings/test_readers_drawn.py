@@ -7,9 +7,12 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 
 import drawn_arrays
+import drawn_mdf
+import drawn_tables
 import drawn_text
 import drawn_uff
 import numpy as np
@@ -17,22 +20,28 @@ import pytest
 from drawn import Writer, outcome
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from permway.recordings.readers import hdf5
+from permway.recordings.readers import hdf5, mat_objects, mat_objects_child
 
 WRITERS: dict[str, Writer] = {
-    "text": drawn_text.times, "text frf": drawn_text.frf, "uff": drawn_uff.times, "uff frf": drawn_uff.frf,
+    "text": drawn_text.times, "text frf": drawn_text.frf, "text frf wide": drawn_text.frf_wide,
+    "uff": drawn_uff.times, "uff frf": drawn_uff.frf,
     "mat": drawn_arrays.mat, "mat73": drawn_arrays.mat73, "npz": drawn_arrays.npz, "hdf5": drawn_arrays.hdf5,
     "netcdf": drawn_arrays.netcdf, "tdms": drawn_arrays.tdms, "mat frf": drawn_arrays.frf_mat,
     "mat73 frf": drawn_arrays.frf_mat73, "npz frf": drawn_arrays.frf_npz, "hdf5 frf": drawn_arrays.frf_hdf5,
     "netcdf frf": drawn_arrays.frf_netcdf,
 }  # fmt: skip
+if find_spec("asammdf") is not None:
+    WRITERS["mdf"] = drawn_mdf.times
+if find_spec("matio") is not None:
+    WRITERS["tables"] = drawn_tables.times
 
 
 @pytest.fixture(autouse=True, scope="module")
 def _no_trial() -> Iterator[None]:
-    """No file here is damaged: that the HDF5 library comes to an end need not be tried in a process of its own."""
+    """No file here is damaged: that libraries come to an end need not be tried in a process of its own."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(hdf5, "check_sound", lambda _: None)
+        patch.setattr(mat_objects, "_extract", lambda source, to: mat_objects_child.main(str(source), str(to)))
         yield
 
 

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from permway.errors import InputError
 from permway.recordings.readers import read_time
 
@@ -76,7 +78,62 @@ def test_refused(change: dict[str, Any], said: str, tmp_path: Path) -> None:
 
 def test_several_segments(tmp_path: Path) -> None:
     path = write(tmp_path)
-    text = path.read_text()
-    path.write_text(text + "\n" + text.partition("***End_of_Header***")[2])
-    with pytest.raises(InputError, match="holds 2 segments"):
+    first = path.read_text()
+    second = write(tmp_path, x=2.0 * X, Delta_X=["0.001", "0.001"]).read_text().partition("***End_of_Header***")[2]
+    path.write_text(first + "\n" + second)
+    with pytest.raises(
+        InputError, match=r'holds 2 segments \(got \'"1" from line 9, "2" from line 43.*part = "1"'
+    ):
         read_time(path)
+    with pytest.raises(InputError, match="no such segment"):
+        read_time(path, part="3")
+    for part, rate, factor in (("1", 512.0, 1.0), ("2", 1000.0, 2.0)):
+        record = read_time(path, part=part)
+        assert record.sampling_Hz == pytest.approx(rate)
+        np.testing.assert_allclose(record.values, factor * X, rtol=1e-12)
+
+
+def test_a_segment_that_begins_with_notes(tmp_path: Path) -> None:
+    text = write(tmp_path).read_text()
+    second = text.partition("***End_of_Header***")[2].replace("Channels", "Notes\tX is guaranteed\nChannels", 1)
+    path = tmp_path / "a.lvm"
+    path.write_text(f"{text}\n{second}")
+    for part in ("1", "2"):
+        np.testing.assert_array_equal(read_time(path, part=part).values, X)
+
+
+@settings(max_examples=25)
+@given(
+    seed=st.integers(0, 2**31),
+    kind=st.sampled_from(["No", "One", "Multi"]),
+    marks=st.sampled_from([("\t", "."), ("\t", ","), (",", ".")]),
+    rate=st.sampled_from([51.2, 512.0, 2560.0, 51200.0]),
+    unit=st.sampled_from([None, "g", "m/s^2", "mm/s"]),
+    segments=st.integers(1, 3),
+)
+def test_read_back(
+    seed: int,
+    kind: str,
+    marks: tuple[str, str],
+    rate: float,
+    unit: str | None,
+    segments: int,
+    tmp_path_factory: Any,
+) -> None:
+    """Whatever the writer's settings: the samples, rate and unit of each segment."""
+    folder, random = tmp_path_factory.mktemp("lvm"), np.random.default_rng(seed)
+    values = np.round(random.standard_normal((segments, 2, 20)) * 10.0 ** random.integers(-2, 4), 6)
+    text = ""
+    for x in values:
+        change = {"Delta_X": [repr(1.0 / rate)] * 2, "Y_Unit_Label": None if unit is None else [unit] * 2}
+        path = write(
+            folder, kind=kind, separator=marks[0], decimal=marks[1], x=x, t=np.arange(20) / rate, **change
+        )
+        part = path.read_text()
+        text += part if not text else "\n" + part.partition("***End_of_Header***")[2]
+    path.write_text(text)
+    for number, x in enumerate(values, start=1):
+        record = read_time(path, part=None if segments == 1 else str(number))
+        assert record.units == (unit, unit)
+        assert record.sampling_Hz == pytest.approx(rate, rel=1e-6)
+        np.testing.assert_array_equal(record.values, x)

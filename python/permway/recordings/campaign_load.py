@@ -13,8 +13,10 @@ import xarray as xr
 
 from permway.arrays import Reals
 from permway.errors import InputError
+from permway.recordings import campaign_spectra
 from permway.recordings.campaign_parts import Condition, Record
 from permway.recordings.campaign_welch import cross_spectra_of
+from permway.recordings.channel import Sensor
 from permway.recordings.readers import read_frf, time_blocks
 from permway.recordings.record import FrfRecord
 from permway.response.receptance import frequency_coordinate
@@ -264,6 +266,8 @@ def log_variance(coherence: Reals, averages: float) -> Reals:
 def _csd(campaign: Campaign, record: Record) -> xr.Dataset:
     """Cross spectra as `permway.recordings.estimates.welch` gives them, in SI, of the band's usable lines."""
     sensors = [campaign.sensor(name) for name in record.channels.values()]
+    if record.averages is not None:
+        return _in_SI(campaign_spectra.from_file(campaign, record), record, sensors)
     blocks = time_blocks(
         campaign.path(record),
         channels=list(record.channels),
@@ -279,11 +283,20 @@ def _csd(campaign: Campaign, record: Record) -> xr.Dataset:
         channels=[sensor.name for sensor in sensors],
         units=[SI_UNITS[sensor.quantity] for sensor in sensors],
     )
+    return _in_SI(data, record, sensors)
+
+
+def _in_SI(data: xr.Dataset, record: Record, sensors: list[Sensor]) -> xr.Dataset:
+    """Spectra of the band's usable lines, in SI."""
     frequency = data["frequency"].values
     used = in_band(frequency, record) & data["usable"].values
     if not used.any():
         raise InputError("holds no usable line of the record", where="band_Hz", value=record.band_Hz)
     data = data.isel(frequency=np.flatnonzero(used))
+    if not np.isfinite(data["csd"].values).all():
+        at = np.argwhere(~np.isfinite(data["csd"].values))[0]
+        where = f"{record.file}: channel '{data['channel'].values[at[0]]}', {data['frequency'].values[at[2]]:g} Hz"
+        raise InputError("not a finite number", where=where, remedy="leave the line out of the record's band_Hz")
     si = np.array([sensor.to_SI for sensor in sensors])
     data["csd"] = data["csd"].copy(data=data["csd"].values * (si[:, None] * si)[:, :, None])
     data["psd"] = data["psd"].copy(data=data["psd"].values * (si**2)[:, None])

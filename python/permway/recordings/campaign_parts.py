@@ -114,7 +114,7 @@ Band = Annotated[tuple[Number, Number], BeforeValidator(_band)]
 """From and to, Hz."""
 
 
-_HINTS = ("header_row", "skip_rows", "time_column", "decimal", "encoding", "unit", "axes")
+_HINTS = ("header_row", "skip_rows", "time_column", "decimal", "encoding", "unit", "axes", "pairs")
 
 
 class Record(FrozenModel):
@@ -138,13 +138,14 @@ class Record(FrozenModel):
     responses, references : dict of file's label to sensor, and to force point
         Of frequency responses; the force points are in [[forces]]. Labels that are names may be a list.
     averages : float, optional
-        Averages behind an FRF, if the file does not say.
+        Averages behind an FRF, if the file does not say. Of "csd" and "psd" it says that the file holds spectra,
+        not samples, and how many independent averages are behind them.
     band_Hz : (low, high), optional
         What of the record is used; by default all.
     sampling_Hz : float, optional
         Of a record in time whose file does not say it. It wins over a remark in a text; with times or a rate of
         the file's own the two must agree, but for `time_column = "none"`.
-    header_row, skip_rows, time_column, decimal, encoding, unit, axes
+    header_row, skip_rows, time_column, decimal, encoding, unit, axes, pairs
         What the file does not say or says wrongly, and wins over it; see
         :class:`permway.recordings.readers.hints.Hints`.
     segment_s : float
@@ -193,6 +194,12 @@ class Record(FrozenModel):
     encoding: str | None = None
     unit: str | dict[str, str] | None = None
     axes: tuple[str, str, str] | None = None
+    pairs: dict[str, tuple[str, str]] | None = None
+
+    @property
+    def sampled(self) -> bool:
+        """Whether its file holds samples over time."""
+        return self.statistic in ("csd", "psd") and self.averages is None
 
     @property
     def hints(self) -> Hints:
@@ -222,8 +229,10 @@ class Record(FrozenModel):
             raise fault('goes with statistic = "decay", which needs it', "spacing_m")
         if self.loss_file is not None and self.law is None:
             raise fault('goes with statistic = "material"', "loss_file")
-        if self.averages is not None and not frf:
-            raise fault("of an FRF only: other statistics count their own", "averages")
+        if self.averages is not None and self.statistic not in ("frf", "csd", "psd"):
+            raise fault('goes with statistic "frf", or with "csd" or "psd" of a file of spectra', "averages")
+        if not frf and self.averages is not None and self.sampling_Hz is not None:
+            raise fault("averages say that the file holds spectra, which have no sampling_Hz", "averages")
         if self.within_dB is not None and self.statistic not in ("transmissibility", "material"):
             raise fault('goes with statistic "transmissibility" or "material"', "within_dB")
         _check_lines(self.interpolated_Hz or ())
@@ -238,9 +247,8 @@ class Record(FrozenModel):
         except InputError as error:
             raise fault(f"{error.what}; {error.remedy}", error.where, value=error.value) from error
         for key in _HINTS:
-            wanted = (
-                ("frf",) if key == "axes" else ("csd", "psd") if key == "time_column" else ("frf", "csd", "psd")
-            )
+            of_frf = key in ("axes", "pairs")
+            wanted = ("frf",) if of_frf else ("csd", "psd") if key == "time_column" else ("frf", "csd", "psd")
             if getattr(self, key) is not None and self.statistic not in wanted:
                 raise fault(f"goes with statistic {' or '.join(map(repr, wanted))}", key)
 

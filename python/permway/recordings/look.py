@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from permway.errors import InputError
-from permway.recordings.look_campaign import Places, frf_part, time_part
+from permway.recordings.look_campaign import Places, frf_part, spectra_part, time_part
 from permway.recordings.readers.formats import recognise
 from permway.recordings.readers.front import opened, read_frf, read_table
 from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES, existing_file
 from permway.recordings.readers.timefile import TimeFile, Timing
+from permway.recordings.readers.uff58_spectra import spectra_held
 from permway.recordings.readers.uff_nodes import read_nodes
 from permway.recordings.record import FrfRecord
 
@@ -55,9 +56,10 @@ def look(path: str | Path, asked: Asked | None = None) -> dict[str, Any]:
     -------
     dict
         `file` and `format`; `channels` of records in time, a dict each: channel, unit, samples, sampling_Hz,
-        start_s, and `problem` where it cannot be used; `responses`: pairs, frequencies, unit, coherence; or else
-        `columns` of a table. `notes` are what was left aside; `missing` is what the campaign file has to state;
-        `problems` why the file is not read as one of these; `campaign` is the part of a campaign file, in TOML.
+        start_s, and `problem` where it cannot be used; `responses`: pairs, frequencies, unit, coherence;
+        `spectra`: channel, unit and lines of each; or else `columns` of a table. `notes` are what was left aside;
+        `missing` is what the campaign file has to state; `problems` why the file is not read as one of these;
+        `campaign` is the part of a campaign file, in TOML.
 
     Raises
     ------
@@ -75,25 +77,45 @@ def look(path: str | Path, asked: Asked | None = None) -> dict[str, Any]:
             places = read_nodes(source)
         except InputError as error:
             problems.append(error)
-    if kind not in ("tdms", "wav", "lvm"):
+    if kind not in ("tdms", "wav", "lvm", "mdf"):
         try:
-            record = read_frf(source, format=asked.format, part=asked.part, hints=asked.hints, keep_nonfinite=True)
+            record, known = _frf(source, asked)
         except InputError as error:
             problems.append(error)
         else:
             result |= _responses(record)
-            result["campaign"] = frf_part(record, source.name, asked, places)
+            result["campaign"] = frf_part(record, source.name, known, places)
     if not (kind == "text" and "responses" in result):
         try:
             result |= _in_time(source, asked, result.get("campaign", ""), places)
         except InputError as error:
             problems.append(error)
+    if kind == "uff" and "channels" not in result and "responses" not in result:
+        held = spectra_held(source, asked.hints)
+        if held:
+            return result | {"spectra": held, "campaign": spectra_part(held, source.name, asked, places)}
     if "channels" not in result and "responses" not in result:
         result |= _columns(source, asked)
         # Of a table of text that is no record in time, what it lacks of a table of responses helps nobody.
         result["problems"] = [str(error) for error in (problems[-1:] if kind == "text" else problems)]
     result.setdefault("campaign", "")
     return result
+
+
+def _frf(source: Path, asked: Asked) -> tuple[FrfRecord, Asked]:
+    """Frequency responses; where lines stand above the table, with the header's line, which is stated."""
+
+    def read(known: Asked) -> FrfRecord:
+        return read_frf(source, format=known.format, part=known.part, hints=known.hints, keep_nonfinite=True)
+
+    try:
+        return read(asked), asked
+    except InputError as error:
+        found = _HEADER_ROW.search(error.remedy)
+        if found is None or asked.hints.header_row is not None:
+            raise
+        known = replace(asked, hints=replace(asked.hints, header_row=int(found[1])))
+        return read(known), known
 
 
 def _responses(record: FrfRecord) -> dict[str, Any]:

@@ -98,6 +98,44 @@ def frf_part(record: FrfRecord, file: str, asked: Asked, places: Places) -> str:
     return "\n".join(lines)
 
 
+def spectra_part(rows: Sequence[Mapping[str, Any]], file: str, asked: Asked, places: Places) -> str:
+    """Sensors and a record for auto and cross spectra; the sensor's unit is what a density's is the square of."""
+    lines: list[str] = []
+    for row in rows[:_SHOWN]:
+        quantity, unit = _root(row["unit"])
+        name = str(row["channel"])
+        lines += _sensor(name, quantity, unit, _place(name, places), known=row["unit"] is not None)
+    names = [str(row["channel"]) for row in rows[:_SHOWN]]
+    step = next((row["step_Hz"] for row in rows if row["step_Hz"]), 1.0)
+    return "\n".join(
+        [
+            *lines,
+            "# Densities by Hann's window; of several channels the cross spectra are needed, too.",
+            "[[records]]",
+            'name = "run"',
+            f"file = {_quoted(file)}",
+            'condition = ""                  # name of one of [[conditions]], of kind "train"',
+            'statistic = "csd"',
+            "averages = 0.0                  # independent ones: the file does not say it",
+            f"segment_s = {1.0 / step:.9g}",
+            *_hints(asked, {}),
+            f"channels = {_table({name: name for name in names})}",
+        ]
+    )
+
+
+def _root(unit: str | None) -> tuple[str, str]:
+    """Quantity and unit of the sensor whose density has a unit; an acceleration where none has."""
+    for quantity, units in UNITS.items():
+        for name in units:
+            try:
+                if unit is not None and parse_unit(f"({name})^2/Hz").same(parse_unit(unit)):
+                    return quantity, name
+            except InputError:
+                break
+    return "acceleration", "m/s2"
+
+
 def _place(label: str, places: Places) -> str:
     """Where on the body: the first coordinate of its node, where the file has it."""
     node = label.partition(":")[0]
@@ -164,6 +202,9 @@ def _hints(asked: Asked, stated: Mapping[str, str]) -> list[str]:
         lines.append(f"unit = {_table({**(unit or {}), **stated})}")
     if asked.hints.axes is not None:
         lines.append(f"axes = {json.dumps(list(asked.hints.axes))}")
+    if asked.hints.pairs:
+        pairs = ", ".join(f"{_quoted(key)} = {json.dumps(list(pair))}" for key, pair in asked.hints.pairs.items())
+        lines.append(f"pairs = {{ {pairs} }}")
     if asked.part is not None:
         lines.append(f"part = {_quoted(asked.part)}")
     if asked.format is not None:

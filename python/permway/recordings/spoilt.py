@@ -15,9 +15,6 @@ from permway.recordings.screening import screen
 if TYPE_CHECKING:
     from permway.recordings.campaign import Campaign
 
-SAMPLED = ("csd", "psd")
-"""Statistics of records that are samples over time."""
-
 
 @dataclass(frozen=True)
 class Spoilt:
@@ -52,7 +49,7 @@ def sound(campaign: Campaign) -> tuple[Campaign, tuple[Spoilt, ...]]:
     records: list[Record] = []
     spoilt: list[Spoilt] = []
     for record in campaign.said.records:
-        found = list(_spoilt(campaign, record)) if record.statistic in SAMPLED else []
+        found = list(_spoilt(campaign, record)) if record.sampled else []
         names = {one.channel for one in found}
         kept = {label: name for label, name in record.channels.items() if name not in names}
         if kept or not found:

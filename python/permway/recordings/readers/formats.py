@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 from permway.errors import InputError
 
-Format = Literal["text", "uff", "mat", "mat73", "npz", "hdf5", "netcdf", "netcdf3", "tdms", "wav", "lvm"]
+Format = Literal["text", "uff", "mat", "mat73", "npz", "hdf5", "netcdf", "netcdf3", "tdms", "wav", "lvm", "mdf"]
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _SUFFIXES: dict[str, tuple[Format, ...]] = {
@@ -21,6 +21,7 @@ _SUFFIXES: dict[str, tuple[Format, ...]] = {
     ".tdms": ("tdms",),
     ".wav": ("wav",),
     ".lvm": ("lvm",),
+    **dict.fromkeys((".mf4", ".mdf"), ("mdf",)),
 }
 _UNREAD: tuple[tuple[bytes, str, str], ...] = (
     (b"\x93NUMPY", "a bare NumPy array, without names and units", "save it with numpy.savez and name its parts"),
@@ -82,6 +83,10 @@ def _by_content(source: Path) -> Format:
             raise InputError(f"is {what}", where=str(source), remedy=remedy)
     if head[:4] == b"RIFF" and head[8:12] == b"WAVE":
         return "wav"
+    if head[:8] == b"MDF     ":
+        return "mdf"
+    if head[:8] == b"UnFinMF ":
+        raise InputError("was not finalised: its recorder stopped before", where=str(source), remedy="finalise it")
     if head[:4] == b"TDSm":
         return "tdms"
     if head[:4] == b"TDSh":
@@ -105,6 +110,6 @@ def _by_content(source: Path) -> Format:
             "the content is no format that is read here",
             where=str(source),
             value=head[:16],
-            remedy="give UFF, MAT (version 4: save as -v7), CSV, TSV, NPZ, HDF5, NetCDF, TDMS, LVM or WAV",
+            remedy="give UFF, MAT (version 4: save as -v7), CSV, TSV, NPZ, HDF5, NetCDF, TDMS, LVM, MDF or WAV",
         )
     return "text"

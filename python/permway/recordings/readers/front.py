@@ -8,13 +8,29 @@ from dataclasses import replace
 from pathlib import Path
 
 from permway.errors import InputError
-from permway.recordings.readers import hdf5, lvm, mat, netcdf3, npz, table, tdms, text, text_frf, uff55, uff58, wav
+from permway.recordings.readers import (
+    hdf5,
+    lvm,
+    mat,
+    mdf,
+    netcdf3,
+    npz,
+    table,
+    tdms,
+    text,
+    text_frf,
+    uff55,
+    uff58,
+    wav,
+)
 from permway.recordings.readers.formats import Format, recognise
 from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES, check_size, existing_file, foreign
+from permway.recordings.readers.mat_objects import with_tables
 from permway.recordings.readers.store import as_time
 from permway.recordings.readers.store_frf import as_frf, as_table
 from permway.recordings.readers.stored import Store
+from permway.recordings.readers.text_numbers import in_decibels
 from permway.recordings.readers.timefile import (
     TimeFile,
     Timing,
@@ -49,7 +65,7 @@ def read_time(
     Parameters
     ----------
     path : path
-        UFF 58 or 58b, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS, LVM or WAV.
+        UFF 58 or 58b, MAT, CSV, TSV, NPZ, HDF5, NetCDF, TDMS, LVM, MDF or WAV.
     channels : sequence of str, optional
         Which, in which order; by default all. Only these have to be sound, and to go together.
     units : str or dict of channel to str, optional
@@ -61,7 +77,7 @@ def read_time(
     format : str, optional
         One of :data:`permway.recordings.readers.formats.Format`; by default told from content and name.
     part : str, optional
-        Group of a TDMS or HDF5 file, or array of samples, if there are several.
+        Group of a TDMS, MDF or HDF5 file, array of samples, or number of a segment of LVM, if there are several.
     hints : Hints
         What is known of the file and wins over what it says.
     keep_nonfinite : bool
@@ -179,13 +195,19 @@ def read_frf(
             with _store(source, kind, part, max_bytes) as (store, array):
                 record = as_frf(store, array, hints=hints, max_bytes=max_bytes)
         elif kind == "text":
-            record = text_frf.read_frf(source, hints=hints, max_bytes=max_bytes)
+            record = text_frf.read_frf(
+                source, responses=responses, references=references, hints=hints, max_bytes=max_bytes
+            )
         else:
             remedy = "give UFF, MAT, NPZ, HDF5, NetCDF, or a table of text"
             raise InputError(
                 "frequency responses are not read from this format", where=str(source), value=kind, remedy=remedy
             )
-    record = record.of(responses, references).with_unit(hints.unit if isinstance(hints.unit, str) else None)
+    stated = hints.unit if isinstance(hints.unit, str) else None
+    if kind == "text" and in_decibels(stated):
+        # The levels of a table were taken by it.
+        stated = None
+    record = record.of(responses, references).with_unit(stated)
     record.check_ratio()
     record.check_coherence()
     if not keep_nonfinite:
@@ -259,9 +281,11 @@ def opened(
                 if kind == "text":
                     entered = text.open_time(source, keep, hints)
                 elif kind == "lvm":
-                    entered = lvm.open_time(source, hints, max_bytes=max_bytes)
+                    entered = lvm.open_time(source, hints, part=part, max_bytes=max_bytes)
                 elif kind == "uff":
                     entered = uff58.open_time(source, hints, keep=keep)
+                elif kind == "mdf":
+                    entered = mdf.open_time(source, group=part, hints=hints, max_bytes=max_bytes)
                 else:
                     entered = (
                         tdms.open_time(source, group=part, hints=hints)
@@ -295,7 +319,7 @@ def _store(source: Path, kind: Format, part: str | None, max_bytes: int) -> Iter
         group = part if part is not None and hdf5.is_group(source, part) else None
         opened, part = hdf5.open_store(source, group=group), None if group is not None else part
     with opened as store:
-        yield store, part
+        yield (with_tables(store, source, max_bytes=max_bytes) if kind in ("mat", "mat73") else store), part
 
 
 def _record(

@@ -34,6 +34,8 @@ class Hints:
         Of all channels, or of each by its label, in place of the file's; also of the times and of a phase.
     axes : tuple of str, optional
         Of an array of frequency responses: "frequency", "response" and "reference" in the order of its axes.
+    pairs : dict of str to (str, str), optional
+        Of frequency responses side by side in a table: what was read and what was struck, by a column's name.
     """
 
     header_row: int | None = None
@@ -43,6 +45,7 @@ class Hints:
     encoding: str | None = None
     unit: str | Mapping[str, str] | None = None
     axes: tuple[str, ...] | None = None
+    pairs: Mapping[str, tuple[str, str]] | None = None
 
     def __post_init__(self) -> None:
         for key in ("header_row", "skip_rows"):

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,7 @@ from permway.laws.textfile import number
 from permway.recordings.readers.headers import clean_unit
 from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES, check_size
-from permway.recordings.readers.text_lines import numbered_lines
+from permway.recordings.readers.text_lines import is_number, numbered_lines
 from permway.recordings.readers.timefile import TimeFile, Timing
 
 START = b"LabVIEW Measurement"
@@ -76,14 +77,16 @@ class _Segment:
 
 
 @contextmanager
-def open_time(source: Path, hints: Hints = NO_HINTS, *, max_bytes: int = MOST_BYTES) -> Iterator[TimeFile]:
-    """Open a LabVIEW measurement file of one segment.
+def open_time(
+    source: Path, hints: Hints = NO_HINTS, *, part: str | None = None, max_bytes: int = MOST_BYTES
+) -> Iterator[TimeFile]:
+    """Open one segment of a LabVIEW measurement file, the number of which `part` is if there are several.
 
     Rates are by `Delta_X` of each channel, and starts by `X0`, `Date` and `Time`; x values, where they are
     printed, are held against both.
     """
     check_size(source.stat().st_size, str(source), max_bytes=max_bytes, item=8)
-    segment = _segment(source, hints)
+    segment = _segment(source, hints, part)
 
     def timing(row: int) -> Timing:
         return _timing(segment, row, hints)
@@ -100,7 +103,7 @@ def open_time(source: Path, hints: Hints = NO_HINTS, *, max_bytes: int = MOST_BY
     )
 
 
-def _segment(source: Path, hints: Hints) -> _Segment:
+def _segment(source: Path, hints: Hints, part: str | None) -> _Segment:
     lines = list(numbered_lines(source, hints.encoding))
     ends = [at for at, (_, line) in enumerate(lines) if line.strip().startswith(_END)]
     if len(ends) < 2:
@@ -109,17 +112,54 @@ def _segment(source: Path, hints: Hints) -> _Segment:
     separator = _separator(words, str(source))
     head = {cells[0].strip(): cells[1:] for cells in (line.split(separator) for line in words) if cells[0].strip()}
     sign = (head.get("Decimal_Separator") or ["."])[0].strip() or "."
-    if len(ends) > 2:
-        what = f"holds {len(ends) - 1} segments, and which is meant is not known"
-        raise InputError(what, where=str(source), remedy="write each segment into a file of its own")
-    inner = [line.split(separator) for _, line in lines[ends[0] + 1 : ends[1]]]
+    heads = _heads(lines, ends, separator, str(source))
+    number = _number(heads, lines, part, str(source))
+    start, end = heads[number - 1]
+    stop = heads[number][0] if number < len(heads) else len(lines)
+    inner = [line.split(separator) for _, line in lines[start:end]]
     table = {cells[0].strip(): cells[1:] for cells in inner if cells[0].strip()}
-    if ends[1] + 1 >= len(lines):
+    if end + 1 >= stop:
         raise InputError("has no row of names", where=str(source), remedy="record it again")
-    _, titles = lines[ends[1] + 1]
+    _, titles = lines[end + 1]
     names, columns = _columns(titles.split(separator), head, str(source))
-    rows = [(index, line.split(separator)) for index, line in lines[ends[1] + 2 :] if line.strip()]
+    rows = [(index, line.split(separator)) for index, line in lines[end + 2 : stop] if line.strip()]
     return _Segment(table, names, columns, rows, (hints.decimal or sign) == ",", str(source))
+
+
+def _heads(lines: list[tuple[int, str]], ends: list[int], separator: str, where: str) -> list[tuple[int, int]]:
+    """First line and end of the head of each segment: that of a later one begins with a word, which no row does.
+
+    Raises
+    ------
+    InputError
+        For a segment without a head, whose rows would be taken for those of the one before.
+    """
+    found = [(ends[0] + 1, ends[1])]
+    for before, end in pairwise(ends[1:]):
+        first = next((i for i in range(before + 2, end) if _is_word(lines[i][1].split(separator)[0])), None)
+        if first is None:
+            what = "a segment without its head"
+            raise InputError(what, where=f"{where}: line {lines[end][0]}", remedy="export each segment by itself")
+        found.append((first, end))
+    return found
+
+
+def _is_word(cell: str) -> bool:
+    """Whether the first cell of a line is the key of a head rather than a value of x or empty."""
+    return bool(cell.strip()) and not is_number(cell)
+
+
+def _number(heads: list[tuple[int, int]], lines: list[tuple[int, str]], part: str | None, where: str) -> int:
+    """Number of the segment that is meant, from 1."""
+    if part is None and len(heads) == 1:
+        return 1
+    numbers = [str(i + 1) for i in range(len(heads))]
+    if part in numbers:
+        return int(part)
+    begins = ", ".join(f'"{i}" from line {lines[start][0]}' for i, (start, _) in zip(numbers, heads, strict=True))
+    what = f"holds {len(heads)} segments" if part is None else "there is no such segment"
+    remedy = 'say which in the record, as in part = "1"'
+    raise InputError(what, where=where, value=part or begins, remedy=remedy)
 
 
 def _separator(words: list[str], where: str) -> str:

@@ -18,8 +18,9 @@ MOST_TEXT_BYTES = 2**26
 
 
 OBJECT = (
-    "an object of MATLAB (a table, timetable or string), which is not stored openly: "
-    "save a struct of arrays, as by table2struct(T, 'ToScalar', true), or a text by writetable"
+    "an object of MATLAB (a table, timetable or string), which is not stored openly: save a struct of arrays, "
+    "as by table2struct(T, 'ToScalar', true) with the rate beside it, or a text by writetimetable or writetable; "
+    "or pip install 'permway[mat]' for tables and timetables"
 )
 UNITS = {"units", "unit", "channel_units"}
 

@@ -29,14 +29,14 @@ def read_text_table(
     be one or empty (NaN); other columns are texts, and so are those named in `texts`.
     """
     check_size(source.stat().st_size, str(source), max_bytes=max_bytes, item=32)
-    lines = _lines(source, hints)
+    lines = lines_of(source, hints)
     names, units, rows = _head(source, lines)
     if not rows:
         raise InputError("a header but no rows", where=str(source), remedy="give at least one row")
     for name in texts:
         if name not in names:
             raise InputError("there is no such column", where=str(source), value=name, remedy=f"it has {names}")
-    _check_rows(source, names, rows)
+    check_rows(source, names, rows)
     comma = hints.decimal == "," if hints.decimal is not None else _decimal_comma(source, rows)
     columns: dict[str, Cells] = {}
     for index, name in enumerate(names):
@@ -50,8 +50,14 @@ def read_text_table(
     return TableRecord(columns=columns, units=dict(zip(names, units, strict=True)), source=str(source))
 
 
-def _lines(source: Path, hints: Hints) -> list[Line]:
-    """Lines without remarks, cut into cells."""
+def lines_of(source: Path, hints: Hints) -> list[Line]:
+    """Lines without remarks, cut into cells.
+
+    Raises
+    ------
+    InputError
+        If there is none, or the file is no text.
+    """
     skipped = max(hints.skip_rows or 0, (hints.header_row or 0) - 1)
     kept: list[tuple[int, str]] = []
     mark: str | None = None
@@ -87,18 +93,34 @@ def _head(source: Path, lines: list[Line]) -> tuple[list[str], list[str | None],
     return names, units, rows
 
 
-def _check_rows(source: Path, names: list[str], rows: list[Line]) -> None:
+def check_rows(source: Path, names: list[str], rows: list[Line]) -> None:
+    """Refuse rows that have not a cell for each name.
+
+    Raises
+    ------
+    InputError
+        With the line of the first.
+    """
     for row in rows:
         if len(row.cells) != len(names):
             raise InputError(
                 f"{len(row.cells)} cells where there are {len(names)} columns",
                 where=f"{source}: line {row.number}",
                 value=",".join(row.cells),
-                remedy="complete or remove the line (a file cut short ends like this)",
+                remedy=_begins(names, rows) or "complete or remove the line (a file cut short ends like this)",
             )
         bad = next((cell for cell in row.cells if "\x00" in cell), None)
         if bad is not None:
             raise InputError("not a text: it holds zero bytes", where=f"{source}: line {row.number}", value=bad)
+
+
+def _begins(names: list[str], rows: list[Line]) -> str:
+    """That the header may stand further down, where it has as many cells as the last row, and no numbers."""
+    width = len(rows[-1].cells)
+    head = next((row for row in rows if len(row.cells) == width), rows[-1])
+    if width == len(names) or any(is_number(cell) for cell in head.cells):
+        return ""
+    return f"if line {head.number} names the columns, say so in the record: header_row = {head.number}"
 
 
 def _decimal_comma(source: Path, rows: list[Line]) -> bool:

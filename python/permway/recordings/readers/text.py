@@ -12,6 +12,8 @@ from permway.recordings.readers.clock import is_clock
 from permway.recordings.readers.headers import time_scale
 from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.scales import seconds_in, seconds_of
+from permway.recordings.readers.store import OVER_FREQUENCY
+from permway.recordings.readers.stored import is_one_of
 from permway.recordings.readers.text_layout import Layout, find_layout
 from permway.recordings.readers.text_lines import is_number
 from permway.recordings.readers.text_rows import Rows, Times
@@ -102,6 +104,13 @@ def _time_column(source: Path, layout: Layout, hints: Hints) -> int | None:
         remedy = f'keep one, or say which in the record: time_column = "{value[0]}"'
         raise InputError("more than one time column", where=str(source), value=value, remedy=remedy)
     first = hints.unit_of(names[0]) or layout.units[0]
+    over = is_one_of(names[0], OVER_FREQUENCY - {"f"}) or (first or "").lower() in ("hz", "khz", "rad/s")
+    if not found and len(names) > 1 and over:
+        remedy = (
+            'is it a table of frequency responses? use statistic = "frf"; '
+            'if the column is a channel, state time_column = "none" and sampling_Hz'
+        )
+        raise InputError("stands over frequency, not over time", where=str(source), value=names[0], remedy=remedy)
     if not found and len(names) > 1 and first is not None and seconds_of(first) is not None:
         return 0
     return found[0] if found else None

@@ -1,19 +1,29 @@
-"""Frequency responses in a table of text: a row for each frequency, sensor and point."""
+"""Frequency responses in a table of text: a row for each frequency, sensor and point, or side by side."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from permway.arrays import Complexes, Reals
 from permway.errors import InputError
+from permway.recordings.readers import text_frf_wide
 from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES
 from permway.recordings.readers.scales import hertz_in
 from permway.recordings.readers.store_frf import COHERENCES, FREQUENCIES, REFERENCES, RESPONSES
 from permway.recordings.readers.stored import is_one_of
 from permway.recordings.readers.table import read_text_table
+from permway.recordings.readers.text_numbers import (
+    complex_number,
+    degrees_in,
+    is_complex,
+    polar,
+    signs_of,
+    sizes_of,
+)
 from permway.recordings.record import FrfRecord, TableRecord
 from permway.units import check_same
 
@@ -22,32 +32,36 @@ MAGNITUDE, PHASE = (
     {"magnitude", "mag", "amplitude", "abs"},
     {"phase", "phase_deg", "phase_rad", "angle", "angle_deg", "angle_rad"},
 )
-_ANGLES = {
-    "deg": 1.0,
-    "degree": 1.0,
-    "degrees": 1.0,
-    "°": 1.0,
-    "grad": None,
-    "rad": 180.0 / np.pi,
-    "radian": 180.0 / np.pi,
-}
-_ANGLES |= {"radians": 180.0 / np.pi}
-"""Degrees in one of a unit of angle."""
-
 REMEDY = (
     "give a row for each frequency, sensor and point, with columns frequency, sensor, force, real and imaginary "
-    "(or magnitude, and phase [deg] or phase [rad]), and coherence"
+    "(or magnitude, and phase [deg] or phase [rad]), and coherence; or side by side, named "
+    "'read / struck real' and 'read / struck imaginary'"
 )
 
 
-def read_frf(source: Path, *, hints: Hints = NO_HINTS, max_bytes: int = MOST_BYTES) -> FrfRecord:
+def read_frf(
+    source: Path,
+    *,
+    responses: Sequence[str] | None = None,
+    references: Sequence[str] | None = None,
+    hints: Hints = NO_HINTS,
+    max_bytes: int = MOST_BYTES,
+) -> FrfRecord:
     """Read frequency responses from a table of text.
+
+    Columns that name sensors or points make it a table with a row for each frequency, sensor and point; else they
+    stand side by side: see :mod:`permway.recordings.readers.text_frf_wide`.
 
     Raises
     ------
     InputError
         If a column is missing, cells are no numbers, or pairs do not have the same frequencies.
     """
+    beside = text_frf_wide.read_frf(
+        source, responses=responses, references=references, hints=hints, max_bytes=max_bytes
+    )
+    if beside is not None:
+        return beside
     head = _named(read_text_table(source, hints=hints, max_bytes=max_bytes), (*RESPONSES, *REFERENCES))
     table = read_text_table(source, texts=head, hints=hints, max_bytes=max_bytes)
     frequency, column = _numbers(table, FREQUENCIES, "frequencies"), _one(table, FREQUENCIES, "frequencies")
@@ -111,6 +125,13 @@ def _texts(table: TableRecord, names: tuple[str, ...], what: str) -> tuple[str, 
 
 def _values(table: TableRecord, hints: Hints) -> tuple[Complexes, str | None]:
     """Of real and imaginary part, or of magnitude and phase, and the unit in their header."""
+    whole = [
+        name
+        for name, cells in table.columns.items()
+        if not isinstance(cells, np.ndarray) and any(map(is_complex, cells))
+    ]
+    if len(whole) == 1:
+        return _complexes(table, whole[0]), table.units[whole[0]]
     if _named(table, tuple(REAL)):
         real = _numbers(table, REAL, "real parts")
         imaginary = _numbers(table, IMAGINARY, "imaginary parts")
@@ -121,16 +142,21 @@ def _values(table: TableRecord, hints: Hints) -> tuple[Complexes, str | None]:
         return np.asarray(real + 1j * imaginary, dtype=np.complex128), unit or other
     name = _one(table, MAGNITUDE, "real parts or magnitudes")
     size = _numbers(table, MAGNITUDE, "magnitudes")
-    below = np.flatnonzero(size < 0.0)
-    if below.size:
+    unit = hints.channel_unit(name) or table.units[name]
+    size, unit = sizes_of(size, unit, f"{table.source}: '{name}'", name)
+    return polar(size, _numbers(table, PHASE, "phases") * _degrees(table, hints)), unit
+
+
+def _complexes(table: TableRecord, name: str) -> Complexes:
+    """Of a column of complex text."""
+    where = f"{table.source}: '{name}'"
+    cells = [str(cell) for cell in table.columns[name]]
+    if signs_of(cells) == {".", ","}:
+        remedy = "write all numbers alike"
         raise InputError(
-            "a magnitude below 0: is it a level in dB?",
-            where=f"{table.source}: '{name}'",
-            value=float(size[below[0]]),
-            remedy="export real and imaginary part, or magnitudes in a plain unit",
+            "decimal points and decimal commas in one column", where=where, value=cells[0], remedy=remedy
         )
-    angle = _numbers(table, PHASE, "phases") * _degrees(table, hints)
-    return np.asarray(size * np.exp(1j * np.deg2rad(angle)), dtype=np.complex128), table.units[name]
+    return np.array([complex_number(cell, where) for cell in cells], dtype=np.complex128)
 
 
 def _degrees(table: TableRecord, hints: Hints) -> float:
@@ -147,7 +173,7 @@ def _degrees(table: TableRecord, hints: Hints) -> float:
     if unit is None:
         remedy = f"write it as in 'phase [deg]', or say it in the record: unit = {{ {name} = \"rad\" }}"
         raise InputError("a phase without a unit: degrees or radians?", where=where, remedy=remedy)
-    found = _ANGLES.get(unit.lower())
+    found = degrees_in(unit)
     if found is None:
         raise InputError("must be in deg or rad", where=where, value=unit, remedy="export it in degrees")
     return found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -18,11 +19,19 @@ from permway.recordings.readers.timebase import TimeBase, whole_rate
 from permway.recordings.readers.timefile import TimeFile, Timing
 from permway.recordings.readers.uff import Text, open_text
 from permway.recordings.readers.uff58_function import Function, functions, values_of
-from permway.recordings.readers.uff58_labels import channel_labels, pair_labels, type_name
+from permway.recordings.readers.uff58_labels import (
+    Pair,
+    Tell,
+    channel_labels,
+    pair_labels,
+    pair_tells,
+    plain_pair,
+    type_name,
+)
 from permway.recordings.readers.uff58_units import ordinate_unit
 from permway.recordings.record import FrfRecord
 
-GENERAL, TIME, FRF, COHERENCE = 0, 1, 4, 6
+GENERAL, TIME, AUTO, CROSS, FRF, COHERENCE, DENSITY = 0, 1, 2, 3, 4, 6, 9
 _UNSAID, _TIME_AXIS, _FREQUENCY_AXIS = 0, 17, 18
 _PRINTED = 5e-6
 """Relative rounding of a step that is printed with six digits: 9.76562e-04 s is 1024 Hz."""
@@ -72,9 +81,11 @@ def _nothing(source: Path, everything: list[Function], wanted: str) -> InputErro
         remedy = 'is it a file of frequency responses? use read_frf, in a campaign statistic = "frf"'
     elif kinds & {TIME}:
         remedy = 'is it a record in time? use read_time, in a campaign statistic = "csd"'
+    elif kinds & {AUTO, DENSITY}:
+        remedy = 'it holds spectra: in a campaign statistic = "csd" with averages and the segment_s of its lines'
     else:
         remedy = (
-            "it holds neither records in time (type 1) nor frequency responses (type 4), which alone are read: "
+            "it holds neither records in time (type 1) nor frequency responses (type 4) nor densities (type 9): "
         )
         remedy += "export one of them"
     held = ", ".join(f"{count} x {name}" for name, count in counts.items()) or None
@@ -108,7 +119,8 @@ def read_frf(
         ]
         if not found:
             raise _nothing(source, everything, "frequency response (dataset 58 of type 4)")
-        every = pair_labels(found)
+        tells = pair_tells(found)
+        every = pair_labels(found, tells)
         chosen = [
             i
             for i, (response, reference) in enumerate(every)
@@ -120,7 +132,7 @@ def read_frf(
         check_size(3 * len(rows) * rows[0].count, str(source), max_bytes=max_bytes)
         twice = next((i for i, label in enumerate(labels) if label in labels[:i]), None)
         if twice is not None:
-            remedy = "keep one, or put repeats into files of their own"
+            remedy = "number the functions, name them in an identification line, or put repeats into files apart"
             value = " / ".join(labels[twice])
             raise text.error("a pair measured twice", rows[twice].at, value=value, remedy=remedy)
         frequency: Reals | None = None
@@ -130,8 +142,8 @@ def read_frf(
                 what = f"the response {' / '.join(labels[i])} is of real numbers: a magnitude without its phase"
                 remedy = "export real and imaginary part (ordinates of type 5 or 6)"
                 raise text.error(what, item.at, value=item.kind, remedy=remedy)
-            abscissa, ordinate = _values(text, item)
-            frequency = _same_lines(text, item, abscissa, frequency, rows[0])
+            abscissa, ordinate = over_frequency(text, item)
+            frequency = same_lines(text, item, abscissa, frequency, rows[0])
             values[i] = ordinate
         assert frequency is not None
         units = tuple(ordinate_unit(item.ordinate, item.denominator, item.system) for item in rows)
@@ -140,7 +152,7 @@ def read_frf(
             references=tuple(label[1] for label in labels),
             frequency_Hz=frequency,
             values=values,
-            coherence=_coherence(text, everything, (rows, labels, every), frequency),
+            coherence=_coherence(text, everything, _Chosen(rows, labels, every, tells), frequency),
             unit=units[0] if len(set(units)) == 1 else None,
             units=units,
             averages=None,
@@ -148,41 +160,53 @@ def read_frf(
         )
 
 
-Labels = tuple[list[Function], list[tuple[str, str]], list[tuple[str, str]]]
+@dataclass(frozen=True)
+class _Chosen:
+    """Responses that are read and their labels, the labels of all, and what tells apart those of one pair."""
+
+    rows: list[Function]
+    labels: list[Pair]
+    every: list[Pair]
+    tells: dict[Pair, Tell]
 
 
-def _coherence(text: Text, everything: list[Function], pairs: Labels, frequency: Reals) -> Reals | None:
-    """Of the pairs that are read; `pairs` are these, their labels, and the labels of all."""
+def _coherence(text: Text, everything: list[Function], chosen: _Chosen, frequency: Reals) -> Reals | None:
+    """Of the pairs that are read: told apart as the responses are."""
     found = [item for item in everything if item.function == COHERENCE]
     if not found:
         return None
-    rows, labels, every = pairs
+    rows, labels = chosen.rows, chosen.labels
     index = {label: i for i, label in enumerate(labels)}
+    asked = {plain_pair(item) for item in rows}
     coherence = np.full((len(rows), frequency.size), np.nan)
     seen: set[int] = set()
-    # Told apart as the responses are; what has no plain name is matched by the ends alone.
-    names = pair_labels(found)
-    for item, label in zip(found, names, strict=True):
-        plain = (item.response.label, item.reference.label)
-        label = label if label in every else plain
+    for item, label in zip(found, pair_labels(found, chosen.tells), strict=True):
         pair = " / ".join(label)
-        if label not in every:
-            raise text.error("a coherence without its frequency response", item.at, value=pair)
+        if label not in chosen.every and (plain_pair(item) in asked or len(rows) == len(chosen.every)):
+            remedy = "identify it as its response is: by names, an identification line, or the function's number"
+            raise text.error("a coherence without its frequency response", item.at, value=pair, remedy=remedy)
         if label not in index:
             continue
         row = index[label]
         if row in seen:
             raise text.error("two coherences of one pair", item.at, value=pair, remedy="keep one")
         seen.add(row)
-        abscissa, ordinate = _values(text, item)
+        abscissa, ordinate = over_frequency(text, item)
         if np.any(ordinate.imag):
             raise text.error("a coherence must be real", item.at, value=pair)
-        _same_lines(text, item, abscissa, frequency, rows[0])
+        same_lines(text, item, abscissa, frequency, rows[0])
         coherence[row] = ordinate.real / (100.0 if item.ordinate.unit == "%" else 1.0)
     return coherence
 
 
-def _same_lines(text: Text, item: Function, abscissa: Reals, known: Reals | None, first: Function) -> Reals:
+def same_lines(text: Text, item: Function, abscissa: Reals, known: Reals | None, first: Function) -> Reals:
+    """The frequencies of a function, which must be those of the first.
+
+    Raises
+    ------
+    InputError
+        If they are others.
+    """
     if known is None:
         return abscissa
     if abscissa.shape != known.shape or not np.allclose(abscissa, known, rtol=1e-5, atol=0.0):
@@ -199,8 +223,14 @@ def _pair(item: Function) -> str:
     return f"{item.response.label} / {item.reference.label}"
 
 
-def _values(text: Text, item: Function) -> tuple[Reals, Complexes]:
-    """Abscissa in Hz and ordinate."""
+def over_frequency(text: Text, item: Function) -> tuple[Reals, Complexes]:
+    """Abscissa in Hz and ordinate.
+
+    Raises
+    ------
+    InputError
+        For a function that does not stand over frequency.
+    """
     if item.abscissa.kind not in (_UNSAID, _FREQUENCY_AXIS):
         what = f"{_pair(item)} does not stand over frequency: its abscissa is of type {item.abscissa.kind}"
         remedy = "export it over frequency (type 18)"

@@ -69,7 +69,7 @@ class Function:
     ----------
     function : int
         Type: 1 time, 4 frequency response, 6 coherence, ...
-    number : int
+    number, version : int
         Of the function, as its program counts.
     response, reference : End
     ids : tuple of str
@@ -96,6 +96,7 @@ class Function:
 
     function: int
     number: int
+    version: int
     response: End
     reference: End
     ids: tuple[str, ...]
@@ -182,6 +183,7 @@ def _function(text: Text, block: Block, system: System | None) -> tuple[Function
     item = Function(
         function=text.field(dof, dof_at, 0, 5, "type of the function"),
         number=text.field(dof, dof_at, 5, 10, "number of the function"),
+        version=text.field(dof, dof_at, 15, 5, "version of the function"),
         response=response,
         reference=reference,
         ids=tuple(line.strip() for line in ids),

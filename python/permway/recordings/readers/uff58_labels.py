@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from permway.recordings.readers.uff58_function import End, Function
 
@@ -55,15 +55,50 @@ def _channel(item: Function) -> str:
     return line if line.upper() not in ("", "NONE") else item.response.label
 
 
-def pair_labels(items: Sequence[Function]) -> list[tuple[str, str]]:
-    """Labels of response and reference of each pair; those that tie go by their names, too."""
-    plain = [(item.response.label, item.reference.label) for item in items]
-    if len(set(plain)) == len(plain):
-        return plain
-    named = [(_named(item.response), _named(item.reference)) for item in items]
-    tied = {pair for pair in plain if plain.count(pair) > 1}
-    labels = [name if pair in tied else pair for pair, name in zip(plain, named, strict=True)]
-    return labels if len(set(labels)) == len(labels) else plain
+Pair = tuple[str, str]
+Tell = Callable[[Function], Pair]
+"""What a function is called: its response and its reference."""
+
+
+def plain_pair(item: Function) -> Pair:
+    """Response and reference by node and direction, or by their names."""
+    return item.response.label, item.reference.label
+
+
+def _by_line(line: int) -> Tell:
+    def tell(item: Function) -> Pair:
+        text = item.ids[line]
+        response, reference = plain_pair(item)
+        return (response if text.upper() in ("", "NONE") else f"{response} ({text})"), reference
+
+    return tell
+
+
+# What tells functions of one pair apart: entities' names, an identification line, number or version.
+_PAIR_TELLS: tuple[Tell, ...] = (
+    lambda item: (_named(item.response), _named(item.reference)),
+    *(_by_line(line) for line in range(5)),
+    lambda item: (f"{item.response.label} ({item.number})", item.reference.label),
+    lambda item: (f"{item.response.label} (version {item.version})", item.reference.label),
+)
+
+
+def pair_tells(items: Sequence[Function]) -> dict[Pair, Tell]:
+    """For each pair that several functions are of, what tells these apart; it is missing where nothing does."""
+    groups: dict[Pair, list[Function]] = {}
+    for item in items:
+        groups.setdefault(plain_pair(item), []).append(item)
+    found: dict[Pair, Tell] = {}
+    for pair, tied in groups.items():
+        tell = next((tell for tell in _PAIR_TELLS if len({tell(item) for item in tied}) == len(tied)), None)
+        if len(tied) > 1 and tell is not None:
+            found[pair] = tell
+    return found
+
+
+def pair_labels(items: Sequence[Function], tells: Mapping[Pair, Tell]) -> list[Pair]:
+    """Labels of response and reference of each function."""
+    return [tells.get(plain_pair(item), plain_pair)(item) for item in items]
 
 
 def _named(end: End) -> str:
