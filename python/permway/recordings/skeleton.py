@@ -201,11 +201,11 @@ def _record(name: str, found: Found, export: Export) -> list[str]:
     return [*lines, "# band_Hz = [5.0, 500.0]             # question: which band is to be trusted? By default all"]
 
 
-def _labels(pairs: Mapping[str, str]) -> str:
+def _labels(pairs: Mapping[str, Any]) -> str:
     """Labels that are names as a list."""
     if all(label == name for label, name in pairs.items()):
         return json.dumps(list(pairs), ensure_ascii=False)
-    return "{ " + ", ".join(f"{_quoted(a)} = {_quoted(b)}" for a, b in pairs.items()) + " }"
+    return "{ " + ", ".join(f"{_quoted(a)} = {json.dumps(b, ensure_ascii=False)}" for a, b in pairs.items()) + " }"
 
 
 def _plain(remarks: Sequence[str]) -> list[str]:
