@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from permway.errors import InputError
-from permway.recordings.look import look
+from permway.recordings.look import Asked, look
+from permway.recordings.readers import read_frf
+from permway.recordings.readers.hints import Hints
 
 LEFT_ALONE = {
     ".toml",
@@ -31,6 +33,12 @@ LEFT_ALONE = {
 
 MOST_FILES = 2000
 """Files of a folder: a look takes up to a second each."""
+
+UNTOLD = "what was read and what was struck cannot be told from a name"
+"""What the reader says of a column that names a sensor alone."""
+
+MOST_COLUMNS = 500
+"""Sensors side by side that are named so."""
 
 FEWEST_SAMPLES = 16
 """Samples below which a table is a list of something, and no record in time."""
@@ -108,7 +116,7 @@ def _wanted(inside: Path, path: Path) -> bool:
 def _export(folder: Path, path: Path) -> Export:
     name = path.relative_to(folder)
     try:
-        seen = look(path)
+        seen = _looked(path)
     except InputError as error:
         return Export(name, "", remarks=[f"{error.what}; {error.remedy}".rstrip("; ")])
     part = str(seen.get("campaign", ""))
@@ -129,6 +137,25 @@ def _export(folder: Path, path: Path) -> Export:
         list(dict.fromkeys(remark.replace(f"{path}: ", "") for remark in remarks)),
         _shown(seen),
     )
+
+
+def _looked(path: Path) -> dict[str, Any]:
+    """A look; of a table whose names do not say what was struck, the file's name does: one point a file."""
+    seen = look(path)
+    if seen["format"] != "text" or "responses" in seen or "columns" not in seen:
+        return seen
+    pairs: dict[str, tuple[str, str]] = {}
+    while len(pairs) < MOST_COLUMNS:
+        try:
+            read_frf(path, hints=Hints(pairs=pairs or None), keep_nonfinite=True)
+        except InputError as error:
+            name = str(error.value)
+            if not error.what.startswith(UNTOLD) or name in pairs:
+                return seen
+            pairs[name] = (name, path.stem)
+        else:
+            break
+    return look(path, Asked(hints=Hints(pairs=pairs))) if pairs else seen
 
 
 def _short(seen: Mapping[str, Any]) -> bool:
