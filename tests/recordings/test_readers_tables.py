@@ -39,6 +39,8 @@ def save(path: Path, version: str, **held: Any) -> Path:
 @pytest.mark.parametrize("version", ["v7", "v7.3"])
 def test_timetables(version: str, tmp_path: Path) -> None:
     path = save(tmp_path / "a.mat", version, TT=timetable(), other=timetable() * 2.0)
+    with pytest.raises(InputError, match=r'more than one array of times .*part = "(TT|other)"'):
+        read_time(path)
     for part, factor in (("TT", 1.0), ("other", 2.0)):
         record = read_time(path, part=part)
         assert (record.channels, record.sampling_Hz) == (("ax", "ay"), 512.0)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import tomllib
 from pathlib import Path
 
+import drawn_text
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from permway.cli import app
 from permway.errors import InputError
 from permway.recordings.campaign_parts import Record
@@ -174,3 +178,41 @@ def test_a_spectrum_is_no_record_in_time(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"stands over frequency, not over time \(got 'Frequency'\)"):
         read_time(path)
     assert read_time(path, hints=Hints(time_column="none"), sampling_Hz=512.0).channels == ("Frequency", "PSD")
+
+
+_TOKENS = (
+    b"-1",
+    b"nan",
+    b"1e999",
+    b",",
+    b";",
+    b"\n",
+    b"\x00",
+    b"\xff",
+    b"(",
+    b"j",
+    b"/",
+    b"dB re 0 g/N",
+    b"Real",
+    b'"',
+)
+
+
+@settings(max_examples=60)
+@given(seed=st.integers(0, 2**31))
+def test_damaged_at_random(seed: int, tmp_path_factory: pytest.TempPathFactory) -> None:
+    """A record or one clear error, and nothing else."""
+    random = np.random.default_rng(seed)
+    path, _ = drawn_text.frf_wide(random, tmp_path_factory.mktemp("damaged"))
+    raw = bytearray(path.read_bytes())
+    for _ in range(int(random.integers(1, 4))):
+        at = int(random.integers(len(raw)))
+        token = _TOKENS[int(random.integers(len(_TOKENS)))]
+        if random.random() < 0.5:
+            raw[at:at] = token
+        else:
+            raw[at : at + len(token)] = token
+    path.write_bytes(raw)
+    with contextlib.suppress(InputError):
+        record = read_frf(path)
+        assert np.isfinite(record.values[:, record.frequency_Hz > 0.0]).all()

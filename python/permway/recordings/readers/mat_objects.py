@@ -90,7 +90,10 @@ def _variables(table: Mapping[str, Any], arrays: Mapping[str, NDArray[np.generic
     found = []
     for name, unit, key in table["columns"]:
         attributes = {**begins, **({"units": unit} if unit else {})}
-        found.append(_variable(f"{folder}/{name}", arrays[key], attributes))
+        variable = _variable(f"{folder}/{name}", arrays[key], attributes)
+        if name == "Time" and table.get("resolution_ms"):
+            variable = replace(variable, resolution=table["resolution_ms"])
+        found.append(variable)
     if table.get("rate_Hz") is not None:
         found.append(_variable(f"{folder}/fs", np.array([table["rate_Hz"]]), {"units": "Hz"}))
     if table.get("step_s") is not None:

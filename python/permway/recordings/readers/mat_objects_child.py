@@ -82,7 +82,8 @@ def _timetable(about: Any) -> dict[str, Any]:
     times = about["rowTimes"].item()
     if getattr(times, "classname", None) is not None:
         begins, values = _moments(times)
-        return {**found, "columns": [("Time", "ms", values), *found["columns"]], "begins": begins}
+        columns = [("Time", "ms", values), *found["columns"]]
+        return {**found, "columns": columns, "begins": begins, "resolution_ms": _resolution(times)}
     begins, _ = _moments(times["origin"].item())
     if bool(times["specifiedAsRate"].item().item()):
         return {**found, "rate_Hz": float(times["sampleRate"].item().item()), "begins": begins}
@@ -101,6 +102,12 @@ def _moments(item: Any, *, relative: bool = True) -> tuple[str, np.ndarray]:
     # The imaginary part is what the real one, in ms since 1970, has lost by rounding.
     values = (data.real - data.real[0]) + (data.imag - data.imag[0])
     return f"{data.real[0]:.17g} ms and {data.imag[0]:.17g} ms since 1970", values
+
+
+def _resolution(item: Any) -> float:
+    """What dates are rounded to, ms, where nothing tells what their real parts have lost."""
+    data = np.ravel(item.properties.get("data", 0.0))
+    return 0.0 if np.any(data.imag) else float(np.spacing(np.abs(data.real).max(initial=0.0)))
 
 
 def _columns(names: Any, units: Any, data: Any) -> list[tuple[str, str, np.ndarray]]:

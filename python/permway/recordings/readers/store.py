@@ -202,6 +202,8 @@ def _one_time(store: Store, times: list[Variable], near: str | None, hints: Hint
     if len(here) > 1 and not hints.no_times:
         value = [variable.name for variable in here]
         remedy = f'keep one, or say which in the record: time_column = "{value[0]}"'
+        if len({variable.folder for variable in here}) == len(here):
+            remedy = f'say in the record which group, struct or table is meant: part = "{here[0].folder}"'
         raise InputError("more than one array of times", where=store.source, value=value, remedy=remedy)
     return here[0] if len(here) == 1 else None
 

@@ -37,7 +37,7 @@ _WORDS = {
     **dict.fromkeys(
         ("imaginary", "imag", "im", "imaginary part", "imag part", "imagpart", "imaginärteil"), "imag"
     ),
-    **dict.fromkeys(("magnitude", "mag", "amplitude", "ampl", "abs", "betrag", "modulus"), "size"),
+    **dict.fromkeys(("magnitude", "mag", "amplitude", "ampl", "abs", "betrag"), "size"),
     **dict.fromkeys(("phase", "angle", "arg", "phasenwinkel"), "angle"),
     **dict.fromkeys(("coherence", "coh", "gamma2", "g2", "kohärenz"), "coherence"),
 }
