@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from permway.model.roll import Roll
     from permway.model.vehicle import Vehicle
     from permway.model.vehicle_presets import crh380a
+    from permway.public import check, compare, diagnose
+    from permway.recordings.campaign import read_campaign
     from permway.response.decay import decay_rate
     from permway.response.passby import Axles, MassOnSpring, SprungMass, couple, hslm_a, passby
     from permway.response.quantities import accelerance, mobility
@@ -41,6 +43,8 @@ _HOMES = {
     "model.roll": ("Roll",),
     "model.vehicle": ("Vehicle",),
     "model.vehicle_presets": ("crh380a",),
+    "public": ("check", "compare", "diagnose"),
+    "recordings.campaign": ("read_campaign",),
     "response.decay": ("decay_rate",),
     "response.passby": ("Axles", "MassOnSpring", "SprungMass", "couple", "hslm_a", "passby"),
     "response.rails": ("both_rails",),
@@ -76,14 +80,18 @@ __all__ = [
     "both_rails",
     "by_joint",
     "change_joint",
+    "check",
+    "compare",
     "couple",
     "crh380a",
     "decay_rate",
+    "diagnose",
     "hslm_a",
     "law_from_dict",
     "mobility",
     "model_from_dict",
     "passby",
+    "read_campaign",
     "read_model",
     "receptance",
     "sensitivity",

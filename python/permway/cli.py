@@ -13,6 +13,7 @@ import typer
 
 from permway.cli_campaign import campaigns
 from permway.cli_challenge import challenges
+from permway.cli_check import checks
 from permway.cli_import import imports
 from permway.cli_look import looking
 from permway.cli_output import Json, Threads, examples, progress_bar, say, tell
@@ -53,6 +54,7 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 app.add_typer(looking)
+app.add_typer(checks)
 app.add_typer(campaigns)
 app.add_typer(tracks)
 app.add_typer(imports, name="import")

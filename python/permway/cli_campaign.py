@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from permway.cli_output import Json, Outside, Threads, examples, progress_bar, say, stage_bar
+from permway.cli_output import Json, Outside, Threads, examples, progress_bar, say, stage_bar, tell
 
 campaigns = typer.Typer(rich_markup_mode=None)
 
@@ -86,12 +86,15 @@ def diagnose(
 ) -> None:
     """What a model leaves out, where, how surely.
 
-    Recalibrates the model, looks for what no value of it explains, names the effect or says that the records do
-    not tell, and proves it on records that were not fitted. Writes report.html, verdict.json and amended.toml;
-    takes minutes. The same seed gives the same verdict. Stopped and called again, it goes on where it was.
+    First tells what is probably stated wrongly, as `permway check` does. Then recalibrates the model, looks for
+    what no value of it explains, names the effect or says that the records do not tell, and proves it on records
+    that were not fitted. Writes report.html, verdict.json and amended.toml; takes minutes. The same seed gives the
+    same verdict. Stopped and called again, it goes on where it was.
     """
+    from permway.checking.check import check
     from permway.diagnosis.catalogue import known
     from permway.diagnosis.diagnose import diagnose as run
+    from permway.diagnosis.doubts import doubted
     from permway.diagnosis.journal import FOLDER, keeping, key_of
     from permway.files import prepare_folder
     from permway.posterior.diagnose import diagnose as explain
@@ -101,17 +104,20 @@ def diagnose(
     ruled_out = known(rule_out or ())
     described = read_campaign(campaign, allow_outside=allow_outside)
     folder = prepare_folder(output or campaign.parent / "diagnosis")
+    checked = check(described, threads=threads)
+    for blunder in checked.blunders:
+        tell(f"{'asked' if blunder.asked else 'put right first'}: {blunder.sentence}")
     if posterior:
         with stage_bar("diagnosing", as_json) as progress:
             by_posterior = explain(described, ruled_out=ruled_out, threads=threads, progress=progress)
-        say(write_diagnosis(by_posterior, folder, page=not no_report), as_json)
+        say(write_diagnosis(doubted(by_posterior, checked), folder, page=not no_report), as_json)
         return
     with keeping(folder / FOLDER, key_of(described, seed, ruled_out)) as journal:
         with stage_bar("diagnosing", as_json) as progress:
             result = run(
                 described, seed=seed, ruled_out=ruled_out, draws=draws, threads=threads, progress=progress
             )
-        written = write_diagnosis(result, folder, page=not no_report)
+        written = write_diagnosis(doubted(result, checked), folder, page=not no_report)
         journal.close()
     say(written, as_json)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
 import numpy as np
@@ -27,7 +27,13 @@ class FrozenModel(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
-    def __init__(self, **data: Any) -> None:
+    def __init__(self, *values: object, **data: Any) -> None:
+        if values:
+            fields = list(type(self).model_fields)
+            said = ", ".join(f"{name}={value!r}" for name, value in zip(fields, values, strict=False))
+            raise InputError(
+                "takes its values by name", where=type(self).__name__, remedy=f"{said} if that is meant"
+            )
         try:
             super().__init__(**{name: _unwarned(value) for name, value in data.items()})
         except ValidationError as error:
@@ -46,8 +52,15 @@ def _unwarned(value: object) -> object:
     return value
 
 
-def input_error(error: ValidationError, table: object, place: str) -> InputError:
-    """Turn pydantic's first complaint into an `InputError` with its place and value.
+MOST_TOLD = 6
+"""Further faults of a table that are named."""
+
+Words = Callable[[Mapping[str, Any]], tuple[str, object]]
+"""From one of pydantic's complaints to what is wrong and the value met."""
+
+
+def input_error(error: ValidationError, table: object, place: str, words: Words | None = None) -> InputError:
+    """Turn pydantic's complaints into one `InputError`: the first with its value, the others named behind it.
 
     Parameters
     ----------
@@ -56,14 +69,25 @@ def input_error(error: ValidationError, table: object, place: str) -> InputError
         What was validated, to tell its keys from the tags that pydantic adds for unions.
     place : str
         Name of the table itself; "" for the whole file.
+    words : callable, optional
+        What to say of a complaint; by default what pydantic says.
     """
-    first = error.errors(include_url=False)[0]
-    where = place_in(table, first["loc"], place)
-    others = error.error_count() - 1
-    remedy = f"{others} further fault(s) in the same table" if others else ""
-    what = first["msg"].removeprefix("Value error, ")
-    value = None if first["type"] in ("missing", "value_error", "union_tag_invalid") else first["input"]
-    return InputError(what[:1].lower() + what[1:], where=where, value=value, remedy=remedy)
+    words = words or plain_words
+    first, *others = error.errors(include_url=False)
+    what, value = words(first)
+    remedy = ""
+    if others:
+        each = [f"{place_in(table, one['loc'], place)}: {words(one)[0]}" for one in others[:MOST_TOLD]]
+        told = "; ".join(dict.fromkeys(each)) + ("; ..." if len(others) > MOST_TOLD else "")
+        remedy = f"{len(others)} further fault(s) in the same table: {told}"
+    return InputError(what, where=place_in(table, first["loc"], place), value=value, remedy=remedy)
+
+
+def plain_words(complaint: Mapping[str, Any]) -> tuple[str, object]:
+    """What pydantic says, and the value met where it is not said."""
+    what = str(complaint["msg"]).removeprefix("Value error, ")
+    value = None if complaint["type"] in ("missing", "value_error", "union_tag_invalid") else complaint["input"]
+    return what[:1].lower() + what[1:], value
 
 
 def type_name(model: type[BaseModel]) -> str:

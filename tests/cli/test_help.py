@@ -38,7 +38,19 @@ def run(*arguments: object, **environment: str) -> subprocess.CompletedProcess[s
 
 
 def test_all_commands_are_here() -> None:
-    once = {"solve", "fit-pad", "import sheet", "compare", "separability", "diagnose", "sweep", "demo", "doctor"}
+    once = {
+        "new",
+        "check",
+        "solve",
+        "fit-pad",
+        "import sheet",
+        "compare",
+        "separability",
+        "diagnose",
+        "sweep",
+        "demo",
+        "doctor",
+    }
     assert once | {"reproduce", "challenge make", "challenge run", "challenge score"} <= set(NAMES)
 
 

@@ -93,6 +93,7 @@ def test_every_key_of_the_design_is_in_the_file_in_its_order() -> None:
         "next",
         "detectable",
         "ruled_out",
+        "blunders",
     ]
     assert list(table["evidence"]) == [
         "bic_gain",

@@ -14,7 +14,7 @@ import pytest
 
 ROOT = Path(permway.__file__).parent
 PAGE = (Path(__file__).parents[2] / "docs" / "architecture.md").read_text("utf-8")
-CHAIN = ("laws", "model", "response", "recordings", "diagnosis", "posterior", "report")
+CHAIN = ("laws", "model", "response", "recordings", "checking", "diagnosis", "posterior", "report")
 """In the order of the page: each may import those before it."""
 
 EXCEPTIONS = {

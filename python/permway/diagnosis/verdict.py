@@ -13,6 +13,7 @@ from typing import Any, Final, Literal, Self
 from pydantic import Field, ValidationError, model_validator
 
 from permway.diagnosis.verdict_parts import ClassMember as ClassMember
+from permway.diagnosis.verdict_parts import Doubt as Doubt
 from permway.diagnosis.verdict_parts import Effect as Effect
 from permway.diagnosis.verdict_parts import Estimate as Estimate
 from permway.diagnosis.verdict_parts import HeldOutGain as HeldOutGain
@@ -76,6 +77,8 @@ class Verdict(VerdictPart):
     """By effect: the smallest size that this campaign would have shown."""
     ruled_out: tuple[str, ...] = ()
     """Effects of the catalogue that were not considered, for somebody had ruled them out."""
+    blunders: tuple[Doubt, ...] = ()
+    """What is probably stated wrongly in the campaign, the surest first: to be put right before all else."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:

@@ -158,6 +158,23 @@ class Weight(VerdictPart):
     """Conditions that a suspicion does not meet; empty where something is called missing, or nothing is."""
 
 
+class Doubt(VerdictPart):
+    """Something that was probably stated wrongly, found before any physics; see `permway check`."""
+
+    kind: Named
+    """What kind of blunder, as "factor", "sign" or "labels"."""
+    where: str
+    """Record, and the sensors or points concerned."""
+    what: str
+    """In words."""
+    remedy: str
+    """What to write in the campaign file."""
+    log_odds: Number | None = None
+    """Natural logarithm of the odds that it is so; null where it does not rest on levels or phases."""
+    asked: bool = False
+    """Whether it is a question: it may be right as it is."""
+
+
 class HeldOutGain(VerdictPart):
     """What the amendment gains on records that were not fitted."""
 

@@ -42,7 +42,16 @@ DOMAIN = {
 
 
 def sentence(verdict: Verdict) -> str:
-    """The verdict in one plain sentence for an engineer."""
+    """The verdict in one plain sentence for an engineer; before it, what is probably stated wrongly."""
+    sure = [one for one in verdict.blunders if not one.asked]
+    if not sure:
+        return _of_physics(verdict)
+    more = f" (and {len(sure) - 1} more)" if len(sure) > 1 else ""
+    first = f"{sure[0].where}: {sure[0].what}; {sure[0].remedy}{more}."
+    return f"Put right first: {first} As the records stand: {_of_physics(verdict)}"
+
+
+def _of_physics(verdict: Verdict) -> str:
     match verdict.status:
         case "recalibrated":
             parts = ["Nothing is missing beyond what the stated tolerances allow", _seen(verdict)]

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import PydanticCustomError
 
 from permway.errors import InputError
-from permway.records import FrozenModel, input_error
+from permway.records import FrozenModel, input_error, plain_words
 
 
 def fault(what: str, *place: str | int, value: object = None) -> ValidationError:
@@ -30,7 +30,7 @@ def fault(what: str, *place: str | int, value: object = None) -> ValidationError
 
 
 def model_error(error: ValidationError, table: Mapping[str, Any], place: str) -> InputError:
-    """Turn the first complaint about a table into an `InputError` with its place in that table.
+    """Turn the complaints about a table into an `InputError` with the place of the first in that table.
 
     Parameters
     ----------
@@ -40,13 +40,15 @@ def model_error(error: ValidationError, table: Mapping[str, Any], place: str) ->
     place : str
         Name of the table itself; "" for the whole file.
     """
-    first = error.errors(include_url=False)[0]
-    plain = input_error(error, table, place)
-    context = first.get("ctx", {})
-    what, value = plain.what, plain.value
-    match first["type"]:
+    return input_error(error, table, place, _words)
+
+
+def _words(complaint: Mapping[str, Any]) -> tuple[str, object]:
+    what, value = plain_words(complaint)
+    context = complaint.get("ctx", {})
+    match complaint["type"]:
         case "extra_forbidden":
-            what, value = _unknown(str(first["loc"][-1])), None
+            what, value = _unknown(str(complaint["loc"][-1])), None
         case "missing":
             what, value = "missing", None
         case "float_type" | "float_parsing":
@@ -59,7 +61,7 @@ def model_error(error: ValidationError, table: Mapping[str, Any], place: str) ->
             what = f"there is no type {context['tag']!r}; use one of {context['expected_tags']}"
         case "union_tag_not_found":
             what, value = "type is missing", None
-    return InputError(what, where=plain.where, value=value, remedy=plain.remedy)
+    return what, value
 
 
 def refuse_coercion(given: object, built: object, place: str) -> None:

@@ -194,6 +194,8 @@ def read_campaign(path: str | Path, *, allow_outside: bool = False) -> Campaign:
     InputError
         With file, place in the file, value and remedy.
     """
+    if not isinstance(path, str | Path):
+        raise InputError(f"must be the path of a campaign file, not a {type(path).__name__}", where="path")
     path = Path(path)
     table = read_toml(path, "name a campaign file (TOML)")
     try:

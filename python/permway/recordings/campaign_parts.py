@@ -90,6 +90,18 @@ class Condition(FrozenModel):
         return self
 
 
+def _labels(value: object) -> object:
+    if isinstance(value, list | tuple) and all(isinstance(label, str) for label in value):
+        if len(set(value)) < len(value):
+            raise fault(f"{max(value, key=list(value).count)!r} stands twice", value=value)
+        return {label: label for label in value}
+    return value
+
+
+Labels = Annotated[dict[str, str], BeforeValidator(_labels)]
+"""File's labels to names; as a list where the labels are the names."""
+
+
 def _band(value: object) -> object:
     if isinstance(value, list | tuple) and len(value) == 2:
         low, high = value
@@ -124,7 +136,7 @@ class Record(FrozenModel):
     channels : dict of file's label to sensor
         Of records in time and of tables.
     responses, references : dict of file's label to sensor, and to force point
-        Of frequency responses; the force points are in [[forces]].
+        Of frequency responses; the force points are in [[forces]]. Labels that are names may be a list.
     averages : float, optional
         Averages behind an FRF, if the file does not say. Of "csd" and "psd" it says that the file holds spectra,
         not samples, and how many independent averages are behind them.
@@ -162,9 +174,9 @@ class Record(FrozenModel):
     condition: str
     statistic: Statistic
     repeat: int = Field(default=1, ge=1, strict=True)
-    channels: dict[str, str] = Field(default_factory=dict)
-    responses: dict[str, str] = Field(default_factory=dict)
-    references: dict[str, str] = Field(default_factory=dict)
+    channels: Labels = Field(default_factory=dict)
+    responses: Labels = Field(default_factory=dict)
+    references: Labels = Field(default_factory=dict)
     averages: PositiveFloat | None = None
     band_Hz: Band | None = None
     sampling_Hz: PositiveFloat | None = None

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from permway.errors import InputError
+
 
 def mobility(receptance: xr.DataArray) -> xr.DataArray:
     """Velocity per force, i omega times receptance, m/s/N.
@@ -29,6 +31,14 @@ def accelerance(receptance: xr.DataArray) -> xr.DataArray:
 
 
 def _derived(receptance: xr.DataArray, order: int, name: str, units: str) -> xr.DataArray:
+    if not isinstance(receptance, xr.DataArray):
+        remedy = f'as in {name}(data["receptance"])'
+        raise InputError(
+            f"must be one variable, not a {type(receptance).__name__}", where="receptance", remedy=remedy
+        )
+    if "frequency" not in receptance.coords:
+        remedy = "take it from an answer of permway.receptance or permway.solve"
+        raise InputError("has no coordinate 'frequency'", where="receptance", value=receptance.dims, remedy=remedy)
     factor = (2j * np.pi * receptance["frequency"]) ** order
     result = (factor * receptance).transpose(*receptance.dims).rename(name)
     result.attrs = {"long_name": name, "units": units}

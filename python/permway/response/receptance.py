@@ -96,6 +96,9 @@ def receptance(
     SolveError
         If the line is singular, not finite or badly conditioned at a frequency.
     """
+    if not isinstance(line, Line):
+        remedy = "of a model it is model.line"
+        raise InputError(f"must be a Line, not a {type(line).__name__}", where="line", remedy=remedy)
     frequency = check_sweep(frequency_Hz)
     solved = between(
         line,

@@ -44,6 +44,9 @@ def solve(model: Model, *, threads: int | None = None, progress: Progress | None
     InputError, SolveError
         As those two.
     """
+    if not isinstance(model, Model):
+        remedy = f"as in solve(read_model({str(model)!r}))" if isinstance(model, str | os.PathLike) else ""
+        raise InputError(f"must be a Model, not a {type(model).__name__}", where="model", remedy=remedy)
     frequency = model.frequencies.array()
     parts = []
     # First, for its complaints come late.

@@ -42,7 +42,10 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path, *, page: bool = True) ->
     """
     folder = prepare_folder(Path(folder), (VERDICT, AMENDED, PAGE))
     verdict = diagnosis.verdict
-    found: dict[str, Any] = {
+    found: dict[str, Any] = {}
+    if verdict.blunders:
+        found["blunders"] = [f"{one.where}: {one.what}; {one.remedy}" for one in verdict.blunders]
+    found |= {
         "verdict": verdict.sentence,
         "status": verdict.status,
         "effects": [

@@ -57,6 +57,7 @@ def render(diagnosis: Diagnosis, drawn: Mapping[str, Drawn]) -> str:
     return environment.get_template("diagnosis.html.j2").render(
         title=diagnosis.comparison.campaign.said.title or "A campaign",
         sentence=verdict.sentence,
+        blunders=verdict.blunders,
         missing=verdict.status not in UNPROVED,
         headline=headline(verdict),
         images=drawn,

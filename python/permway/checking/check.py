@@ -1,0 +1,134 @@
+"""A campaign checked in seconds: what was read, how it compares with the model as it stands, what is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from permway.checking.angles import angles
+from permway.checking.blunder import Blunder
+from permway.checking.compared import Compared, compared
+from permway.checking.noise import noise_floors
+from permway.checking.reading import Reading, read
+from permway.checking.search import told
+from permway.checking.stated import places, tolerances
+from permway.checking.words import blunder_of
+from permway.errors import InputError, SolveError
+from permway.recordings.campaign import Campaign
+from permway.recordings.campaign_load import Dataset
+from permway.recordings.predict import predict
+
+COMPARABLE = ("frf", "csd", "psd", "transmissibility")
+
+LEVEL, LEVEL_FREE = 0.3, 2.3
+"""Standard deviation of a level that all rows of a record share, neper: 2.6 dB; 20 dB where nobody knows the
+irregularity. At half of the first, honest campaigns are doubted; at twice, g for m/s2 is not told of a record."""
+
+SLOPE, SLOPE_FREE = 0.1, 0.5
+"""The same of its slope in runs, neper an octave."""
+
+FROM_TOLERANCE = 0.3
+"""Neper of level for a standard deviation of one in the logarithm of the least known parameter."""
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What a check found.
+
+    Attributes
+    ----------
+    campaign : Campaign
+    reading : Reading
+    records : tuple of (Dataset, Compared, Compared)
+        Records that can be compared: read, beside their prediction, and put right by what was found.
+    blunders : tuple of Blunder
+        Found, the surest first; then what is asked.
+    """
+
+    campaign: Campaign
+    reading: Reading
+    records: tuple[tuple[Dataset, Compared, Compared], ...]
+    blunders: tuple[Blunder, ...]
+
+    @property
+    def found(self) -> tuple[Blunder, ...]:
+        """Blunders that are no questions."""
+        return tuple(one for one in self.blunders if not one.asked)
+
+
+def check(campaign: Campaign, *, threads: int | None = None) -> Checked:
+    """Check a campaign against its model as it stands; nothing is fitted.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    threads : int, optional
+
+    Raises
+    ------
+    SolveError
+        If the model cannot be solved.
+    """
+    reading = read(campaign)
+    blunders = list(reading.blunders)
+    records: list[tuple[Dataset, Compared, Compared]] = []
+    usable = [one for one in reading.kept if one.record.statistic in COMPARABLE]
+    for dataset, predicted in zip(usable, _predicted(campaign, usable, blunders, threads), strict=False):
+        given = compared(dataset, predicted, common(campaign, dataset))
+        sensors = [campaign.sensor(name) for name in given.channels]
+        points = [campaign.point(name) for name in given.points]
+        changes, right = told(given, sensors, [point.unit for point in points])
+        records.append((dataset, given, right))
+        blunders += [blunder_of(one, dataset.record.name, given, sensors, points) for one in changes]
+    blunders += angles(campaign)
+    beside = {dataset.record.name: right for dataset, _, right in records}
+    blunders += noise_floors(campaign, reading.whole, beside)
+    blunders += tolerances(campaign)
+    blunders += places(campaign)
+    blunders = _together(blunders)
+    blunders.sort(key=lambda one: (one.asked, one.log_odds is not None, -(one.log_odds or 0.0)))
+    return Checked(campaign, reading, tuple(records), tuple(blunders))
+
+
+def _predicted(
+    campaign: Campaign, datasets: Sequence[Dataset], blunders: list[Blunder], threads: int | None
+) -> list[xr.Dataset]:
+    try:
+        return predict(campaign, datasets, threads=threads)
+    except (InputError, SolveError) as error:
+        blunders.append(Blunder("unreadable", "model", f"cannot be solved: {error}", "mend the model file"))
+        return []
+
+
+def common(campaign: Campaign, dataset: Dataset) -> tuple[float, float]:
+    """Standard deviations of a level that all rows share, and of its slope: neper, and neper an octave."""
+    least_known = max((k.sigma for k in campaign.parameters.known.values() if k.log), default=0.0)
+    level = float(np.hypot(LEVEL, FROM_TOLERANCE * least_known))
+    if dataset.record.statistic not in ("csd", "psd"):
+        return level, 0.0
+    known = campaign.said.irregularity
+    if known.knowledge == "unknown":
+        return LEVEL_FREE, SLOPE_FREE
+    return float(np.hypot(level, 0.5 * (known.within_dB or 0.0) / 8.686)), SLOPE
+
+
+def _together(blunders: Sequence[Blunder]) -> list[Blunder]:
+    """Records that say the same of the same are one blunder; odds of independent records multiply."""
+    found: dict[tuple[str, str, str, str], Blunder] = {}
+    for one in blunders:
+        head, _, members = one.where.partition(": ")
+        # Only what is said of sensors and points, not of files, can be the same of several records.
+        key = (one.kind, one.what, one.remedy, members if head.startswith("records.") else one.where)
+        if one.log_odds is None:
+            key = (*key[:3], one.where)
+        old = found.get(key)
+        if old is None:
+            found[key] = one
+            continue
+        names = old.where.partition(": ")[0] + ", " + head.removeprefix("records.")
+        odds = (old.log_odds or 0.0) + (one.log_odds or 0.0)
+        found[key] = replace(old, where=names + (f": {members}" if members else ""), log_odds=odds)
+    return list(found.values())

@@ -1,0 +1,217 @@
+"""A campaign file and a model file begun from a folder of lab exports: what was found, and questions."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from permway.errors import InputError
+from permway.files import prepare_folder, write_text
+from permway.recordings.lab_folder import Export, Found, read_folder
+from permway.recordings.skeleton_model import model_text
+
+CAMPAIGN, MODEL = "campaign.toml", "model.toml"
+
+HAMMER = "hammer tests"
+"""Name of the condition of all hammer tests."""
+
+NO_SAYING = "question: the file does not say it"
+
+
+def write_skeleton(folder: Path) -> dict[str, Any]:
+    """Write `campaign.toml` and `model.toml` into a folder of lab exports; nothing is written before all is read.
+
+    What nobody but the owner knows is left out, as a comment that begins with "question": where sensors stand,
+    speeds, numbers of blows. Until they are answered the campaign is refused, each time with what is missing.
+
+    Parameters
+    ----------
+    folder : Path
+
+    Returns
+    -------
+    dict
+        `campaign`, `model`, `files` (a row each), `sensors`, `points`, `records` and `questions`, their numbers.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to read, or one of the two files is there.
+    """
+    folder = Path(folder)
+    for name in (CAMPAIGN, MODEL):
+        if (folder / name).exists():
+            raise InputError("is there already", where=str(folder / name), remedy="move it away, or go on with it")
+    exports = read_folder(folder)
+    begun = Begun(exports)
+    campaign, model = begun.text(folder.resolve().name), model_text()
+    prepare_folder(folder, (CAMPAIGN, MODEL))
+    return {
+        "campaign": str(write_text(folder / CAMPAIGN, campaign)),
+        "model": str(write_text(folder / MODEL, model)),
+        "files": [{"file": str(one.path), "format": one.format or "unknown", **one.shows} for one in exports],
+        "sensors": len(begun.sensors),
+        "points": len(begun.forces),
+        "records": len(begun.records),
+        "questions": campaign.count("# question") + model.count("# question"),
+    }
+
+
+class Begun:
+    """Sensors, force points and records of all files, each under one name.
+
+    Parameters
+    ----------
+    exports : sequence of Export
+    """
+
+    def __init__(self, exports: Sequence[Export]) -> None:
+        self.exports = exports
+        self.sensors: dict[str, Found] = {}
+        self.forces: dict[str, Found] = {}
+        self.records: list[tuple[str, Found, Export]] = []
+        for export in exports:
+            names = _named(self.sensors, export.sensors, export, ("quantity", "unit"))
+            points = _named(self.forces, export.forces, export, ("unit",))
+            for record in export.records:
+                renamed = dict(record.table)
+                for key, known in (("channels", names), ("responses", names), ("references", points)):
+                    if key in renamed:
+                        renamed[key] = {label: known.get(name, name) for label, name in renamed[key].items()}
+                name = self._record_name(export, record.table)
+                self.records.append((name, Found(renamed, record.unsaid), export))
+
+    def text(self, title: str) -> str:
+        """The campaign file."""
+        lines = [
+            '# Begun by `permway new`. Answer what begins with "question"; then: permway check campaign.toml',
+            "format = 1",
+            f"title = {_quoted(title)}",
+            f"model = {_quoted(MODEL)}",
+            "",
+        ]
+        for key, found in (("sensors", self.sensors), ("forces", self.forces)):
+            for name, one in found.items():
+                lines += [f"[[{key}]]", f"name = {_quoted(name)}", *_place(one.table, key), *_unit(one), ""]
+        lines += [line for name in self._conditions() for line in (*_condition(*name), "")]
+        for name, record, export in self.records:
+            lines += [*_record(name, record, export), ""]
+        lines += [
+            "# question: which numbers of the model are not known exactly, and how well? One table each:",
+            "# [[parameters]]",
+            '# name = "pad.k"',
+            '# paths = "line.laws.pad.stiffness"',
+            "# tolerance_2sigma = 0.3            # 30 %: two standard deviations, relative",
+            "",
+        ]
+        for export in self.exports:
+            if not export.records:
+                lines += [f"# {export.path}: {remark}" for remark in _plain(export.remarks)]
+        return "\n".join(lines).rstrip() + "\n"
+
+    def _record_name(self, export: Export, record: Mapping[str, Any]) -> str:
+        taken = {name for name, *_ in self.records}
+        stem = export.path.stem
+        return next(
+            name
+            for name in (stem, f"{stem} {record['name']}", str(export.path), f"{export.path} {len(taken)}")
+            if name not in taken
+        )
+
+    def _conditions(self) -> Iterator[tuple[str, str]]:
+        struck = any(record.table["statistic"] == "frf" for _, record, _ in self.records)
+        if struck:
+            yield HAMMER, "hammer"
+        for name, record, _ in self.records:
+            if record.table["statistic"] != "frf":
+                yield name, "train"
+
+
+def _named(
+    known: dict[str, Found], tables: Sequence[Found], export: Export, alike: Sequence[str]
+) -> dict[str, str]:
+    """Names under which a file's sensors or points are known: one of another unit is another."""
+    names: dict[str, str] = {}
+    for one in tables:
+        name = str(one.table["name"])
+        other = known.get(name)
+        if other is not None and any(other.table.get(key) != one.table.get(key) for key in alike):
+            name = f"{name} ({export.path})"
+        # A file that says the unit answers for those that do not.
+        if name not in known or len(one.unsaid) < len(known[name].unsaid):
+            known[name] = one
+        names[str(one.table["name"])] = name
+    return names
+
+
+def _place(table: Mapping[str, Any], key: str) -> list[str]:
+    x = float(table.get("x_m", 0.0))
+    known = f"x_m = {x:.9g}" if x else "# x_m = 0.0                        # question: where on it, m?"
+    found = ['# body = "rail"                    # question: on which body of the model?', known]
+    if key == "sensors":
+        found[0] += ' On the vehicle: degree = "car1.wheelset1" and no x_m'
+        found.append('# direction = "up"                 # question: is up positive? By default down')
+        return found
+    return [*found, '# direction = "up"                 # question: is a push up positive? By default down']
+
+
+def _unit(one: Found) -> list[str]:
+    keys = [key for key in ("quantity", "unit") if key in one.table]
+    lines = [f"{key} = {_quoted(one.table[key])}" for key in keys]
+    if "unit" in one.unsaid:
+        return [f"# {line:<33}# {NO_SAYING}" for line in lines]
+    return lines
+
+
+def _condition(name: str, kind: str) -> list[str]:
+    lines = ["[[conditions]]", f"name = {_quoted(name)}", f"kind = {_quoted(kind)}"]
+    if kind == "train":
+        lines.append("# speed_km_per_h = 100.0             # question: how fast?")
+    return [
+        *lines,
+        "# temperature_C = 15.0               # question: how warm? Asked for where a law depends on it",
+    ]
+
+
+def _record(name: str, found: Found, export: Export) -> list[str]:
+    record = found.table
+    struck = record["statistic"] == "frf"
+    said = ", ".join(value for value in export.shows.values() if value)
+    lines = [
+        "[[records]]",
+        f"# {said}",
+        *(f"# {remark}" for remark in _plain(export.remarks)),
+        f"name = {_quoted(name)}",
+        f"file = {_quoted(export.path.as_posix())}",
+        f"condition = {_quoted(HAMMER if struck else name)}",
+        f"statistic = {_quoted(record['statistic'])}",
+    ]
+    for key, value in record.items():
+        if key in ("name", "file", "condition", "statistic"):
+            continue
+        if key in found.unsaid or (key == "sampling_Hz" and not value):
+            line = f"{key} = {json.dumps(value)}"
+            lines.append(f"# {line:<33}# {NO_SAYING}")
+        elif isinstance(value, dict):
+            lines.append(f"{key} = {_labels(value)}")
+        else:
+            lines.append(f"{key} = {json.dumps(value, ensure_ascii=False)}")
+    return [*lines, "# band_Hz = [5.0, 500.0]             # question: which band is to be trusted? By default all"]
+
+
+def _labels(pairs: Mapping[str, Any]) -> str:
+    """Labels that are names as a list."""
+    if all(label == name for label, name in pairs.items()):
+        return json.dumps(list(pairs), ensure_ascii=False)
+    return "{ " + ", ".join(f"{_quoted(a)} = {json.dumps(b, ensure_ascii=False)}" for a, b in pairs.items()) + " }"
+
+
+def _plain(remarks: Sequence[str]) -> list[str]:
+    return [" ".join(remark.split()) for remark in remarks]
+
+
+def _quoted(text: object) -> str:
+    """A text as TOML quotes it, which is as JSON does."""
+    return json.dumps(str(text), ensure_ascii=False)

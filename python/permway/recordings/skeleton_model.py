@@ -1,0 +1,48 @@
+"""A model file that is begun: rail, pads and ground, with what only the owner knows left open."""
+
+from __future__ import annotations
+
+_TEXT = """\
+# Begun by `permway new`: a rail on pads. Answer what begins with "question". What else a model can hold, and
+# presets of whole lines: docs/model-file.md
+format = 1
+
+[frequencies]
+from_Hz = 5.0
+to_Hz = 500.0
+step_Hz = 5.0
+
+[line.bodies.rail]                   # question: which rail? These are the numbers of 60E1, one rail
+type = "beam"
+youngs_modulus_Pa = 2.1e11
+second_moment_m4 = 3.038e-5
+density_kg_per_m3 = 7850.0
+area_m2 = 7.67e-3
+loss_factor = 0.01
+# intervals_m = [[0.0, 36.0]]        # question: has it ends? By default it goes on for ever
+
+[line.laws.pad]
+type = "hysteretic"
+# stiffness = 30e6                   # question: of one pad, N/m?
+# loss_factor = 0.15                 # question: of one pad?
+
+[[line.joints]]
+between = ["rail", "ground"]         # question: what is below the pads? Sleepers, slabs, girders are bodies, too
+law = "pad"
+# at = { from_m = 0.0, to_m = 36.0, spacing_m = 0.6 }    # question: where are the pads?
+
+[[forces]]
+body = "rail"
+x_m = 18.0
+
+[[sensors]]
+body = "rail"
+x_m = 18.0
+
+# question: does a train run? Then [train] with its vehicle, and [irregularity]: docs/model-file.md
+"""
+
+
+def model_text() -> str:
+    """The model file."""
+    return _TEXT
