@@ -23,13 +23,10 @@ from permway.diagnosis.verdict_parts import (
 )
 from permway.posterior.fit import Fit
 from permway.posterior.held_out import Gain
-from permway.posterior.masses import CLASS, Masses
+from permway.posterior.masses import CLASS, LIKELY, Masses
 
 NAMED = 0.9
 """Posterior probability from which an effect is named."""
-
-LIKELY = 0.5
-"""Posterior probability from which nothing is said to be missing, or something of no catalogue."""
 
 SUSPECTED = 0.05
 """Posterior probability of nothing missing from which an effect is a suspicion and no more."""

@@ -13,11 +13,15 @@ from permway.posterior.beam import Member
 CLASS = 0.95
 """Posterior mass that a class of names holds."""
 
+LIKELY = 0.5
+"""Posterior probability from which nothing is said to be missing, or something of no catalogue."""
+
 COARSENED = 0.5
-"""Power of the evidence in the posterior. The model's own idealisation errs on neighbouring lines alike, and the
-likelihood counts each line anew. A posterior that allows for that has the evidence to a power below 1 (Miller and
-Dunson 2019, J. Am. Stat. Assoc. 114, 1113-1125). Chosen on small campaigns: at 1 names are surer than they are
-true, at 0.25 weak effects are no longer found."""
+"""Power of the evidence between sets with amendments. The model's own idealisation errs on neighbouring lines
+alike, and the likelihood counts each line anew. A posterior that allows for that has the evidence to a power below
+1 (Miller and Dunson 2019, J. Am. Stat. Assoc. 114, 1113-1125). Of 99 small campaigns, names of 0.9 and more are
+true in 39 of 44 at a power of 1, in 38 of 40 at 0.5, in 34 of 37 at 0.25. Whether anything is missing is judged at
+1: nothing missing is called in none of 22."""
 
 SHOWN = 1e-3
 """Smallest probability that a class shows."""
@@ -30,42 +34,35 @@ class Masses:
     Attributes
     ----------
     members : tuple of Member
-        The most probable first.
-    probability : ndarray, shape (members,)
-        Of each, that it holds and nothing else is missing; it sums to 1 with `novel`.
-    novel : float
-        Posterior probability that something of no catalogue acts, beside a member or alone.
+        Sets with amendments, the most probable first, then the empty one.
+    nothing : float
+        Posterior probability that the nominal model, recalibrated, lacks nothing.
+    unamended : float
+        The same, or that it lacks what no set describes.
     """
 
     members: tuple[Member, ...]
-    probability: np.ndarray
-    novel: float
+    nothing: float
+    unamended: float
 
     @staticmethod
     def of(members: Sequence[Member]) -> Masses:
-        """From members with their prior and their evidence."""
-        ordered = sorted(members, key=_coarse, reverse=True)
-        log = np.array([_coarse(m) for m in ordered])
+        """From members with their prior and their evidence; one of them is the empty set."""
+        log = np.array([m.log_mass for m in members])
         whole = np.exp(log - log.max())
-        whole /= whole.sum()
-        novel = np.array([m.fit.hyper.novel for m in ordered])
-        return Masses(tuple(ordered), whole * (1.0 - novel), float((whole * novel).sum()))
-
-    @property
-    def nothing(self) -> float:
-        """Probability that the nominal model, recalibrated, lacks nothing."""
-        empty = [p for m, p in zip(self.members, self.probability, strict=True) if not m.amendments]
-        return float(sum(empty))
+        share = float(whole[[not m.amendments for m in members]].sum() / whole.sum())
+        ordered = sorted(members, key=lambda m: (bool(m.amendments), _coarse(m)), reverse=True)
+        return Masses(tuple(ordered), share * (1.0 - ordered[-1].fit.hyper.novel), share)
 
     @property
     def empty(self) -> Member:
         """The nominal model, recalibrated."""
-        return next(m for m in self.members if not m.amendments)
+        return self.members[-1]
 
     @property
     def best(self) -> Member:
-        """The most probable set, whatever it lacks."""
-        return self.members[0]
+        """The empty set if it is more probable than all others together; else the most probable of those."""
+        return self.empty if self.unamended >= LIKELY else self.members[0]
 
     def names(self, index: int) -> list[tuple[str, float]]:
         """Names that one amendment of the best set may have, the others of the set as they are; they sum to 1.
