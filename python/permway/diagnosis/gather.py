@@ -10,6 +10,7 @@ import xarray as xr
 
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.blocks_modes import ModesBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
@@ -141,5 +142,7 @@ def _block(
             return FrfBlock(dataset, reference=predicted, span=spans["frf"])
         case "csd" | "psd":
             return SpectraBlock(dataset, predicted, added=added_to(campaign, dataset), span=spans["spectra"])
+        case "modes":
+            return ModesBlock(dataset, predicted)
         case _:
             return TableBlock(dataset, span=spans.get(_kind(dataset)))

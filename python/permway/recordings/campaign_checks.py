@@ -127,6 +127,10 @@ def _check_record(record: Record, said: Said, model: Model, where: str) -> None:
         if sensors[name].body is None:
             what = "an FRF is of the line, and this sensor is on the vehicle"
             raise InputError(what, where=f"{where}.responses.{label}", value=name)
+    for label, name in record.channels.items() if record.statistic == "modes" else ():
+        if sensors[name].body is None:
+            what = "modes are of the line, and this sensor is on the vehicle"
+            raise InputError(what, where=f"{where}.channels.{label}", value=name)
     if record.law is not None:
         try:
             law = value_at(model, parse_path(record.law, f"{where}.law"))

@@ -53,6 +53,8 @@ class Dataset:
         - "bands": `mean_square` (channel, band).
         - "decay": `decay_rate` (band,), dB/m.
         - "transmissibility": `transmissibility` (channel, frequency), complex.
+        - "modes": `modes` and `relative_sd` (quantity, frequency), natural frequency in Hz and damping ratio;
+          `shape` (sensor, frequency) if it is listed.
         - "material": `modulus` (point,), complex, Pa or N/m, with `frequency` and `temperature_C` of every point.
     """
 
@@ -108,6 +110,7 @@ def load_record(campaign: Campaign, record: Record) -> Dataset:
         With the record and what is wrong in its file.
     """
     from permway.recordings import campaign_tabular as tabular
+    from permway.recordings.campaign_modes import modes
 
     condition = campaign.condition(record.condition)
     makers: dict[str, Callable[[Campaign, Record], xr.Dataset]] = {
@@ -118,6 +121,7 @@ def load_record(campaign: Campaign, record: Record) -> Dataset:
         "decay": tabular.decay,
         "transmissibility": tabular.transmissibility,
         "material": tabular.material,
+        "modes": modes,
     }
     try:
         data = makers[record.statistic](campaign, record)

@@ -17,7 +17,7 @@ from permway.recordings.campaign_excitation import Dips, Push, Rolling, RoughBan
 from permway.recordings.readers.hints import Hints
 from permway.records import FrozenModel, Number
 
-Statistic = Literal["frf", "csd", "psd", "bands", "decay", "transmissibility", "material"]
+Statistic = Literal["frf", "csd", "psd", "bands", "decay", "transmissibility", "material", "modes"]
 
 KIND_OF: dict[str, tuple[str, ...]] = {
     "frf": ("hammer", "shaker"),
@@ -27,6 +27,7 @@ KIND_OF: dict[str, tuple[str, ...]] = {
     "decay": ("hammer", "table"),
     "transmissibility": ("shaker",),
     "material": ("table",),
+    "modes": ("hammer", "shaker", "table"),
 }
 """Kinds of condition that a statistic can be of."""
 
@@ -118,11 +119,11 @@ class Record(FrozenModel):
     part : str, optional
         Group or array of a file that holds several.
     condition : str
-    statistic : "frf", "csd", "psd", "bands", "decay", "transmissibility" or "material"
+    statistic : "frf", "csd", "psd", "bands", "decay", "transmissibility", "material" or "modes"
     repeat : int
         Number of this repeat, from 1.
     channels : dict of file's label to sensor
-        Of records in time and of tables.
+        Of records in time and of tables; of modes the sensors that they were seen at.
     responses, references : dict of file's label to sensor, and to force point
         Of frequency responses; the force points are in [[forces]].
     averages : float, optional
@@ -234,7 +235,7 @@ class Record(FrozenModel):
 
     @property
     def _needs_channels(self) -> bool:
-        return self.statistic in ("csd", "psd", "bands", "transmissibility", "decay")
+        return self.statistic in ("csd", "psd", "bands", "transmissibility", "decay", "modes")
 
 
 def _check_lines(ranges: Sequence[tuple[float, float]]) -> None:

@@ -23,6 +23,7 @@ VARIABLE = {
     "decay": "decay_rate",
     "transmissibility": "transmissibility",
     "material": "modulus",
+    "modes": "modes",
 }
 """What is compared of each statistic."""
 
@@ -173,12 +174,17 @@ def _channels(dataset: Dataset) -> tuple[list[str], list[str]]:
     if dataset.record.statistic == "frf":
         sensors, forces = data["sensor"].values.astype(str), data["force"].values.astype(str)
         return [str(s) for s in sensors for _ in forces], [str(f) for _ in sensors for f in forces]
+    if dataset.record.statistic == "modes":
+        quantities = [str(n) for n in data["quantity"].values]
+        return quantities, [""] * len(quantities)
     names = [str(n) for n in data["channel"].values] if "channel" in data.dims else [dataset.record.name]
     return names, [""] * len(names)
 
 
 def _unit(campaign: Campaign, dataset: Dataset, sensor: str) -> str:
     statistic = dataset.record.statistic
+    if statistic == "modes":
+        return "Hz" if sensor == "natural frequency" else "1"
     if statistic not in ("frf", "csd", "psd"):
         return str(dataset.data[VARIABLE[statistic]].attrs.get("units", "1"))
     si = SI_UNITS[campaign.sensor(sensor).quantity]

@@ -190,6 +190,7 @@ def _quantity(record: xr.Dataset) -> str:
         "decay_rate": "decay rate",
         "transmissibility": "modulus",
         "modulus": "modulus",
+        "modes": str(record["channel"].values[0]),
     }[str(record.attrs["variable"])]
 
 
