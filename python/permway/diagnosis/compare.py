@@ -13,6 +13,7 @@ from permway.arrays import Reals
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_modes import ModesBlock, missed_modes
+from permway.diagnosis.blocks_passage import PassageBlock
 from permway.diagnosis.compare_tables import parameters_of, smooth_of
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.fit import Fit, Free, free_parameters
@@ -34,6 +35,7 @@ KIND = {
     "transmissibility": "transmissibilities",
     "material": "moduli",
     "modes": "modes",
+    "passage": "passages",
 }
 
 Progress = Callable[[int, int], object]
@@ -220,7 +222,7 @@ def _scatter_dB(block: Block) -> Reals:
     data = block.dataset.data
     shape = flat(block.dataset, data).shape
     statistic = block.dataset.record.statistic
-    if isinstance(block, FrfBlock):
+    if isinstance(block, FrfBlock | PassageBlock):
         return np.asarray(block.rows.scale_dB[: block.rows.scale_dB.size // 2].reshape(shape))
     if statistic in ("csd", "psd"):
         return np.full(shape, POWER_DB / np.sqrt(float(data.attrs["averages"])))

@@ -17,6 +17,8 @@ import numpy as np
 from permway.arrays import Reals
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.hypothesis import Hypothesis
+from permway.diagnosis.speeds import begin
+from permway.diagnosis.tangent import Problem
 from permway.errors import InputError, SolveError
 from permway.posterior.cells import SOMETHING, Cell, cells, resized, small
 from permway.posterior.fit import Fit, Fitter, Model, estimated, grown
@@ -115,9 +117,10 @@ def explored(
     campaign = fitter.frame.evidence.campaign
     nominal = Model(campaign.with_values, free_parameters(campaign))
     coarse = fitter.frame.first().with_discrepancy(LEVELS[0])
-    start = fitter.begin(nominal, np.zeros(len(nominal.free)), coarse)
+    z = _first_values(fitter, nominal)
+    start = fitter.begin(nominal, z, coarse)
     fitter, (first,) = _weighed(fitter, [_annealed(fitter, start)], [()])
-    start = fitter.begin(nominal, np.zeros(len(nominal.free)), coarse)
+    start = fitter.begin(nominal, z, coarse)
     empty = Member((), first, float(np.log(1.0 - SOMETHING)))
     members = [empty]
     far = Member((), start, empty.log_prior)
@@ -138,6 +141,14 @@ def explored(
     members = [m for m in _apart(members) if m.log_mass > members[0].log_mass - LEFT or not m.amendments]
     _, fits = _weighed(fitter, [m.fit for m in members], [m.amendments for m in members])
     return sorted((replace(m, fit=fit) for m, fit in zip(members, fits, strict=True)), key=lambda m: -m.log_mass)
+
+
+def _first_values(fitter: Fitter, nominal: Model) -> Reals:
+    """The priors' centres; of passages speed and time of entry are looked for, within which slopes serve."""
+    evidence = fitter.frame.evidence
+    if all(dataset.record.statistic != "passage" for dataset in evidence.datasets):
+        return np.zeros(len(nominal.free))
+    return begin(evidence, Problem(evidence, nominal.build, nominal.free))
 
 
 def _weighed(

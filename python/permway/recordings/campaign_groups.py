@@ -23,6 +23,7 @@ _DIMENSIONS = {
     "transmissibility": ("channel", "frequency"),
     "material": ("point",),
     "modes": ("quantity", "frequency"),
+    "passage": ("channel", "frequency"),
 }
 
 

@@ -25,7 +25,14 @@ if TYPE_CHECKING:
 
 DIMENSIONS = ("sensor", "force", "frequency")
 
-SI_UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s2", "force": "N"}
+SI_UNITS = {
+    "displacement": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s2",
+    "force": "N",
+    "strain": "1",
+    "bending_moment": "N m",
+}
 
 LEAST_COHERENCE = 1e-3
 """Coherence below this counts as this: its line says nothing, but its variance stays a number."""
@@ -55,6 +62,7 @@ class Dataset:
         - "transmissibility": `transmissibility` (channel, frequency), complex.
         - "modes": `modes` and `relative_sd` (quantity, frequency), natural frequency in Hz and damping ratio;
           `shape` (sensor, frequency) if it is listed.
+        - "passage": `spectrum`, complex, and `noise_sd` (channel, frequency).
         - "material": `modulus` (point,), complex, Pa or N/m, with `frequency` and `temperature_C` of every point.
     """
 
@@ -82,6 +90,8 @@ class Dataset:
             named = {"long_name": "what is read over the receptance"}
             found["chain"] = xr.Variable(found["frf"].dims, found["frf"].values, named)
             return found
+        if statistic == "passage":
+            return self.data[["spectrum"]]
         return self.data[["csd", "psd"] if statistic in ("csd", "psd") else [statistic]]
 
     @cached_property
@@ -111,6 +121,7 @@ def load_record(campaign: Campaign, record: Record) -> Dataset:
     """
     from permway.recordings import campaign_tabular as tabular
     from permway.recordings.campaign_modes import modes
+    from permway.recordings.campaign_passage import passage
 
     condition = campaign.condition(record.condition)
     makers: dict[str, Callable[[Campaign, Record], xr.Dataset]] = {
@@ -122,6 +133,7 @@ def load_record(campaign: Campaign, record: Record) -> Dataset:
         "transmissibility": tabular.transmissibility,
         "material": tabular.material,
         "modes": modes,
+        "passage": passage,
     }
     try:
         data = makers[record.statistic](campaign, record)

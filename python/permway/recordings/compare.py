@@ -24,6 +24,7 @@ VARIABLE = {
     "transmissibility": "transmissibility",
     "material": "modulus",
     "modes": "modes",
+    "passage": "spectrum",
 }
 """What is compared of each statistic."""
 
@@ -185,10 +186,10 @@ def _unit(campaign: Campaign, dataset: Dataset, sensor: str) -> str:
     statistic = dataset.record.statistic
     if statistic == "modes":
         return "Hz" if sensor == "natural frequency" else "1"
-    if statistic not in ("frf", "csd", "psd"):
+    if statistic not in ("frf", "csd", "psd", "passage"):
         return str(dataset.data[VARIABLE[statistic]].attrs.get("units", "1"))
     si = SI_UNITS[campaign.sensor(sensor).quantity]
-    return f"({si})/N" if statistic == "frf" else f"({si})2/Hz"
+    return {"frf": f"({si})/N", "passage": f"({si}) s"}.get(statistic, f"({si})2/Hz")
 
 
 def _interval(dataset: Dataset, measured: np.ndarray, scatter_dB: Reals) -> tuple[Reals, Reals, Reals]:

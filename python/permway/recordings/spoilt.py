@@ -7,16 +7,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from permway.errors import InputError
-from permway.recordings.campaign_parts import Record
+from permway.recordings.campaign_parts import IN_TIME, Record
 from permway.recordings.finding import Finding
 from permway.recordings.readers import time_blocks
 from permway.recordings.screening import screen
 
 if TYPE_CHECKING:
     from permway.recordings.campaign import Campaign
-
-SAMPLED = ("csd", "psd")
-"""Statistics of records that are samples over time."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +49,7 @@ def sound(campaign: Campaign) -> tuple[Campaign, tuple[Spoilt, ...]]:
     records: list[Record] = []
     spoilt: list[Spoilt] = []
     for record in campaign.said.records:
-        found = list(_spoilt(campaign, record)) if record.statistic in SAMPLED else []
+        found = list(_spoilt(campaign, record)) if record.statistic in IN_TIME else []
         names = {one.channel for one in found}
         kept = {label: name for label, name in record.channels.items() if name not in names}
         if kept or not found:
