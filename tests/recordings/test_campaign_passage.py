@@ -3,8 +3,8 @@
 A hysteretic beam and one with viscous modal damping of half its loss factor differ by about the loss factor, for
 (1 + i eta) turns what the beam does by eta at every frequency. The differences are held to 1.5 times that. What
 Richardson's extrapolation of them to no loss leaves is 2e-4 of displacements; 1e-3 of strain and moment, by three
-points 24 mm apart and modes left out; and of second order in the loss at resonance, 1.4e-3 of velocity and 2.4e-3 of
-acceleration.
+points 24 mm apart and modes left out; and of second order in the loss at resonance, 1.4e-3 of velocity and 2.4e-3
+of acceleration.
 """
 
 from __future__ import annotations
@@ -24,7 +24,6 @@ from permway.recordings.predict import predict
 from permway.response.passby import Axles, passby
 from permway.response.receptance import Place
 from scipy.interpolate import CubicSpline
-
 
 LEFT = {"w": 3e-4, "v": 2e-3, "a": 3e-3, "e": 1.5e-3, "M": 1.5e-3}
 
