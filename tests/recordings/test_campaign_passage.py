@@ -263,7 +263,9 @@ def test_what_is_refused(tmp_path: Path, amend, words: str) -> None:
 
 def test_a_window_in_which_the_line_does_not_rest_is_refused(tmp_path: Path) -> None:
     values = noisy(passages.history("a", passages.time_s(), 0.001))
-    campaign = read_campaign(passages.write(tmp_path, {"a": values}, loss_factor=0.002))
+    table = passages.campaign("a")
+    table["records"][0]["window_s"] = 20.0
+    campaign = read_campaign(passages.write(tmp_path, {"a": values}, table=table, loss_factor=0.002))
     with pytest.raises(InputError, match="still moves where the window"):
         predict(campaign, campaign.load(), threads=1)
 

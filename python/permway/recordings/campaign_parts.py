@@ -158,8 +158,8 @@ class Record(FrozenModel):
         linearly, as [[0, 0.5], [30, 1]] for every 0.5 Hz up to 30 Hz and every 1 Hz above. Between lines what
         comes late is weakened.
     window_s : float, optional
-        Of a passage: how long its prediction is, which the line must come to rest in; by default a passage or 10 s
-        longer than record and passage.
+        Of a passage: how long its prediction is, in which the line must come to rest; by default longer than
+        record and passage by a passage, and by six times the decay of the slowest mode.
     spacing_m : float, optional
         Of decay rates by EN 15461: distance of the fasteners, which sets the places of the blows.
     select : dict

@@ -10,14 +10,15 @@ from scipy import signal
 from scipy.fft import next_fast_len
 
 from permway.arrays import Complexes, Reals
-from permway.errors import InputError
+from permway.errors import InputError, SolveError
 from permway.model.file import Model
 from permway.recordings.campaign_parts import Condition, Record
 from permway.recordings.channel import Sensor
 from permway.recordings.readers import time_blocks
+from permway.response.modes import modes
 from permway.response.passby.path import Path, path_of
 from permway.response.passby.window import FLAT
-from permway.response.receptance import frequency_coordinate
+from permway.response.receptance import Place, frequency_coordinate
 
 if TYPE_CHECKING:
     from permway.recordings.campaign import Campaign
@@ -28,8 +29,14 @@ TAPERED = 0.05
 QUIET, FEWEST_QUIET = 0.9, 50
 """Share of the time before the train enters that tells the noise, and of how many samples at least."""
 
-AFTER, LEAST_AFTER_S = 1.0, 10.0
-"""Times the passage, and seconds, that the line has after it to come to rest, unless `window_s` gives another."""
+AFTER, LEAST_S, MOST_S = 1.0, 4.0, 120.0
+"""Times the passage that the line has after it to come to rest, and seconds at least and at most."""
+
+DECAYS = 6.0
+"""Times the slowest mode falls by e in that rest, to a 400th: unless `window_s` says how long it is."""
+
+LOWEST = 0.02
+"""Share of the highest frequency from which modes are looked for."""
 
 ORDER = 6
 """Polynomials of x between two supports."""
@@ -86,7 +93,8 @@ def passage(campaign: Campaign, record: Record) -> xr.Dataset:
     if axles.entry_s >= stop or leaves <= start:
         what = f"the train is on the stretch from {axles.entry_s:.3g} to {leaves:.3g} s, and the record is over"
         raise InputError(what, where="axles.entry_s", value=(start, stop), remedy="count from its first sample")
-    rest = max(AFTER * crossing, LEAST_AFTER_S) if record.window_s is None else 0.0
+    rest = max(AFTER * crossing, _decay_s(campaign.model, condition, sensors, high))
+    rest = rest if record.window_s is None else 0.0
     reach = max(stop, leaves + rest) - min(start, axles.entry_s)
     if record.window_s is not None:
         if record.window_s < reach:
@@ -113,6 +121,26 @@ def passage(campaign: Campaign, record: Record) -> xr.Dataset:
     data["spectrum"].attrs = {"long_name": "spectrum of the passage", "units": "SI s"}
     data["noise_sd"].attrs = {"long_name": "standard deviation by noise, of each part", "units": "SI s"}
     return data
+
+
+def _decay_s(model: Model, condition: Condition, sensors: list[Sensor], highest_Hz: float) -> float:
+    """How long the line's slowest mode of the band takes to decay, s; the least where it has none."""
+    spots = dict.fromkeys((str(s.body), float(s.x_m or 0.0)) for s in sensors)
+    temperature = model.temperature_C if condition.temperature_C is None else condition.temperature_C
+    try:
+        found = modes(
+            model.line,
+            LOWEST * highest_Hz,
+            highest_Hz,
+            places=[Place(body=body, x_m=x) for body, x in spots],
+            temperature_C=temperature,
+            formulation=model.formulation,
+        )
+    except (SolveError, InputError):
+        # An endless track has none; whether the window holds the decay is seen of the prediction.
+        return LEAST_S
+    slowest = float(found.omega.imag.min(initial=np.inf))
+    return min(max(DECAYS / max(slowest, 1e-9), LEAST_S), MOST_S)
 
 
 def path_under(model: Model, condition: Condition, sensors: list[Sensor], highest_Hz: float) -> Path:
