@@ -12,6 +12,8 @@ import xarray as xr
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.blocks_modes import ModesBlock, missed_modes
+from permway.diagnosis.blocks_passage import PassageBlock
 from permway.diagnosis.compare_tables import parameters_of, smooth_of
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.fit import Fit, Free, free_parameters
@@ -32,6 +34,8 @@ KIND = {
     "decay": "decay rates",
     "transmissibility": "transmissibilities",
     "material": "moduli",
+    "modes": "modes",
+    "passage": "passages",
 }
 
 Progress = Callable[[int, int], object]
@@ -117,6 +121,9 @@ class Comparison:
             found["parameters"] = table.sizes["parameter"]
             found["left_tolerance"] = table["parameter"].values[table["left"].values].tolist()
             found["not_informed"] = table["parameter"].values[table["not_informed"].values].tolist()
+        missed = [line for record in self.records for line in missed_modes(record)]
+        if missed:
+            found["missed"] = missed
         found["left_out"] = [{"record": name, "why": why} for name, why in self.left_out.items()]
         return found
 
@@ -215,10 +222,12 @@ def _scatter_dB(block: Block) -> Reals:
     data = block.dataset.data
     shape = flat(block.dataset, data).shape
     statistic = block.dataset.record.statistic
-    if isinstance(block, FrfBlock):
+    if isinstance(block, FrfBlock | PassageBlock):
         return np.asarray(block.rows.scale_dB[: block.rows.scale_dB.size // 2].reshape(shape))
     if statistic in ("csd", "psd"):
         return np.full(shape, POWER_DB / np.sqrt(float(data.attrs["averages"])))
+    if isinstance(block, ModesBlock):
+        return np.asarray(NEPER_DB * data["relative_sd"].values)
     return np.full(shape, float(block.rows.scale_dB[0]))
 
 

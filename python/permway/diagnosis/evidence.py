@@ -13,6 +13,7 @@ from permway.arrays import Reals
 from permway.diagnosis.blocks import Block, Rows
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
+from permway.diagnosis.blocks_passage import PassageBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.side_by_side import threads_of_solver
 from permway.diagnosis.thinning import thinned
@@ -261,6 +262,8 @@ class Evidence:
                 block = block.expecting(prediction, added_to(campaign, block.dataset), away)
             elif isinstance(block, FrfBlock):
                 block = block.with_reference(prediction, block.errors(self.whitener.of_part(explained, index)))
+            elif isinstance(block, PassageBlock):
+                block = block.with_reference(prediction)
             blocks.append(block)
         return replace(self, blocks=tuple(blocks))
 

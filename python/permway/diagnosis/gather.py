@@ -10,7 +10,9 @@ import xarray as xr
 
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.blocks_modes import ModesBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
+from permway.diagnosis.blocks_passage import PassageBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
 from permway.diagnosis.evidence import Evidence
@@ -141,5 +143,9 @@ def _block(
             return FrfBlock(dataset, reference=predicted, span=spans["frf"])
         case "csd" | "psd":
             return SpectraBlock(dataset, predicted, added=added_to(campaign, dataset), span=spans["spectra"])
+        case "passage":
+            return PassageBlock(dataset, reference=predicted, span=spans["passage"])
+        case "modes":
+            return ModesBlock(dataset, predicted)
         case _:
             return TableBlock(dataset, span=spans.get(_kind(dataset)))

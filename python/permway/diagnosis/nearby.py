@@ -20,7 +20,7 @@ from permway.diagnosis.side_by_side import threads_of_solver
 from permway.model.line import Line
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_factors import model_under
-from permway.recordings.predict import Answer, Need, Sweep, need_of, predict_one
+from permway.recordings.predict import Answer, Need, Sweep, need_of, plan, predict_one, solve
 from permway.recordings.predict.sweeps import places_of
 from permway.response.sensitivity import sensitivity
 
@@ -71,13 +71,19 @@ class Nearby:
     def __init__(self, evidence: Evidence, solved: Solved) -> None:
         self.evidence, self.solved = evidence, solved
         self._known: dict[int, _Derivatives] = {}
+        # What is linear in the change has double poles: no modes.
+        self._exact = {
+            id(need)
+            for dataset, need in zip(evidence.datasets, solved.needs, strict=True)
+            if dataset.record.statistic == "modes"
+        }
 
     def derive(self) -> None:
         """Take the derivatives that campaigns near by will need, before processes share the work."""
         model = self.solved.campaign.model
         if model.formulation == "chain" and self._few(model.line):
             for need in self.solved.needs:
-                if need is not None:
+                if need is not None and id(need) not in self._exact:
                     self._derivatives(need, model_under(model, need.factors).line)
 
     def predicted(self, campaign: Campaign) -> Solved | None:
@@ -105,9 +111,9 @@ class Nearby:
         Returns
         -------
         Solved or None
-            None if derivatives would cost too much.
+            None if derivatives would cost too much, or modes are among the records.
         """
-        if not self._few(self.solved.campaign.model.line):
+        if self._exact or not self._few(self.solved.campaign.model.line):
             return None
         answers: dict[int, Answer] = {}
         for need in self.solved.needs:
@@ -143,6 +149,9 @@ class Nearby:
         return Answer(sweep, self.solved.answers[need.state].of(need) + moved)
 
     def _moved(self, need: Need, campaign: Campaign) -> Answer:
+        if id(need) in self._exact:
+            (sweep,) = plan([need])
+            return solve(sweep, campaign.model, threads=threads_of_solver(self.evidence.threads))
         known = self._derivatives(need, model_under(self.solved.campaign.model, need.factors).line)
         before, after = known.at, _Numbers.of(model_under(campaign.model, need.factors).line, need)
         values = np.zeros((need.frequency_Hz.size, len(need.rows), len(need.columns)), dtype=np.complex128)

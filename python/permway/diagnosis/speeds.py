@@ -1,7 +1,8 @@
-"""Where recalibration begins in the trains' speeds: phases between wheelsets turn, so that slopes lead astray.
+"""Where recalibration begins in speeds and times of entry: phases turn with them, so that slopes lead astray.
 
 Two wheelsets 20 m apart at 60 m/s and 400 Hz are two radians out of phase for a quarter of a percent of speed.
-Each speed is therefore looked for on a grid, all other values at the centre of their priors; levels hardly matter.
+Each is therefore looked for on a grid, all other values at the centre of their priors; levels hardly matter. Of a
+passage time and speed make up for each other, so both are looked for twice.
 """
 
 from __future__ import annotations
@@ -31,10 +32,13 @@ def begin(evidence: Evidence, problem: Problem) -> Reals:
     z = np.zeros(len(problem.free))
     known = evidence.campaign.parameters
     mine = [i for i, f in enumerate(problem.free) if "campaign.conditions" in known.touches(f.name)]
+    # Loads act in proportion, and slopes find them.
+    mine = [i for i in mine if not _is_load(evidence, problem.free[i].name)]
     start = problem.at(z) if mine else None
     if start is None:
         return z
-    for index in mine:
+    passing = any(dataset.record.statistic == "passage" for dataset in evidence.datasets)
+    for index in mine * (2 if passing else 1):
         low, high = problem.free[index].limits
         best = np.inf
         for value in np.linspace(max(low, -LIMITS), min(high, LIMITS), GRID):
@@ -46,3 +50,8 @@ def begin(evidence: Evidence, problem: Problem) -> Reals:
             if misfit < best:
                 best, z[index] = misfit, value
     return z
+
+
+def _is_load(evidence: Evidence, name: str) -> bool:
+    paths = evidence.campaign.parameters.known[name].parameter.paths
+    return all(".axles.load" in path for path in paths)

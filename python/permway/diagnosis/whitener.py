@@ -43,7 +43,9 @@ class AllColumns:
                 count += origin.count
         parts, start = [], 0
         for smooth, rows in zip(blocks, sizes, strict=True):
-            place = np.concatenate([first[o.name] + np.arange(o.count) for o in smooth.origins])
+            each = [first[o.name] + np.arange(o.count) for o in smooth.origins]
+            # A table of modes has no smooth errors.
+            place = np.concatenate(each) if each else np.zeros(0, dtype=np.int64)
             parts.append((slice(start, start + rows), place, smooth.columns))
             start += rows
         return AllColumns(tuple(origins), tuple(parts), _gram(parts, count))
@@ -66,6 +68,8 @@ class AllColumns:
     @cached_property
     def apart(self) -> tuple[np.ndarray, ...]:
         """Which parts meet no others, as gains and phases of frequency responses do not."""
+        if not self.counts:
+            return ()
         starts = np.cumsum([0, *self.counts[:-1]])
         met = np.logical_or.reduceat(np.logical_or.reduceat(self.gram != 0.0, starts, axis=0), starts, axis=1)
         count, kind = sparse.csgraph.connected_components(sparse.csr_array(met), directed=False)

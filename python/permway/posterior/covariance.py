@@ -11,6 +11,7 @@ from scipy import linalg
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.blocks_passage import PassageBlock
 from permway.diagnosis.blocks_spectra import LEVEL, SpectraBlock
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.gather import first_size
@@ -53,9 +54,7 @@ class Frame:
     @staticmethod
     def of(evidence: Evidence) -> Frame:
         """From the records."""
-        blocks = tuple(
-            b.with_floor(FLOOR).with_pair(PAIR) if isinstance(b, FrfBlock) else b for b in evidence.blocks
-        )
+        blocks = tuple(_bare(b) for b in evidence.blocks)
         evidence = evidence.with_blocks(blocks)
         statistic = np.concatenate(
             [np.full(b.rows.channel.size, b.dataset.record.statistic, dtype="U16") for b in blocks]
@@ -91,6 +90,8 @@ class Frame:
                     campaign, answer = solved.campaign, solved.answers[need.state]
                     away = away_from_lines(campaign, block.dataset, need, answer)
                     block = block.expecting(prediction, added_to(campaign, block.dataset), away)
+            elif isinstance(block, PassageBlock):
+                block = block.with_reference(prediction)
             blocks.append(block)
         return Frame.of(self.evidence.with_blocks(tuple(blocks)))
 
@@ -118,6 +119,13 @@ class Frame:
             rows = chains.rows[:, 0] if chains.turn is not None else chains.rows
             factors.append(chains.factor(sizes, hyper["length"], weights[rows]))
         return Covariance(self, hyper, weights, noise, tuple(factors))
+
+
+def _bare(block: Block) -> Block:
+    """Without the errors that the discrepancy stands for."""
+    if isinstance(block, FrfBlock):
+        return block.with_floor(FLOOR).with_pair(PAIR)
+    return block.with_floor(FLOOR) if isinstance(block, PassageBlock) else block
 
 
 def _columns(evidence: Evidence, blocks: tuple[Block, ...]) -> Reals:

@@ -12,8 +12,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from permway.arrays import Reals
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.hypothesis import Hypothesis
+from permway.diagnosis.speeds import begin
+from permway.diagnosis.tangent import Problem
 from permway.errors import InputError, SolveError
 from permway.posterior.beam import (
     SAME,
@@ -76,9 +79,10 @@ def explored(
     campaign = fitter.frame.evidence.campaign
     nominal = Model(campaign.with_values, free_parameters(campaign))
     coarse = fitter.frame.first().with_discrepancy(LEVELS[0])
-    start = fitter.begin(nominal, np.zeros(len(nominal.free)), coarse)
+    z = _first_values(fitter, nominal)
+    start = fitter.begin(nominal, z, coarse)
     fitter, (first,) = _weighed(fitter, [_annealed(fitter, start)], [()])
-    start = fitter.begin(nominal, np.zeros(len(nominal.free)), coarse)
+    start = fitter.begin(nominal, z, coarse)
     empty = Member((), first, ())
     members = [empty]
     far = Member((), start, ())
@@ -109,6 +113,14 @@ def _ordered(
     fitter, fits = _weighed(fitter, [m.fit for m in members], [m.amendments for m in members])
     members = [replace(m, fit=fit) for m, fit in zip(members, fits, strict=True)]
     return fitter, sorted(members, key=lambda m: -m.log_mass)
+
+
+def _first_values(fitter: Fitter, nominal: Model) -> Reals:
+    """The priors' centres; of passages speed and time of entry are looked for, within which slopes serve."""
+    evidence = fitter.frame.evidence
+    if all(dataset.record.statistic != "passage" for dataset in evidence.datasets):
+        return np.zeros(len(nominal.free))
+    return begin(evidence, Problem(evidence, nominal.build, nominal.free))
 
 
 def _weighed(

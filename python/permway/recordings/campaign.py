@@ -148,7 +148,7 @@ class Campaign:
         runs = {
             c.name: (c.speed_m_per_s, warm if c.temperature_C is None else c.temperature_C)
             for c in other.said.conditions
-            if c.speed_m_per_s
+            if c.kind == "train" and c.speed_m_per_s
         }
         rolling = known.rolling.model_copy(update={"about": About(other.model.line, runs)})
         irregularity = known.model_copy(update={"rolling": rolling})

@@ -127,6 +127,19 @@ def _check_record(record: Record, said: Said, model: Model, where: str) -> None:
         if sensors[name].body is None:
             what = "an FRF is of the line, and this sensor is on the vehicle"
             raise InputError(what, where=f"{where}.responses.{label}", value=name)
+    for label, name in record.channels.items():
+        if sensors[name].body is None and record.statistic in ("modes", "passage"):
+            what = f"a record of {record.statistic!r} is of the line, and this sensor is on the vehicle"
+            raise InputError(what, where=f"{where}.channels.{label}", value=name)
+    for key in ("channels", "responses"):
+        for label, name in getattr(record, key).items():
+            if sensors[name].bends and record.statistic != "passage":
+                what = f'a sensor of {sensors[name].quantity} goes with statistic = "passage"'
+                raise InputError(what, where=f"{where}.{key}.{label}", value=name)
+            if sensors[name].quantity == "force" and record.statistic == "passage":
+                raise InputError(
+                    "a force is not predicted of a passage", where=f"{where}.{key}.{label}", value=name
+                )
     if record.law is not None:
         try:
             law = value_at(model, parse_path(record.law, f"{where}.law"))

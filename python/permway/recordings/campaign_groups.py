@@ -22,6 +22,8 @@ _DIMENSIONS = {
     "decay": ("band",),
     "transmissibility": ("channel", "frequency"),
     "material": ("point",),
+    "modes": ("quantity", "frequency"),
+    "passage": ("channel", "frequency"),
 }
 
 
@@ -40,7 +42,7 @@ def held_out(campaign: Campaign, group: HeldOut, dataset: Dataset) -> xr.DataArr
     -------
     xarray.DataArray of bool
         (sensor, force, frequency) of an FRF, (channel, frequency) of spectra, (band,) of decay rates, (point,) of
-        a material's table.
+        a material's table, (quantity, frequency) of modes.
     """
     data, condition = dataset.data, dataset.condition
     dimensions = _DIMENSIONS[dataset.record.statistic]

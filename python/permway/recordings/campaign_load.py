@@ -27,7 +27,14 @@ if TYPE_CHECKING:
 
 DIMENSIONS = ("sensor", "force", "frequency")
 
-SI_UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s2", "force": "N"}
+SI_UNITS = {
+    "displacement": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s2",
+    "force": "N",
+    "strain": "1",
+    "bending_moment": "N m",
+}
 
 LEAST_COHERENCE = 1e-3
 """Coherence below this counts as this: its line says nothing, but its variance stays a number."""
@@ -55,6 +62,9 @@ class Dataset:
         - "bands": `mean_square` (channel, band).
         - "decay": `decay_rate` (band,), dB/m.
         - "transmissibility": `transmissibility` (channel, frequency), complex.
+        - "modes": `modes` and `relative_sd` (quantity, frequency), natural frequency in Hz and damping ratio;
+          `shape` (sensor, frequency) if it is listed.
+        - "passage": `spectrum`, complex, and `noise_sd` (channel, frequency).
         - "material": `modulus` (point,), complex, Pa or N/m, with `frequency` and `temperature_C` of every point.
     """
 
@@ -82,6 +92,8 @@ class Dataset:
             named = {"long_name": "what is read over the receptance"}
             found["chain"] = xr.Variable(found["frf"].dims, found["frf"].values, named)
             return found
+        if statistic == "passage":
+            return self.data[["spectrum"]]
         return self.data[["csd", "psd"] if statistic in ("csd", "psd") else [statistic]]
 
     @cached_property
@@ -110,6 +122,8 @@ def load_record(campaign: Campaign, record: Record) -> Dataset:
         With the record and what is wrong in its file.
     """
     from permway.recordings import campaign_tabular as tabular
+    from permway.recordings.campaign_modes import modes
+    from permway.recordings.campaign_passage import passage
 
     condition = campaign.condition(record.condition)
     makers: dict[str, Callable[[Campaign, Record], xr.Dataset]] = {
@@ -120,6 +134,8 @@ def load_record(campaign: Campaign, record: Record) -> Dataset:
         "decay": tabular.decay,
         "transmissibility": tabular.transmissibility,
         "material": tabular.material,
+        "modes": modes,
+        "passage": passage,
     }
     try:
         data = makers[record.statistic](campaign, record)

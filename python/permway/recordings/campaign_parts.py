@@ -14,10 +14,11 @@ from permway.errors import InputError
 from permway.model.faults import fault
 from permway.model.irregularity_spectra import FASTEST_M_PER_S
 from permway.recordings.campaign_excitation import Dips, Push, Rolling, RoughBand, TrackLines, WheelLines
+from permway.recordings.passing_axles import PassingAxles
 from permway.recordings.readers.hints import Hints
 from permway.records import FrozenModel, Number
 
-Statistic = Literal["frf", "csd", "psd", "bands", "decay", "transmissibility", "material"]
+Statistic = Literal["frf", "csd", "psd", "bands", "decay", "transmissibility", "material", "modes", "passage"]
 
 KIND_OF: dict[str, tuple[str, ...]] = {
     "frf": ("hammer", "shaker"),
@@ -27,8 +28,13 @@ KIND_OF: dict[str, tuple[str, ...]] = {
     "decay": ("hammer", "table"),
     "transmissibility": ("shaker",),
     "material": ("table",),
+    "modes": ("hammer", "shaker", "table"),
+    "passage": ("passage",),
 }
 """Kinds of condition that a statistic can be of."""
+
+IN_TIME = ("csd", "psd", "passage")
+"""Statistics of records that are samples over time."""
 
 
 class Condition(FrozenModel):
@@ -37,10 +43,12 @@ class Condition(FrozenModel):
     Parameters
     ----------
     name : str
-    kind : "hammer", "train", "shaker" or "table"
+    kind : "hammer", "train", "shaker", "table" or "passage"
     temperature_C : float, optional
     speed_m_per_s : float, optional
-        Of the train.
+        Of the train, or of the axles that pass.
+    axles : PassingAxles, optional
+        Of a passage.
     centre_m : float, optional
         Where the middle of the train stands in the model; by default as the model has it.
     wheels_m : sequence of float, optional
@@ -51,11 +59,12 @@ class Condition(FrozenModel):
     """
 
     name: str = Field(min_length=1)
-    kind: Literal["hammer", "train", "shaker", "table"]
+    kind: Literal["hammer", "train", "shaker", "table", "passage"]
     temperature_C: Number | None = Field(default=None, ge=-100.0, le=150.0)
     speed_m_per_s: Number | None = Field(default=None, gt=0.0, le=FASTEST_M_PER_S)
     centre_m: Number | None = None
     wheels_m: tuple[Number, ...] | None = Field(default=None, min_length=1)
+    axles: PassingAxles | None = None
     load_N: Number | None = None
     date: str | None = None
     note: str = ""
@@ -79,7 +88,13 @@ class Condition(FrozenModel):
         train = (self.speed_m_per_s, self.centre_m, self.wheels_m)
         if self.kind == "train" and self.speed_m_per_s is None:
             raise fault("a train needs speed_m_per_s or speed_km_per_h", "speed_m_per_s")
-        if self.kind != "train" and train != (None, None, None):
+        if self.kind == "passage" and self.speed_m_per_s is None:
+            raise fault("axles need speed_m_per_s or speed_km_per_h", "speed_m_per_s")
+        if (self.axles is not None) != (self.kind == "passage"):
+            raise fault('goes with kind = "passage", which needs it', "axles")
+        if self.kind == "passage" and train[1:] != (None, None):
+            raise fault("wheels are of a train that stands; of a passage are the axles", "kind")
+        if self.kind not in ("train", "passage") and train != (None, None, None):
             raise fault(f'speed and wheels are of a train, and the kind is "{self.kind}"', "kind")
         if self.wheels_m is not None and self.centre_m is not None:
             raise fault("give wheels_m or centre_m", "centre_m")
@@ -130,11 +145,12 @@ class Record(FrozenModel):
     part : str, optional
         Group or array of a file that holds several.
     condition : str
-    statistic : "frf", "csd", "psd", "bands", "decay", "transmissibility" or "material"
+    statistic : "frf", "csd", "psd", "bands", "decay", "transmissibility", "material", "modes"
+        or "passage"
     repeat : int
         Number of this repeat, from 1.
     channels : dict of file's label to sensor
-        Of records in time and of tables.
+        Of records in time and of tables; of modes the sensors that they were seen at.
     responses, references : dict of file's label to sensor, and to force point
         Of frequency responses; the force points are in [[forces]]. Labels that are names may be a list.
     averages : float, optional
@@ -154,6 +170,9 @@ class Record(FrozenModel):
         For records that were computed: the lines between which their transfer functions were interpolated
         linearly, as [[0, 0.5], [30, 1]] for every 0.5 Hz up to 30 Hz and every 1 Hz above. Between lines what
         comes late is weakened.
+    window_s : float, optional
+        Of a passage: how long its prediction is, in which the line must come to rest; by default longer than
+        record and passage by a passage, and by six times the decay of the slowest mode.
     spacing_m : float, optional
         Of decay rates by EN 15461: distance of the fasteners, which sets the places of the blows.
     select : dict
@@ -182,6 +201,7 @@ class Record(FrozenModel):
     sampling_Hz: PositiveFloat | None = None
     segment_s: PositiveFloat = 1.0
     interpolated_Hz: tuple[tuple[Number, Number], ...] | None = Field(default=None, min_length=1)
+    window_s: PositiveFloat | None = None
     spacing_m: PositiveFloat | None = None
     select: dict[str, str | Number | bool] = Field(default_factory=dict)
     loss_file: str | None = None
@@ -199,7 +219,7 @@ class Record(FrozenModel):
     @property
     def sampled(self) -> bool:
         """Whether its file holds samples over time."""
-        return self.statistic in ("csd", "psd") and self.averages is None
+        return self.statistic in IN_TIME and self.averages is None
 
     @property
     def hints(self) -> Hints:
@@ -236,9 +256,14 @@ class Record(FrozenModel):
         if self.within_dB is not None and self.statistic not in ("transmissibility", "material"):
             raise fault('goes with statistic "transmissibility" or "material"', "within_dB")
         _check_lines(self.interpolated_Hz or ())
-        for key in ("interpolated_Hz", "sampling_Hz"):
-            if getattr(self, key) is not None and self.statistic not in ("csd", "psd"):
-                raise fault('goes with statistic "csd" or "psd"', key)
+        if self.interpolated_Hz is not None and self.statistic not in ("csd", "psd"):
+            raise fault('goes with statistic "csd" or "psd"', "interpolated_Hz")
+        if self.sampling_Hz is not None and self.statistic not in IN_TIME:
+            raise fault('goes with statistic "csd", "psd" or "passage"', "sampling_Hz")
+        if self.window_s is not None and self.statistic != "passage":
+            raise fault('goes with statistic = "passage"', "window_s")
+        if self.statistic == "passage" and self.band_Hz is None:
+            raise fault("missing: a passage is predicted up to the end of its band", "band_Hz")
         return self
 
     def _check_hints(self) -> None:
@@ -248,13 +273,13 @@ class Record(FrozenModel):
             raise fault(f"{error.what}; {error.remedy}", error.where, value=error.value) from error
         for key in _HINTS:
             of_frf = key in ("axes", "pairs")
-            wanted = ("frf",) if of_frf else ("csd", "psd") if key == "time_column" else ("frf", "csd", "psd")
+            wanted = ("frf",) if of_frf else IN_TIME if key == "time_column" else ("frf", *IN_TIME)
             if getattr(self, key) is not None and self.statistic not in wanted:
                 raise fault(f"goes with statistic {' or '.join(map(repr, wanted))}", key)
 
     @property
     def _needs_channels(self) -> bool:
-        return self.statistic in ("csd", "psd", "bands", "transmissibility", "decay")
+        return self.statistic in ("csd", "psd", "bands", "transmissibility", "decay", "modes", "passage")
 
 
 def _check_lines(ranges: Sequence[tuple[float, float]]) -> None:

@@ -116,7 +116,7 @@ def _row(campaign: Campaign, record: Record) -> tuple[np.ndarray, np.ndarray]:
     if short is not None:
         what = f"{len(short.cells)} cells where the header has {len(header.cells)}"
         raise InputError(what, where=f"{path}: line {short.number}")
-    found = [row for row in rows if all(_says(row, header, key, want) for key, want in record.select.items())]
+    found = [row for row in rows if all(says(row, header, key, want) for key, want in record.select.items())]
     if len(found) != 1:
         what = "no row says this" if not found else f"{len(found)} rows say this"
         raise InputError(what, where="select", value=dict(record.select), remedy="select exactly one row")
@@ -142,7 +142,8 @@ def _row(campaign: Campaign, record: Record) -> tuple[np.ndarray, np.ndarray]:
     return band[used], np.array(values)
 
 
-def _says(row: Line, header: Line, key: str, wanted: object) -> bool:
+def says(row: Line, header: Line, key: str, wanted: object) -> bool:
+    """Whether a row's cell in a column is what `select` asks for."""
     cell = row.cells[header.cells.index(key)]
     if isinstance(wanted, bool):
         return cell.lower() == str(wanted).lower()

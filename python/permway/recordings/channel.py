@@ -12,7 +12,7 @@ from permway.arrays import Complexes, Reals
 from permway.model.faults import fault
 from permway.records import FrozenModel, Number
 
-Quantity = Literal["displacement", "velocity", "acceleration", "force"]
+Quantity = Literal["displacement", "velocity", "acceleration", "force", "strain", "bending_moment"]
 
 Direction = Literal["down", "up", "lateral", "longitudinal"]
 
@@ -25,6 +25,12 @@ UNITS: dict[str, dict[str, float]] = {
     "force": {"N": 1.0, "kN": 1e3},
 }
 """Units of each quantity, and what one of them is in SI."""
+
+BENT_UNITS: dict[str, dict[str, float]] = {
+    "strain": {"m/m": 1.0, "um/m": 1e-6},
+    "bending_moment": {"N*m": 1.0, "kN*m": 1e3},
+}
+"""The same of what beams are bent by; files of what moves and pushes are not taken for it."""
 
 
 class Mains(FrozenModel):
@@ -127,7 +133,10 @@ class Sensor(FrozenModel):
         Instead: a degree of freedom of the vehicle, as "car1.wheelset2" or "car1.body.bounce".
     direction : "down", "up", "lateral" or "longitudinal"
         Of what it reads as positive. The model moves up and down; the others are kept, and not predicted.
-    quantity : "displacement", "velocity", "acceleration" or "force"
+    quantity : "displacement", "velocity", "acceleration", "force", "strain" or "bending_moment"
+        The last two of a beam while a train passes.
+    height_m : float, optional
+        Of a strain: how far below the axis of the beam the fibre lies; a beam that sags lengthens there.
     unit : str
         As the file has it.
     chain : Chain
@@ -139,6 +148,7 @@ class Sensor(FrozenModel):
     degree: str | None = None
     direction: Direction = "down"
     quantity: Quantity = "acceleration"
+    height_m: Number | None = None
     unit: str
     chain: Chain = Chain()
 
@@ -148,8 +158,12 @@ class Sensor(FrozenModel):
             raise fault("give body and x_m, or degree", "body")
         if (self.body is None) != (self.x_m is None):
             raise fault("x_m goes with body" if self.body is None else "missing: where on the body", "x_m")
-        if self.unit not in UNITS[self.quantity]:
-            what = f"is no unit of {self.quantity} here: use one of {sorted(UNITS[self.quantity])}"
+        if (self.height_m is not None) != (self.quantity == "strain"):
+            raise fault('goes with quantity = "strain", which needs it', "height_m", value=self.height_m)
+        if self.bends and self.body is None:
+            raise fault("strains and bending moments are of a beam of the line: give body and x_m", "body")
+        if self.unit not in self._units:
+            what = f"is no unit of {self.quantity} here: use one of {sorted(self._units)}"
             if "/N" in self.unit or "/kN" in self.unit:
                 what += "; the unit of the force is the point's"
             raise fault(what, "unit", value=self.unit)
@@ -161,9 +175,18 @@ class Sensor(FrozenModel):
         return self.direction in ("down", "up")
 
     @property
+    def bends(self) -> bool:
+        """Whether it reads how a beam is bent, and not how it moves."""
+        return self.quantity in ("strain", "bending_moment")
+
+    @property
     def to_SI(self) -> float:
         """One unit of the file in SI."""
-        return UNITS[self.quantity][self.unit]
+        return self._units[self.unit]
+
+    @property
+    def _units(self) -> dict[str, float]:
+        return (BENT_UNITS if self.bends else UNITS)[self.quantity]
 
     @property
     def noise_density(self) -> float:

@@ -23,6 +23,8 @@ VARIABLE = {
     "decay": "decay_rate",
     "transmissibility": "transmissibility",
     "material": "modulus",
+    "modes": "modes",
+    "passage": "spectrum",
 }
 """What is compared of each statistic."""
 
@@ -173,16 +175,21 @@ def _channels(dataset: Dataset) -> tuple[list[str], list[str]]:
     if dataset.record.statistic == "frf":
         sensors, forces = data["sensor"].values.astype(str), data["force"].values.astype(str)
         return [str(s) for s in sensors for _ in forces], [str(f) for _ in sensors for f in forces]
+    if dataset.record.statistic == "modes":
+        quantities = [str(n) for n in data["quantity"].values]
+        return quantities, [""] * len(quantities)
     names = [str(n) for n in data["channel"].values] if "channel" in data.dims else [dataset.record.name]
     return names, [""] * len(names)
 
 
 def _unit(campaign: Campaign, dataset: Dataset, sensor: str) -> str:
     statistic = dataset.record.statistic
-    if statistic not in ("frf", "csd", "psd"):
+    if statistic == "modes":
+        return "Hz" if sensor == "natural frequency" else "1"
+    if statistic not in ("frf", "csd", "psd", "passage"):
         return str(dataset.data[VARIABLE[statistic]].attrs.get("units", "1"))
     si = SI_UNITS[campaign.sensor(sensor).quantity]
-    return f"({si})/N" if statistic == "frf" else f"({si})2/Hz"
+    return {"frf": f"({si})/N", "passage": f"({si}) s"}.get(statistic, f"({si})2/Hz")
 
 
 def _interval(dataset: Dataset, measured: np.ndarray, scatter_dB: Reals) -> tuple[Reals, Reals, Reals]:

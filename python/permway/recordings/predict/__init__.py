@@ -14,7 +14,7 @@ from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_factors import campaign_under, factors_of
 from permway.recordings.campaign_load import Dataset
 from permway.recordings.campaign_parts import Condition
-from permway.recordings.predict import decay, hammer, material, run, shaker
+from permway.recordings.predict import decay, hammer, material, modes, passage, run, shaker
 from permway.recordings.predict.grid import grid_of, halved
 from permway.recordings.predict.rolling import rolling_of
 from permway.recordings.predict.sliding import worked
@@ -83,6 +83,8 @@ def predict(
         else:
             answer = None if need is None else by_state[need.state]
             found.append(predict_one(campaign, dataset, need, answer))
+            if dataset.record.statistic == "passage":
+                passage.check_seam(dataset.record.name, dataset.data, found[-1].attrs["seam"])
     return found
 
 
@@ -130,6 +132,10 @@ def _need(campaign: Campaign, dataset: Dataset, condition: Condition) -> Need | 
             return shaker.need(campaign.model, temperature, spots, dataset.frequency_Hz)
         case "decay":
             return decay.need(campaign, record, temperature, data)
+        case "modes":
+            return modes.need(campaign, dataset.names("sensor"), temperature, data)
+        case "passage":
+            return passage.need(campaign, condition, dataset.names("channel"), temperature, data)
         case "material":
             return None
     raise InputError(
@@ -161,6 +167,12 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
             moved = shaker.transmissibility(campaign.model, need.temperature_C, need.frequency_Hz, values)
             chains = [campaign.sensor(name).chain.transfer(need.frequency_Hz) for name in dataset.names("channel")]
             return dataset.template.copy(data={"transmissibility": moved.T * np.stack(chains)})
+        case "passage":
+            spectrum, seam = passage.predicted(campaign, condition, dataset.names("channel"), data, need, values)
+            return dataset.template.copy(data={"spectrum": spectrum}).assign_attrs(seam=seam)
+        case "modes":
+            sensors = [campaign.sensor(name) for name in dataset.names("sensor")]
+            return dataset.template.copy(data={"modes": modes.predicted(data, sensors, need, values)})
         case _:
             return decay.predicted(record, data, values)
 

@@ -127,7 +127,8 @@ def _modulus(axes: Axes, record: xr.Dataset, channel: int) -> None:
     measured = np.abs(one["measured"].values)[order]
     material = record.attrs["statistic"] == "material"
     assumed = record.attrs["statistic"] in TABULAR
-    words = "measured, assumed scatter (95 %)" if assumed else "measured, 95 % interval"
+    stated = record.attrs["statistic"] == "modes"
+    words = "measured, assumed scatter (95 %)" if assumed and not stated else "measured, 95 % interval"
     low, high = one["low"].values[order], one["high"].values[order]
     there = np.isfinite(measured) & (measured > 0.0)
     if material or frequency.size <= FEW_POINTS:
@@ -155,7 +156,7 @@ def _modulus(axes: Axes, record: xr.Dataset, channel: int) -> None:
         _limits(axes, one, measured[there])
     logarithmic_hertz(axes, *_ends(frequency))
     unit = UNITS.get(str(one["unit"].values), str(one["unit"].values))
-    axes.set_ylabel(_quantity(record) + (f", {unit}" if unit else ""))
+    axes.set_ylabel(_quantity(one) + (f", {unit}" if unit else ""))
     label = str(one["channel"].values)
     at = f", {record.attrs['temperature_C']:g} °C".replace("-", "−") if "temperature_C" in record.attrs else ""
     table = record.attrs["statistic"] in TABULAR
@@ -190,6 +191,8 @@ def _quantity(record: xr.Dataset) -> str:
         "decay_rate": "decay rate",
         "transmissibility": "modulus",
         "modulus": "modulus",
+        "modes": str(np.ravel(record["channel"].values)[0]),
+        "spectrum": "modulus",
     }[str(record.attrs["variable"])]
 
 

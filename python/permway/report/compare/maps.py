@@ -22,7 +22,7 @@ UNSEEN_DB = 3.0
 FEW_ROWS = 60
 """Up to so many rows each has room for its name."""
 
-TABULAR = ("decay", "transmissibility", "material")
+TABULAR = ("decay", "transmissibility", "material", "modes")
 
 
 def groups(comparison: Comparison) -> Iterator[tuple[str, list[int]]]:

@@ -55,6 +55,8 @@ def _noise(diagnosis: Diagnosis) -> list[tuple[str, str]]:
     if "csd" in kinds or "psd" in kinds:
         words.append((KIND["psd"], "by the effective number of averages"))
     for kind in kinds:
-        if kind not in ("frf", "csd", "psd"):
+        if kind == "modes":
+            words.append((KIND[kind], "as the table states it"))
+        elif kind not in ("frf", "csd", "psd"):
             words.append((KIND.get(kind, kind), "an assumed scatter"))
     return words

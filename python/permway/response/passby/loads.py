@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from pydantic import Field, field_validator, model_validator
@@ -31,6 +33,21 @@ _HSLM_A: tuple[tuple[int, float, float, float], ...] = (
 _POWER_CAR_M = (0.0, 3.0, 14.0, 17.0)
 _COUPLING_M = 3.525
 """From a power car's last axle to the end coach's first."""
+
+
+def check_axles(lags_m: Sequence[float], loads_N: Sequence[float]) -> None:
+    """Refuse axles that do not go with their loads or do not stand behind each other, with their places."""
+    if len(lags_m) != len(loads_N):
+        raise fault(f"{len(loads_N)} loads for {len(lags_m)} axles: they go in pairs", "loads_N")
+    for index, load in enumerate(loads_N):
+        if not load > 0.0:
+            raise fault("a load must be above 0 N: positive is down", "loads_N", index, value=load)
+    if lags_m[0] != 0.0:
+        raise fault("the first axle is 0 m behind itself", "lags_m", 0, value=lags_m[0])
+    for index, (ahead, behind) in enumerate(pairwise(lags_m)):
+        if not behind > ahead:
+            what = f"does not lie behind the axle before it, at {ahead:g} m: sort them"
+            raise fault(what, "lags_m", index + 1, value=behind)
 
 
 class Axles(FrozenModel):
@@ -62,18 +79,7 @@ class Axles(FrozenModel):
 
     @model_validator(mode="after")
     def _check(self) -> Axles:
-        if len(self.lags_m) != len(self.loads_N):
-            what = f"{len(self.loads_N)} loads for {len(self.lags_m)} axles: they go in pairs"
-            raise fault(what, "loads_N")
-        for index, load in enumerate(self.loads_N):
-            if not load > 0.0:
-                raise fault("a load must be above 0 N: positive is down", "loads_N", index, value=load)
-        if self.lags_m[0] != 0.0:
-            raise fault("the first axle is 0 m behind itself", "lags_m", 0, value=self.lags_m[0])
-        for index, (ahead, behind) in enumerate(zip(self.lags_m, self.lags_m[1:], strict=False)):
-            if not behind > ahead:
-                what = f"does not lie behind the axle before it, at {ahead:g} m: sort them"
-                raise fault(what, "lags_m", index + 1, value=behind)
+        check_axles(self.lags_m, self.loads_N)
         return self
 
     @property

@@ -1,0 +1,152 @@
+"""Residuals of passages: complex spectra over their noise and a floor, with errors of chains and drifts beside."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+from scipy.ndimage import uniform_filter1d
+
+from permway.arrays import Complexes, Reals
+from permway.diagnosis.blocks import Rows
+from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
+from permway.diagnosis.wander import Wander
+from permway.recordings.campaign_load import Dataset
+from permway.recordings.campaign_passage import spectrum_of
+from permway.recordings.compare import NEPER_DB
+
+FLOOR = 0.003
+"""Relative error that no record is free of, as of frequency responses: of the spectrum's size about a line."""
+
+ABOUT = 9
+"""Lines whose mean square is the size about a line: axles make lobes, and between them nothing is exact either."""
+
+LOW = 0.3
+"""Share of that size below which a line says no level."""
+
+DRIFT = 10.0
+"""Standard deviation of offset and drift over a record, in its root mean square: any."""
+
+
+@dataclass(frozen=True)
+class Apart:
+    """So many coefficients that nothing binds: a gain; offset, slope and bend of a record over time."""
+
+    count: int
+
+    def root(self, length: float | None) -> Reals:
+        """No length binds them."""
+        return np.eye(self.count)
+
+
+class PassageBlock:
+    """Measured less predicted spectra, real parts, then imaginary parts.
+
+    Errors of chains multiply: a log gain that is the same at all frequencies, and log gain and phase that are
+    smooth over them. They act on what is predicted, for of what was measured noise is a part, and a gain would
+    explain it. A drift is no physics: three polynomials of time, of any size, are integrated out.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Of statistic "passage".
+    reference : Dataset of xarray
+        A prediction, which errors of chains act on.
+    floor : float
+        Relative error beside the noise of each line.
+    span : (float, float), optional
+        Hz, over which chains' errors wander, where other passages reach further.
+    """
+
+    log_determinant = 0.0
+
+    def __init__(
+        self,
+        dataset: Dataset,
+        *,
+        reference: xr.Dataset,
+        floor: float = FLOOR,
+        span: tuple[float, float] | None = None,
+    ) -> None:
+        self.dataset, self.floor, self._span = dataset, floor, span
+        self._reference: Complexes = reference["spectrum"].values
+        data = dataset.data
+        self.measured: Complexes = data["spectrum"].values
+        self.frequency: Reals = data["frequency"].values
+        self.names = data["channel"].values.astype(str)
+        power = np.abs(self.measured) ** 2
+        self.size: Reals = np.sqrt(uniform_filter1d(power, ABOUT, axis=-1, mode="nearest"))
+        self.sigma: Reals = np.sqrt(data["noise_sd"].values ** 2 + (floor * self.size) ** 2)
+        label, at = np.broadcast_arrays(self.names[:, None], self.frequency)
+        scale = NEPER_DB * self.sigma / self.size
+        columns = (label, label, np.full(label.shape, ""), at, scale)
+        self.rows = Rows(*(np.tile(v.reshape(-1), 2) for v in columns))
+
+    def deviations(self, predicted: xr.Dataset) -> Reals:
+        """Measured less predicted, in standard deviations."""
+        return _parts((self.measured - predicted["spectrum"].values) / self.sigma)
+
+    def levels_dB(self, predicted: xr.Dataset) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`; between lobes of the spectrum there is no level."""
+        with np.errstate(divide="ignore"):
+            levels = NEPER_DB * np.log(np.abs(self.measured) / np.abs(predicted["spectrum"].values))
+        levels = np.where(np.abs(self.measured) > LOW * self.size, levels, np.nan).reshape(-1)
+        return np.concatenate([levels, np.full(levels.size, np.nan)])
+
+    def of(self, dataset: Dataset) -> PassageBlock:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        return self._as(dataset, self._reference)
+
+    def with_reference(self, reference: xr.Dataset) -> PassageBlock:
+        """The same with another prediction that errors of chains act on."""
+        return self._as(self.dataset, reference["spectrum"].values)
+
+    def with_floor(self, floor: float) -> PassageBlock:
+        """The same with another relative error."""
+        return self._as(self.dataset, self._reference, floor)
+
+    def _as(self, dataset: Dataset, spectrum: Complexes, floor: float | None = None) -> PassageBlock:
+        reference = dataset.template.copy(data={"spectrum": spectrum})
+        floor = self.floor if floor is None else floor
+        return PassageBlock(dataset, reference=reference, floor=floor, span=self._span)
+
+    @cached_property
+    def smooth(self) -> Smooth:
+        """Of every channel its chain, and its drift in this record."""
+        wander = Wander(*(self._span or (float(self.frequency[0]), float(self.frequency[-1]))))
+        values = wander.values(self.frequency)
+        drift = _drifts(self.dataset.data)
+        origins: list[Origin] = []
+        columns: list[Reals] = []
+        for index, name in enumerate(self.names):
+            read = (self._reference[index] / self.sigma[index])[:, None]
+            gain = read * values
+            size = DRIFT * float(np.sqrt(np.mean(np.abs(self.measured[index]) ** 2)))
+            moved = size * drift / self.sigma[index][:, None]
+            origins += [
+                Origin(f"gain {name}", Apart(1), 1, chain=False),
+                Origin(f"channel {name}", wander, 2),
+                Origin(f"drift of {self.dataset.record.name}: {name}", Apart(3), 1, chain=False, fixed=True),
+            ]
+            for column in np.hstack([read, gain, 1j * gain, moved]).T:
+                whole = np.zeros(self.measured.shape, dtype=np.complex128)
+                whole[index] = column
+                columns.append(_parts(whole))
+        return Smooth(tuple(origins), PlainColumns(np.stack(columns, axis=1)))
+
+
+def _parts(values: Complexes) -> Reals:
+    flat = values.reshape(-1)
+    return np.concatenate([flat.real, flat.imag])
+
+
+def _drifts(data: xr.Dataset) -> Complexes:
+    """Spectra of offset, slope and bend as the record shows them, each of root mean square 1, (frequency, 3)."""
+    samples, rate = int(data.attrs["samples"]), float(data.attrs["sampling_Hz"])
+    time = np.linspace(-1.0, 1.0, samples)
+    lines = spectrum_of(np.stack([np.ones(samples), time, time**2]), rate)
+    number = np.round(data["frequency"].values * samples / rate).astype(np.int64)
+    found = lines[:, number].T
+    return np.asarray(found / np.sqrt(np.mean(np.abs(found) ** 2, axis=0)))

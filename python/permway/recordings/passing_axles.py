@@ -1,0 +1,67 @@
+"""The train of a passage: axles with constant loads, when they come, and which way they run."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from pydantic import Field, PositiveFloat, model_validator
+
+from permway.arrays import Reals
+from permway.model.bodies import Metres
+from permway.model.faults import fault
+from permway.records import FloatTuple, FrozenModel, Number
+from permway.response.passby.loads import check_axles
+
+
+class PassingAxles(FrozenModel):
+    """Axles that carry constant loads along a body at the condition's speed.
+
+    Parameters
+    ----------
+    loads_N : sequence of float
+        Of each axle, of what the model carries: half of them on the model of one rail.
+    lags_m : sequence of float
+        Distance of each axle behind the first, from 0.
+    load_factor : float
+        On all loads.
+    body : str
+        A beam, or a row of beams without gaps, that the axles run on.
+    entry_s : float
+        When the first axle enters the stretch, on the clock of the records: their first sample is at 0 unless
+        their files say otherwise.
+    direction : "forward" or "backward"
+        Towards larger or smaller x.
+    from_m, to_m : float, optional
+        The stretch; by default the ends of the body, or its first and last joint.
+    ramp_m : float, optional
+        Over which loads come on and go off at both ends; by default none at an end of the body, elsewhere a tenth
+        of the stretch and at most 10 m.
+    """
+
+    loads_N: FloatTuple = Field(min_length=1)
+    lags_m: FloatTuple
+    load_factor: PositiveFloat = 1.0
+    body: str
+    entry_s: Number = 0.0
+    direction: Literal["forward", "backward"] = "forward"
+    from_m: Metres | None = None
+    to_m: Metres | None = None
+    ramp_m: float | None = Field(default=None, ge=0.0)
+
+    @model_validator(mode="after")
+    def _check(self) -> PassingAxles:
+        check_axles(self.lags_m, self.loads_N)
+        if self.from_m is not None and self.to_m is not None and not self.from_m < self.to_m:
+            raise fault(f"does not lie beyond from_m = {self.from_m:g}", "to_m", value=self.to_m)
+        return self
+
+    @property
+    def loads(self) -> Reals:
+        """Loads with their factor, N."""
+        return self.load_factor * np.array(self.loads_N, dtype=np.float64)
+
+    def arrivals_s(self, speed_m_per_s: float, start_m: float, stop_m: float) -> Reals:
+        """When each axle is, or would be, at x = 0, s; running backward they come from `stop_m`."""
+        ahead = -start_m if self.direction == "forward" else stop_m
+        return self.entry_s + (np.array(self.lags_m, dtype=np.float64) + ahead) / speed_m_per_s

@@ -1,0 +1,147 @@
+"""Passages under comparison and diagnosis: what a fit says of loads, speed and time, and how surely."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import passages
+import pytest
+from permway.arrays import Reals
+from permway.diagnosis.blocks_passage import ABOUT, FLOOR, PassageBlock
+from permway.diagnosis.compare import compare
+from permway.diagnosis.fit import free_parameters
+from permway.diagnosis.gather import first_size, gather
+from permway.diagnosis.speeds import begin
+from permway.diagnosis.tangent import Problem
+from permway.posterior.covariance import Frame
+from permway.posterior.fit import Fit, Fitter, Model, estimated
+from permway.recordings.campaign import Campaign, read_campaign
+from permway.recordings.campaign_load import Dataset
+from permway.recordings.predict import predict
+from permway.report.compare import write_comparison
+from scipy.ndimage import uniform_filter1d
+
+NOISE = 1e-3
+"""Of a sample over the largest of its sensor."""
+
+
+def measured(folder: Path, names: str, *, seed: int = 2, drift: float = 0.0, **keys) -> Campaign:
+    """The closed form's histories with noise, and a drift over the record in shares of their largest value."""
+    time, random = passages.time_s(), np.random.default_rng(seed)
+    columns = {}
+    for name in names:
+        values = passages.history(name, time, 0.01)
+        size = np.abs(values).max()
+        values = values + NOISE * size * random.standard_normal(time.size)
+        columns[name] = values + drift * size * (1.0 + time / time[-1])
+    table = passages.campaign(names, high_Hz=10.0)
+    table["conditions"][0] |= keys
+    return read_campaign(passages.write(folder, columns, table=table, loss_factor=0.02))
+
+
+def fitted(campaign: Campaign, datasets: list[Dataset]) -> Fit:
+    """The nominal model alone, as the posterior's search begins."""
+    free = free_parameters(campaign)
+    frame = Frame.of(gather(campaign, datasets, threads=1))
+    z = begin(frame.evidence, Problem(frame.evidence, campaign.with_values, free))
+    fitter = Fitter(frame)
+    fit = fitter.begin(Model(campaign.with_values, free), z, frame.first())
+    for level in (1.0, 0.2, 0.04):
+        fit = fitter.fit(replace(fit, hyper=fit.hyper.with_discrepancy(level)), steps=8)
+    fit = fitter.fit(estimated(fit), steps=12)
+    # Errors of chains act on what the fit predicts.
+    again = Fitter(frame.about(fit.state.solved, fit.covariance, fit.state.deviations))
+    fit = again.fit(estimated(again.begin(fit.model, fit.z, fit.hyper)), steps=12)
+    return again.settled(estimated(fit))
+
+
+def simulated(campaign: Campaign, dataset: Dataset, seed: int) -> tuple[Reals, Dataset]:
+    """True parameters from their priors, and a record of the model with errors of chains and noise from theirs."""
+    random = np.random.default_rng(seed)
+    free = free_parameters(campaign)
+    z = random.standard_normal(len(free))
+    true = campaign.with_values({f.name: f.value(float(v)) for f, v in zip(free, z, strict=True)})
+    (found,) = predict(true, [dataset], threads=1)
+    spectrum = found["spectrum"].values
+    noise = NOISE * np.abs(spectrum).max(axis=1, keepdims=True)
+    noise = np.broadcast_to(noise, spectrum.shape)
+    data = dataset.data.copy()
+    data["noise_sd"] = (("channel", "frequency"), noise.copy())
+    block = PassageBlock(replace(dataset, data=data), reference=found, floor=0.0)
+    smooth = block.smooth
+    sizes = [np.full(o.count, 0.0 if o.fixed else first_size(campaign, o.name)) for o in smooth.origins]
+    errors = smooth.columns.push(np.concatenate(sizes) * random.standard_normal(sum(map(len, sizes))))
+    off = (errors + random.standard_normal(errors.size)).reshape(2, -1)
+    whole = spectrum + (off[0] + 1j * off[1]).reshape(spectrum.shape) * block.sigma
+    data["spectrum"] = (("channel", "frequency"), whole, dataset.data["spectrum"].attrs)
+    return z, replace(dataset, data=data)
+
+
+def missed(folder: Path, seeds: range) -> Reals:
+    """By how many of their standard deviations a fit misses the parameters of simulated records."""
+    campaign = measured(folder, "we")
+    (dataset,) = campaign.load()
+    rows = []
+    for seed in seeds:
+        z, drawn = simulated(campaign, dataset, seed)
+        fit = fitted(campaign, [drawn])
+        rows.append((fit.z - z) / np.sqrt(np.diag(fit.spread)))
+    return np.array(rows)
+
+
+def test_intervals_hold_the_truth(tmp_path: Path) -> None:
+    """Nine tenths of the seven parameters of some records, within what chance makes of it; none is far off."""
+    off = missed(tmp_path, range(5))
+    assert np.mean(np.abs(off) < 1.645) > 0.8
+    assert np.abs(off).max() < 4.0
+
+
+@pytest.mark.injection
+def test_intervals_hold_the_truth_of_fifty(tmp_path: Path) -> None:
+    off = missed(tmp_path, range(50))
+    held = np.mean(np.abs(off) < 1.645, axis=0)
+    assert (held > 0.8).all(), held
+    assert 0.85 < held.mean() < 0.98, held
+
+
+def test_loads_and_speed_of_moving_forces(tmp_path: Path) -> None:
+    """The record is the closed form's; all nominal values are off."""
+    axles = {"loads_N": [1.3e5] * 4, "lags_m": list(passages.LAGS_M), "body": "deck", "entry_s": 0.76}
+    campaign = measured(tmp_path, "wae", speed_m_per_s=29.6, axles=axles)
+    values = fitted(campaign, campaign.load()).values()
+    assert values["V"] == pytest.approx(passages.SPEED, rel=3e-3)
+    for index, load in enumerate(passages.LOADS_N):
+        assert values[f"P{index}"] == pytest.approx(load, rel=0.03)
+    assert 0.76 + values["t0"] == pytest.approx(passages.ENTRY_S, abs=2e-3)
+
+
+def test_a_drift_is_no_physics(tmp_path: Path) -> None:
+    plain, moved = (measured(tmp_path / str(d), "we", drift=d) for d in (0.0, 0.5))
+    first, second = fitted(plain, plain.load()), fitted(moved, moved.load())
+    sigma = np.sqrt(np.diag(first.spread))
+    assert (np.abs(second.z - first.z) < 0.3 * sigma).all()
+
+
+def test_residuals_are_over_noise_and_a_floor(tmp_path: Path) -> None:
+    campaign = measured(tmp_path, "we")
+    (block,) = gather(campaign, threads=1).blocks
+    data = block.dataset.data
+    (found,) = predict(campaign, [block.dataset], threads=1)
+    size = np.sqrt(uniform_filter1d(np.abs(data["spectrum"].values) ** 2, ABOUT, axis=-1, mode="nearest"))
+    sigma = np.sqrt(data["noise_sd"].values ** 2 + (FLOOR * size) ** 2)
+    off = (data["spectrum"].values - found["spectrum"].values) / sigma
+    assert block.deviations(found) == pytest.approx(np.concatenate([off.real.ravel(), off.imag.ravel()]))
+    levels = block.levels_dB(found)
+    assert np.isnan(levels[levels.size // 2 :]).all()
+    assert np.isfinite(levels[: levels.size // 2]).any()
+
+
+def test_a_comparison_of_a_passage(tmp_path: Path) -> None:
+    campaign = measured(tmp_path / "c", "we")
+    written = write_comparison(compare(campaign, raw_only=True, threads=1), tmp_path / "page")
+    (row,) = written["fits"]
+    assert row["kind"] == "passages"
+    assert row["channels"] == 2
+    assert "passages" in Path(written["report"]).read_text(encoding="utf-8")
