@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+
+import numpy as np
 
 from permway.diagnosis.catalogue import known
 from permway.diagnosis.clock import Clock, Progress
@@ -15,6 +17,7 @@ from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.result import Candidate, Diagnosis
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.speak_measurement import mixed_up, with_spoilt
+from permway.diagnosis.verdict_parts import Moved
 from permway.posterior.answer import verdict_of
 from permway.posterior.beam import Member
 from permway.posterior.covariance import Frame
@@ -65,7 +68,7 @@ def diagnose(
     verdict = (
         mixed_up(base, mixed)
         if mixed is not None
-        else verdict_of(masses, held_out, recalibrated_of(base), recalibrated_of(after))
+        else verdict_of(masses, held_out, recalibrated_of(base), with_moved(recalibrated_of(after), best))
     )
     clock("compare")
     amended = after if verdict.effects and best.amendments else None
@@ -81,6 +84,24 @@ def diagnose(
         law_dZ={},
         seconds=clock.seconds(),
     )
+
+
+def with_moved(after: Mapping[str, Moved], member: Member) -> dict[str, Moved]:
+    """Nominal parameters, those that an amendment moves with its shift in them."""
+    found = dict(after)
+    known, names = member.fit.frame.evidence.campaign.parameters.known, [f.name for f in member.fit.model.free]
+    for index, amendment in enumerate(member.amendments):
+        name = amendment.moves
+        if name not in found:
+            continue
+        per_z = amendment.free[0].value(1.0)
+        at, own = names.index(name), member.own(index).start
+        z = float(member.fit.z[at] + per_z * member.fit.z[own])
+        both = np.array([1.0, per_z])
+        half = WIDTH * float(np.sqrt(both @ member.fit.spread[np.ix_([at, own], [at, own])] @ both))
+        low, high = (known[name].value(end) for end in (z - half, z + half))
+        found[name] = Moved(value=known[name].value(z), prior=found[name].prior, z=z, low=low, high=high)
+    return found
 
 
 def as_base(fit: Fit) -> Base:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where
 from permway.recordings.campaign import Campaign
+from permway.recordings.parameters import Known
 
 ID = "owner_value"
 DOMAIN: Domain = "path"
@@ -30,13 +31,15 @@ def everywhere(situation: Situation) -> Iterator[Hypothesis]:
     for known in situation.campaign.parameters.known.values():
         paths = known.parameter.paths
         first = paths[0] if isinstance(paths, tuple) else paths
-        yield _of(known.name, _domain(first))
+        yield _of(known, _domain(first))
 
 
 hypotheses = everywhere
 
 
-def _of(name: str, domain: Domain) -> Hypothesis:
+def _of(known: Known, domain: Domain) -> Hypothesis:
+    name = known.name
+
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         # The nominal parameter itself is moved, before the campaign is built.
         del values
@@ -50,13 +53,22 @@ def _of(name: str, domain: Domain) -> Hypothesis:
         amend=amend,
         locate=lambda _: Where(what=name),
         starts=tuple((start,) for start in BEGUN),
-        law=lambda v: (
-            f"{name} is {v['deviations']:.1f} standard deviations of its tolerance from its stated value"
-        ),
+        law=lambda v: _words(known, v["deviations"]),
         size="deviations",
         none=0.0,
         variant=name,
         moves=name,
+    )
+
+
+def _words(known: Known, deviations: float) -> str:
+    """As an engineer says it: the value, how far it is from the stated one, and in standard deviations."""
+    value, unit = known.value(deviations), f" {known.parameter.unit}" if known.parameter.unit else ""
+    share = f"{abs(value / known.nominal - 1.0):.0%} {'below' if value < known.nominal else 'above'} "
+    far = share if known.nominal > 0.0 else ""
+    return (
+        f"about {value:.3g}{unit}, {far}the stated {known.nominal:.3g}{unit}, "
+        f"{abs(deviations):.1f} standard deviations of its tolerance"
     )
 
 
