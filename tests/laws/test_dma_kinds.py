@@ -216,3 +216,14 @@ def test_the_command_takes_what_the_file_does_not_say(tmp_path: Path, capsys: py
     assert end.value.code == 0
     # 20 degC lies outside: the nearest isotherm is taken.
     assert json.loads(capsys.readouterr().out)["reference_temperature_C"] == 40.0
+
+
+@pytest.mark.parametrize("name", ["omega", "ω", "Angular frequency", "Kreisfrequenz", "circular frequency"])
+@pytest.mark.parametrize("unit", ["", " [rad/s]", " [1/s]"])
+def test_angular_frequency_is_in_rad_per_s(name: str, unit: str, tmp_path: Path) -> None:
+    """Its name says what it is; without a unit a note says what was assumed."""
+    path = tmp_path / "a.csv"
+    path.write_text(f"{name}{unit},T_degC,E' [MPa],tan delta\n{2 * np.pi},20,5,0.1\n{20 * np.pi},20,6,0.2\n")
+    table = read_dma(path)
+    np.testing.assert_allclose(table.frequency_Hz, [1.0, 10.0], rtol=1e-14)
+    assert any("rad/s assumed" in note for note in table.notes) == (unit == "")

@@ -56,7 +56,7 @@ _SPELLED: dict[str, dict[str, ColumnUnit]] = {
     | _RAD_PER_S
     | {name: ColumnUnit(1.0) for name in ("hz", "hertz", "1_s", "s_1", "cps")}
     | {"khz": ColumnUnit(1e3)},
-    "omega": _NONE | _RAD_PER_S | {name: ColumnUnit(_HERTZ) for name in ("1_s", "s_1")},
+    "omega": {"": ColumnUnit(_HERTZ)} | _RAD_PER_S | {name: ColumnUnit(_HERTZ) for name in ("1_s", "s_1")},
     "temperature": _NONE
     | {name: ColumnUnit(1.0) for name in _CELSIUS}
     | {name: ColumnUnit(1.0, ABSOLUTE_ZERO_C) for name in ("k", "kelvin")}

@@ -11,7 +11,7 @@ import numpy as np
 
 from permway.arrays import Complexes, Reals, real_numbers
 from permway.errors import InputError
-from permway.laws.column_units import MODULUS, STIFFNESS, words
+from permway.laws.column_units import MODULUS, STIFFNESS
 from permway.laws.columns import Column
 from permway.laws.columns_read import (
     read_column,
@@ -224,10 +224,12 @@ def _unused(
 
 def _assumed(columns: dict[str, Column]) -> tuple[str, ...]:
     units = {"frequency": "Hz", "temperature": "degrees Celsius"}
+    if "frequency" in columns and columns["frequency"].factor != 1.0:
+        units["frequency"] = "rad/s"
     return tuple(
         f"column '{columns[name].header}' has no unit; {unit} assumed"
         for name, unit in units.items()
-        if name in columns and not columns[name].unit and "omega" not in words(columns[name].header)
+        if name in columns and not columns[name].unit
     )
 
 

@@ -28,6 +28,7 @@ from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES, check_size, existing_file, foreign
 from permway.recordings.readers.mat_objects import with_tables
 from permway.recordings.readers.store import as_time
+from permway.recordings.readers.store_beside import with_units_beside
 from permway.recordings.readers.store_frf import as_frf, as_table
 from permway.recordings.readers.stored import Store
 from permway.recordings.readers.text_numbers import in_decibels
@@ -319,7 +320,9 @@ def _store(source: Path, kind: Format, part: str | None, max_bytes: int) -> Iter
         group = part if part is not None and hdf5.is_group(source, part) else None
         opened, part = hdf5.open_store(source, group=group), None if group is not None else part
     with opened as store:
-        yield (with_tables(store, source, max_bytes=max_bytes) if kind in ("mat", "mat73") else store), part
+        if kind in ("mat", "mat73"):
+            store = with_tables(store, source, max_bytes=max_bytes)
+        yield with_units_beside(store), part
 
 
 def _record(

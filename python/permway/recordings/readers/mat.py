@@ -217,7 +217,16 @@ def _of(
         yield Variable(name, shape, "text", read)
         return
     step = float(np.finfo(np.float32 if head.kind == _SINGLE else np.float64).eps)
-    yield Variable(name, head.shape, "complex" if head.is_complex else "real", read, step=step, ordered=True)
+    whole_numbers = head.kind > _SINGLE
+    yield Variable(
+        name,
+        head.shape,
+        "complex" if head.is_complex else "real",
+        read,
+        step=step,
+        ordered=True,
+        resolution=1.0 if whole_numbers else 0.0,
+    )
 
 
 def _fields(data: _Bytes, name: str, about: tuple[str, str], max_bytes: int, depth: int) -> Iterator[Variable]:

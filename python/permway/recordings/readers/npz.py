@@ -12,9 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from permway.errors import InputError
-from permway.recordings.readers.stored import Store, Variable, unread
+from permway.recordings.readers.headers import time_scale
+from permway.recordings.readers.stored import Store, Variable, decoded, unread
 
 _MOST_MEMBERS = 10_000
+_TICKS = {"D": "d", "h": "h", "m": "min", "s": "s", "ms": "ms", "us": "us", "ns": "ns"}
 _KINDS = {"f": "real", "i": "real", "u": "real", "c": "complex", "U": "text", "S": "text"}
 
 
@@ -48,7 +50,11 @@ def _variable(archive: zipfile.ZipFile, info: zipfile.ZipInfo, name: str, where:
     start = head.tell()
     if dtype.hasobject:
         return unread(name, "Python objects, which could run code when read: save np.array(names, dtype=str)")
-    kind = _KINDS.get(dtype.kind)
+    tick, number = np.datetime_data(dtype) if dtype.kind in "mM" else ("", 1)
+    if tick not in _TICKS or not time_scale(name, "s", where)[0]:
+        # Dates are times of samples, if they are named so, and never samples.
+        tick = ""
+    kind = "real" if tick else _KINDS.get(dtype.kind)
     if kind is None:
         return unread(name, f"neither numbers nor texts: {dtype}")
     size = 1
@@ -63,7 +69,15 @@ def _variable(archive: zipfile.ZipFile, info: zipfile.ZipInfo, name: str, where:
         )
 
     def read(slices: tuple[slice, ...]) -> NDArray[np.generic]:
-        return _read(archive, info, start, dtype, tuple(shape), fortran, slices)
+        array = _read(archive, info, start, dtype, tuple(shape), fortran, slices)
+        if tick:
+            # From the first on: since 1970 nanoseconds have more digits than a number of double precision.
+            zero = _read(archive, info, start, dtype, tuple(shape), fortran, (slice(0, 1),) * len(shape))
+            return np.asarray((array.astype("i8") - zero.astype("i8").ravel()[0]) * float(number))
+        if dtype.kind == "S":
+            texts: list[bytes] = array.ravel().tolist()
+            return np.array([decoded(x) for x in texts], dtype=np.str_).reshape(array.shape)
+        return array
 
     step = float(np.finfo(dtype).eps) if dtype.kind == "f" else 2.0**-52
     # NumPy turns no axes: the order that is documented for frequency responses holds.
@@ -76,7 +90,8 @@ def _variable(archive: zipfile.ZipFile, info: zipfile.ZipInfo, name: str, where:
         step=step,
         item_bytes=dtype.itemsize,
         ordered=True,
-        resolution=1.0 if dtype.kind in "iu" else 0.0,
+        attributes={"units": _TICKS[tick]} if tick else {},
+        resolution=1.0 if dtype.kind in "iumM" else 0.0,
     )
 
 

@@ -12,7 +12,9 @@ from permway.arrays import Reals
 from permway.errors import InputError
 from permway.recordings.readers.headers import clean_unit, split_header, time_scale
 from permway.recordings.readers.hints import NO_HINTS, Hints
+from permway.recordings.readers.limits import MOST_CHANNELS
 from permway.recordings.readers.scales import hertz_in, seconds_in
+from permway.recordings.readers.store_beside import check_counts
 from permway.recordings.readers.store_columns import Column, columns_of, rank, read_columns
 from permway.recordings.readers.stored import UNITS, Store, Variable, is_one_of
 from permway.recordings.readers.timebase import LEAST_UNSAID_HZ, TimeBase, check_unsaid, unsaid_scale
@@ -95,6 +97,10 @@ def as_time(store: Store, part: str | None = None, hints: Hints = NO_HINTS) -> T
         return replace(of_times(rate), begins=begins)
 
     def read(rows: Sequence[int], first: int, stop: int) -> Reals:
+        for row in rows:
+            if columns[row].counts:
+                said = hints.channel_unit(labels[row])
+                check_counts(store, labels[row], columns[row].attributes, columns[row].folder, said)
         return read_columns([columns[row] for row in rows], first, stop)
 
     return TimeFile(
@@ -171,11 +177,28 @@ def _scaled(
     scale: Callable[[str | None, str], float],
 ) -> float | None:
     own = Store(store.source, {}, {}).number(names, attributes)
+    if own is None and names is RATES:
+        _check_one_rate(store, near)
     value = own if own is not None else store.number(names, near=near)
     if value is None or own is not None:
         return value
     unit = next((x.unit() for x in store.named(names, near) if x.kind == "real" and x.size == 1), None)
     return value * scale(unit, f"{store.source}: {sorted(names)[0]}")
+
+
+def _check_one_rate(store: Store, near: str | None) -> None:
+    """Refuse a list of several rates, of which nobody says whose each is."""
+    for variable in store.named(RATES, near):
+        if variable.kind != "real" or not 1 < variable.size <= MOST_CHANNELS:
+            continue
+        rates = np.unique(np.ravel(variable.all(store.source)))
+        if rates.size > 1:
+            raise InputError(
+                "several sampling rates",
+                where=f"{store.source}: '{variable.name}'",
+                value=[float(rate) for rate in rates[:4]],
+                remedy='state that of the channels asked for: sampling_Hz, with time_column = "none"',
+            )
 
 
 def _has_unit(store: Store, names: set[str], near: str | None) -> bool:

@@ -35,6 +35,8 @@ class Column:
         Of its array.
     folder : str
         The group or struct that its array is in.
+    counts : bool
+        Whether its numbers are whole by their type, as a converter's are.
     """
 
     name: str
@@ -44,6 +46,7 @@ class Column:
     row: int | None
     attributes: Mapping[str, object] = field(default_factory=dict)
     folder: str = ""
+    counts: bool = False
 
     @property
     def in_table(self) -> bool:
@@ -83,7 +86,14 @@ def columns_of(
     for name, variable in zip(own, vectors, strict=True):
         columns.append(
             Column(
-                name, variable.unit(), variable.size, _reader(variable), None, variable.attributes, variable.folder
+                name,
+                variable.unit(),
+                variable.size,
+                _reader(variable),
+                None,
+                variable.attributes,
+                variable.folder,
+                variable.resolution == 1.0,
             )
         )
     return columns
@@ -130,7 +140,16 @@ def _of_table(store: Store, table: Variable, names: tuple[str, ...] | None, time
         return piece[[row - span.start for row in rows]]
 
     return [
-        Column(name, table.unit(), samples, read, row, table.attributes, table.folder)
+        Column(
+            name,
+            table.unit(),
+            samples,
+            read,
+            row,
+            table.attributes,
+            table.folder,
+            table.resolution == 1.0,
+        )
         for row, name in enumerate(names)
     ]
 

@@ -55,8 +55,7 @@ def as_frf(
     values = _complex(store, part)
     near = values.folder
     frequency = _vector(store, FREQUENCIES, "frequencies", max_bytes, near)
-    responses = _names(store, RESPONSES, "responses", near)
-    references = _names(store, REFERENCES, "references", near)
+    responses, references = _pairs(store, values, frequency.size, near)
     wanted = (frequency.size, len(responses), len(references))
     order = _order(store, values, wanted, hints, near)
     pairs = [(response, reference) for response in responses for reference in references]
@@ -145,7 +144,28 @@ def _complex(store: Store, part: str | None) -> Variable:
     return found[0]
 
 
-def _names(store: Store, names: tuple[str, ...], what: str, near: str) -> tuple[str, ...]:
+def _pairs(store: Store, values: Variable, lines: int, near: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names of responses and references; where there is one only, and no name of it, that is what it is called."""
+    responses = _names(store, RESPONSES, near)
+    references = _names(store, REFERENCES, near)
+    if references is None and values.size == lines * len(responses or ("response",)):
+        references = ("reference",)
+    if responses is None and values.size == lines * len(references or ()):
+        responses = ("response",)
+    for found, what, names in ((responses, "responses", RESPONSES), (references, "references", REFERENCES)):
+        if found is None:
+            raise InputError(
+                f"no names of the {what}",
+                where=f"{store.source}: '{values.name}'",
+                value=values.shape,
+                remedy=f"give an array of texts named {' or '.join(names[:4])}",
+            )
+    assert responses is not None
+    assert references is not None
+    return responses, references
+
+
+def _names(store: Store, names: tuple[str, ...], near: str) -> tuple[str, ...] | None:
     for name in names:
         found = store.texts({name}, near)
         if found is not None:
@@ -154,11 +174,7 @@ def _names(store: Store, names: tuple[str, ...], what: str, near: str) -> tuple[
                 where = f"{store.source}: '{name}'"
                 raise InputError("a name that stands twice" if found else "no names", where=where, value=twice)
             return found
-    raise InputError(
-        f"no names of the {what}",
-        where=store.source,
-        remedy=f"give an array of texts named {' or '.join(names[:4])}",
-    )
+    return None
 
 
 def _order(
@@ -170,8 +186,8 @@ def _order(
     stated = hints.axes or store.texts({"axes", "dims", "dimensions"}, near)
     if stated is not None and len(stated) == len(shape) == 3:
         axes = stated
-    if len(shape) == 2 and 1 in wanted[1:]:
-        shape = (*shape, 1)
+    if len(shape) in (1, 2) and 1 in wanted[1:]:
+        shape = (*shape, *(1,) * (3 - len(shape)))
     if len(axes) == len(shape) == 3:
         kinds = ({*FREQUENCIES}, {*RESPONSES}, {*REFERENCES})
         named = [[i for i, axis in enumerate(axes) if axis.lower() in kind] for kind in kinds]

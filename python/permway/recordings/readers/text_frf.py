@@ -10,6 +10,7 @@ import numpy as np
 from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.recordings.readers import text_frf_wide
+from permway.recordings.readers.headers import clean_unit
 from permway.recordings.readers.hints import NO_HINTS, Hints
 from permway.recordings.readers.limits import MOST_BYTES
 from permway.recordings.readers.scales import hertz_in
@@ -87,16 +88,48 @@ def read_frf(
                 remedy="write every pair at the same frequencies",
             )
     order = np.array(list(rows.values()))
+    units = _row_units(table, rows, unit)
+    if units is not None and len(set(units)) == 1:
+        unit, units = units[0], None
     return FrfRecord(
         responses=tuple(pair[0] for pair in rows),
         references=tuple(pair[1] for pair in rows),
         frequency_Hz=axis,
         values=values[order],
         coherence=None if coherence is None else coherence[order],
-        unit=unit,
+        unit=unit if units is None else None,
+        units=units,
         averages=None,
         source=str(source),
     )
+
+
+def _row_units(
+    table: TableRecord, rows: dict[tuple[str, str], list[int]], header: str | None
+) -> tuple[str | None, ...] | None:
+    """The unit of each pair, of a column of units; None without such a column.
+
+    Raises
+    ------
+    InputError
+        If it changes within a pair, or is not what the header says.
+    """
+    named = _named(table, ("unit", "units"))
+    cells = table.columns[named[0]] if len(named) == 1 else None
+    if cells is None or isinstance(cells, np.ndarray):
+        return None
+    found: list[str | None] = []
+    for pair, at in rows.items():
+        where = f"{table.source}: '{named[0]}', {pair[0]} < {pair[1]}"
+        each = list(dict.fromkeys(cells[i].strip() for i in at))
+        if len(each) > 1:
+            remedy = "write each response in one unit"
+            raise InputError("several units of one response", where=where, value=each[:4], remedy=remedy)
+        unit = clean_unit(each[0])
+        if unit is not None and header is not None:
+            check_same(unit, header, where=where)
+        found.append(unit or header)
+    return tuple(found)
 
 
 def _named(table: TableRecord, names: tuple[str, ...]) -> list[str]:

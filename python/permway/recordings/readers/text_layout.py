@@ -30,6 +30,7 @@ _LINES_WEIGHED = 40
 Half or twice of it changes nothing in files of more than a hundred rows.
 """
 SEPARATOR_LINE = re.compile(r'"?sep=(.)"?\s*', re.IGNORECASE)
+_OCTAVE = re.compile(r"[#%] (?:Created by Octave|type: (?:\w+ )*(?:matrix|scalar|cell|struct|string|range)\b)")
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+")
 
 
@@ -91,6 +92,13 @@ def find_layout(source: Path, hints: Hints = NO_HINTS) -> Layout:
             kept.append((index, without_mark(line) if is_remark(line) else line))
             continue
         if is_remark(line):
+            if _OCTAVE.match(line):
+                raise InputError(
+                    "is text as Octave saves its variables, which is no table",
+                    where=f"{source}: line {index}",
+                    value=line[:80],
+                    remedy="save it in Octave by save -7, and give that as MAT",
+                )
             rate = rate.and_then(rate_in(without_mark(line), f"{source}: line {index}"))
             continue
         if index > skipped:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,6 +12,8 @@ from permway.errors import InputError
 _PIECE_BYTES = 2**20
 _LONGEST_LINE = 2**20
 _REMARKS = ("#", "%", "//")
+_MINUS = "\N{MINUS SIGN}"
+_FORTRAN = re.compile(r"\s*([-+]?(?:\d+[.,]?\d*|[.,]\d+))[dD]([-+]?\d{1,3})\s*")
 
 
 def numbered_lines(source: Path, encoding: str | None = None) -> Iterator[tuple[int, str]]:
@@ -30,11 +33,15 @@ def numbered_lines(source: Path, encoding: str | None = None) -> Iterator[tuple[
     if encoding is not None:
         yield from _as_said(source, encoding)
         return
-    count, rest, first = 0, b"", True
+    count, rest, first, old_mac = 0, b"", True, False
     with source.open("rb") as file:
         while piece := file.read(_PIECE_BYTES):
             if first:
                 piece, first = piece.removeprefix(b"\xef\xbb\xbf"), False
+                # Programs of old Macs, and Excel's "CSV (Macintosh)", end lines by a carriage return alone.
+                old_mac = b"\r" in piece and b"\n" not in piece
+            if old_mac:
+                piece = piece.replace(b"\r", b"\n")
             # Up to the last line's end; what follows is the beginning of the next piece.
             whole, end, rest = (rest + piece).rpartition(b"\n")
             if end:
@@ -53,7 +60,7 @@ def _as_said(source: Path, encoding: str) -> Iterator[tuple[int, str]]:
     try:
         with source.open(encoding=encoding, newline="\n") as file:
             for index, line in enumerate(iter(lambda: file.readline(_LONGEST_LINE), ""), start=1):
-                yield index, line.rstrip("\r\n").removeprefix("\ufeff")
+                yield index, line.rstrip("\r\n").removeprefix("\ufeff").replace(_MINUS, "-")
     except UnicodeError as error:
         remedy = "give the encoding in which it was written: utf-8, latin-1, cp1252 or utf-16"
         raise InputError(
@@ -70,7 +77,7 @@ def _decoded(raw: bytes, source: Path, before: int) -> list[str]:
         text = raw.decode("utf-8")
     except UnicodeDecodeError:
         text = raw.decode("latin-1")
-    return [line.rstrip("\r") for line in text.split("\n")]
+    return [line.rstrip("\r") for line in text.replace(_MINUS, "-").split("\n")]
 
 
 def is_remark(line: str) -> bool:
@@ -87,10 +94,16 @@ def without_mark(line: str) -> str:
 def is_number(cell: str) -> bool:
     """Whether a cell is a number, with point or comma, finite or not."""
     try:
-        float(cell.strip().strip('"').replace(",", ".", 1))
+        float(with_e(cell.strip().strip('"')).replace(",", ".", 1))
     except ValueError:
         return False
     return True
+
+
+def with_e(cell: str) -> str:
+    """A number of Fortran, as 1.2D-03, with E before its exponent; other cells as they are."""
+    found = _FORTRAN.fullmatch(cell) if "D" in cell or "d" in cell else None
+    return cell if found is None else f"{found[1]}E{found[2]}"
 
 
 def cells_of(line: str, separator: str | None) -> list[str]:

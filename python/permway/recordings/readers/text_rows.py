@@ -13,7 +13,7 @@ from permway.errors import InputError
 from permway.laws.textfile import number
 from permway.recordings.readers.clock import Clock, digits_of
 from permway.recordings.readers.text_layout import Layout
-from permway.recordings.readers.text_lines import is_remark, numbered_lines
+from permway.recordings.readers.text_lines import is_remark, numbered_lines, with_e
 from permway.recordings.readers.timebase import TimeBase, check_unsaid
 
 _PIECE_BYTES = 2**22
@@ -152,6 +152,7 @@ class Rows:
 
     def _cell(self, cell: str, place: str, clock: Clock | None) -> float:
         comma = self.layout.decimal_comma
+        cell = cell if clock is not None else with_e(cell)
         if clock is not None:
             try:
                 return clock(cell)
@@ -223,7 +224,7 @@ class Times:
         exponents = False
         for line in layout.sample:
             cells = layout.cells(line)
-            cell = cells[self.index] if self.index < len(cells) else ""
+            cell = with_e(cells[self.index]) if self.index < len(cells) else ""
             digits = re.fullmatch(r"[-+]?\d*(?:[.,](\d*))?(?:[eE]([-+]?\d{1,3}))?", cell)
             if digits is not None and cell:
                 power = int(digits[2] or 0) - len(digits[1] or "")
