@@ -13,7 +13,7 @@ from permway.laws import Springpot
 from permway.model.joints import GROUND, Joints
 from permway.posterior.diagnose import diagnose
 from permway.recordings.campaign import Campaign
-from simulated import simulate
+from simulated import CAMPAIGN, simulate
 
 Amend = Callable[[Campaign], Campaign]
 
@@ -74,3 +74,22 @@ def test_what_no_catalogue_has_is_described_at_its_place_and_gets_no_name(tmp_pa
 def test_the_answer_does_not_depend_on_how_many_processes_share_the_work(tmp_path: Path) -> None:
     campaign = simulate(tmp_path / "c", 34, amend=loud).campaign
     assert diagnose(campaign, threads=2).verdict == diagnose(campaign, threads=1).verdict
+
+
+def test_a_wrong_stated_value_is_said_with_the_value_that_fits(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All pads are softer by some 30 % than stated, at a tolerance of 5 %."""
+    stated = [
+        {**one, "tolerance_2sigma": 0.05} if one["name"] == "pad.k" else one for one in CAMPAIGN["parameters"]
+    ]
+    monkeypatch.setitem(CAMPAIGN, "parameters", stated)
+    made = simulate(tmp_path / "c", 1, amend=lambda campaign: weakened(campaign, "pad", 6.0, 40.0, 0.7))
+    verdict = diagnose(made.campaign, threads=1).verdict
+    assert [effect.name for effect in verdict.effects] == ["owner_value"]
+    found = verdict.recalibrated.after["pad.k"]
+    assert found.low is not None
+    assert found.high is not None
+    assert found.low < 0.7 * made.truth["pad.k"] < found.high
+    words = verdict.effects[0].law.words
+    assert "below the stated 3e+07 N/m" in words

@@ -63,7 +63,7 @@ def _of(known: Known, domain: Domain) -> Hypothesis:
 
 def _words(known: Known, deviations: float) -> str:
     """As an engineer says it: the value, how far it is from the stated one, and in standard deviations."""
-    value, unit = known.value(deviations), f" {known.parameter.unit}" if known.parameter.unit else ""
+    value, unit = known.value(deviations), "" if known.parameter.unit == "1" else f" {known.parameter.unit}"
     share = f"{abs(value / known.nominal - 1.0):.0%} {'below' if value < known.nominal else 'above'} "
     far = share if known.nominal > 0.0 else ""
     return (
