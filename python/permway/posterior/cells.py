@@ -32,6 +32,10 @@ WIDER = 4.0
 """Times the standard deviation that an entry states of the logarithm of its size: what is a factor of 2.5 of what
 engineers meet is a factor of 40 of what clean records show. Twice as much costs every such effect ln 2 nats."""
 
+SPREADS = (1.0, 1 / 4, 1 / 16, 1 / 64)
+"""Of what is many numbers about none, as factors of pads that scatter: over how far an entry states that they
+scatter, each equally likely. With one of them each number is paid for as if it were large."""
+
 SMALL = 0.03
 """Share of a start's size at which a small effect's direction is taken: resonances then move in proportion."""
 
@@ -79,7 +83,9 @@ def cells(base: Fit, ruled_out: Collection[str] = ()) -> list[Cell]:
     situations = list(_situations(base))
     for name, entry in {**entries(), **BESIDE}.items():
         if name not in ruled_out:
-            found = [widened(hypothesis) for hypothesis in _offered(entry, situations)]
+            found = [
+                scaled for hypothesis in _offered(entry, situations) for scaled in spread_out(widened(hypothesis))
+            ]
             if found:
                 offered[name] = found
     found_cells = []
@@ -167,6 +173,23 @@ def widened(hypothesis: Hypothesis) -> Hypothesis:
         free.append(replace(one, value=partial(_wider, one.value), limits=(min(low, -high), high / WIDER)))
         starts[:, index] /= WIDER
     return replace(hypothesis, free=tuple(free), starts=tuple(tuple(map(float, row)) for row in starts))
+
+
+def spread_out(hypothesis: Hypothesis) -> Iterator[Hypothesis]:
+    """The same with its many numbers about none scattering less, if it is such."""
+    alone = hypothesis.size or len(hypothesis.free) < 3
+    if alone or any(
+        f.value(0.0) != 0.0 or not math.isclose(f.value(-1.0), -f.value(1.0)) for f in hypothesis.free
+    ):
+        yield hypothesis
+        return
+    for spread in SPREADS:
+        free = tuple(replace(f, value=partial(_times, f.value, spread)) for f in hypothesis.free)
+        yield replace(hypothesis, free=free)
+
+
+def _times(value: Callable[[float], float], factor: float, z: float) -> float:
+    return factor * value(z)
 
 
 def _wider(value: Callable[[float], float], z: float) -> float:
