@@ -16,7 +16,8 @@ from permway.diagnosis.gather import first_size, gather
 from permway.diagnosis.speeds import begin
 from permway.diagnosis.tangent import Problem
 from permway.posterior.covariance import Frame
-from permway.posterior.fit import Fit, Fitter, Model, estimated
+from permway.posterior.estimate import estimated
+from permway.posterior.fit import Fit, Fitter, Model
 from permway.recordings.campaign import Campaign, read_campaign
 from permway.recordings.campaign_load import Dataset
 from permway.recordings.predict import predict
