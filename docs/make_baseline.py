@@ -42,9 +42,8 @@ Both methods call nothing, or next to nothing, where nothing is missing. **The f
 on layouts that it was not made on, it names pads at the point struck falsely, and its intervals are too narrow
 where errors are rough. Campaigns that state no parameter ended in an error; they count as failed, and are mended
 since. **The second method finds more and names more rightly, but its names are less sure than it says**: of those
-with 0.9 and more, a sixth is false. Most of these stand beside a right one, or for pads that all differ by some
-tenths of a percent, which it takes for a few that are weak. It takes longer: a whole campaign with trains was not
-done after ten minutes of processor.
+with 0.9 and more, a tenth is false. Half of these blame a channel's noise for the little that a model still lacks.
+It takes longer: a whole campaign with trains was not done after nine minutes of processor.
 """
 
 
