@@ -46,8 +46,8 @@ with 0.9 and more, a tenth is false. Half of these blame a channel's noise for t
 It takes longer: a whole campaign with trains was not done after nine minutes of processor.
 
 The second method was developed with the fixture's seeds. Four of the small campaigns below were looked at when its
-prior of uneven pads was set. Before that, on all 160, the class held the truth in 46 of 52 above a deviance of 200,
-4 names were false, and 52 of 63 names with 0.9 and more were true.
+prior of uneven pads was set. Before that, on all 160, the class held the truth in 46 of 52 above a deviance of
+200, 4 names were false, and 52 of 63 names with 0.9 and more were true.
 """
 
 
