@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from permway.challenge.errors_of_measurement import struck
 from permway.diagnosis.blocks_noise import FEWEST, NoiseBlock
 from permway.diagnosis.catalogue import noise_floor
@@ -21,6 +22,7 @@ from permway.diagnosis.recalibrate import recalibrate
 from permway.laws.toml import to_toml
 from permway.recordings.campaign import Campaign, read_campaign
 from permway.recordings.predict import predict
+from scipy import stats
 from simulated import BLOWS, CAMPAIGN, FREQUENCY, MODEL
 
 PLACES = [("rail", 6.0), ("rail", 9.0), ("deck", 3.0), ("deck", 6.0), ("deck", 8.0), ("deck", 10.5)]
@@ -140,3 +142,17 @@ def test_a_sensor_of_which_noise_tells_little_is_taken_to_wander_as_its_kind_doe
     assert told[evidence.whitener.of_origin() == origins.index(f"sensor {NOISY}")].sum() < 2.5
     assert others == pytest.approx(0.1, rel=0.4)
     assert sizes[NOISY] == pytest.approx(others, rel=0.3)
+
+
+@pytest.mark.parametrize("count", [5, 9])
+def test_a_few_sensors_tell_the_scale_as_loosely_as_student_has_it(count: int, tmp_path: Path) -> None:
+    """Odds of a distance against none are those of Student's density."""
+    (block,) = blocks_of(gather(campaign(tmp_path, 1, 1.0)))
+    heavy = block.as_student()
+    heavy.own, heavy.scatter = np.linspace(-6.0, 6.0, count), 1.0
+    nothing = xr.Dataset({"noise_factor": ("sensor", np.ones(count))})
+    density = stats.t(count - 1)
+    assert -0.5 * heavy.deviations(nothing) ** 2 == pytest.approx(
+        density.logpdf(heavy.own) - density.logpdf(0.0), rel=1e-12
+    )
+    assert np.array_equal(np.sign(heavy.deviations(nothing)), np.sign(heavy.own))

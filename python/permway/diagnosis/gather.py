@@ -16,7 +16,7 @@ from permway.diagnosis.blocks_passage import PassageBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
 from permway.diagnosis.evidence import Evidence
-from permway.diagnosis.thinning import thinned
+from permway.diagnosis.thinning import LINES_PER_FREQUENCY, thinned
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import Dataset
@@ -68,16 +68,30 @@ def predictable(campaign: Campaign, *, screened: bool = True) -> Readable:
 
 
 def gather(
-    campaign: Campaign, datasets: Sequence[Dataset] | None = None, *, threads: int | None = None
+    campaign: Campaign,
+    datasets: Sequence[Dataset] | None = None,
+    *,
+    threads: int | None = None,
+    lines: float = LINES_PER_FREQUENCY,
 ) -> Evidence:
     """Read a campaign's records and make them ready to be held against models.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    datasets : sequence of Dataset, optional
+        By default those of the campaign's files.
+    threads : int, optional
+        Of the solver.
+    lines : float
+        Of a frequency response within its own frequency, at most.
 
     Raises
     ------
     InputError
         From reading, or for a record that cannot be predicted.
     """
-    evidence = _blocked(campaign, campaign.load() if datasets is None else datasets, threads)
+    evidence = _blocked(campaign, campaign.load() if datasets is None else datasets, threads, lines)
     origins = evidence.columns.origins
     return evidence.with_sizes({o.name: 1.0 if o.fixed else first_size(campaign, o.name) for o in origins})
 
@@ -91,9 +105,11 @@ def evidence_of(campaign: Campaign, datasets: Sequence[Dataset], like: Evidence)
     return evidence.with_sizes(sizes, like.length)
 
 
-def _blocked(campaign: Campaign, datasets: Sequence[Dataset], threads: int | None) -> Evidence:
+def _blocked(
+    campaign: Campaign, datasets: Sequence[Dataset], threads: int | None, lines: float = LINES_PER_FREQUENCY
+) -> Evidence:
     """Evidence whose smooth errors have no sizes yet."""
-    loaded = [thinned(dataset) for dataset in datasets]
+    loaded = [thinned(dataset, lines) for dataset in datasets]
     predicted = predict(campaign, loaded, threads=threads)
     spans = _spans(loaded)
     blocks = [
@@ -106,7 +122,9 @@ def _blocked(campaign: Campaign, datasets: Sequence[Dataset], threads: int | Non
                 where=f"records.{block.dataset.record.name}",
                 remedy="look at its coherence, its units and its band",
             )
-    blocks += [NoiseBlock(dataset) for dataset in loaded if NoiseBlock.tells(dataset)]
+    # Of several tests by the same sensors each has the same noise.
+    tests = {tuple(d.names("sensor")): d for d in reversed(loaded) if NoiseBlock.tells(d)}
+    blocks += [NoiseBlock(dataset) for dataset in tests.values()]
     return Evidence(campaign, tuple(blocks), {}, threads=threads)
 
 

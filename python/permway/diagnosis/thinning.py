@@ -12,8 +12,8 @@ LINES_PER_FREQUENCY = 40.0
 """Lines of a frequency response within its own frequency, at most."""
 
 
-def thinned(dataset: Dataset) -> Dataset:
-    """Frequency responses on lines no closer than 1/LINES_PER_FREQUENCY of their frequency.
+def thinned(dataset: Dataset, lines: float = LINES_PER_FREQUENCY) -> Dataset:
+    """Frequency responses on lines no closer than 1/lines of their frequency.
 
     What lies closer says nothing new of a structure with loss factors above that.
     """
@@ -22,7 +22,7 @@ def thinned(dataset: Dataset) -> Dataset:
     frequency = dataset.data["frequency"].values
     kept, last = [], -np.inf
     for index, value in enumerate(frequency):
-        if value - last >= value / LINES_PER_FREQUENCY * (1.0 - 1e-9):
+        if value - last >= value / lines * (1.0 - 1e-9):
             kept.append(index)
             last = value
     return replace(dataset, data=dataset.data.isel(frequency=kept))
