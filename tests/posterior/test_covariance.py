@@ -32,7 +32,8 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Frame:
 def dense(frame: Frame, hyper: Hyper) -> np.ndarray:
     """Noise, discrepancy and what all processes and columns do, as one matrix."""
     weights = frame.covariance(hyper).weights
-    whole = np.diag(1.0 / weights) + frame.columns @ frame.columns.T
+    whole = np.diag(1.0 / weights)
+    whole[np.ix_(frame.spanned, frame.spanned)] += frame.columns @ frame.columns.T
     for chains in frame.chains:
         diagonal, below, _ = chains.nodes.precision(hyper["length"])
         count, states, kinds = chains.nodes.x.size, diagonal.shape[1], len(chains.kinds)

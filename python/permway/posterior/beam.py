@@ -136,16 +136,18 @@ def advanced(
         Called with how many are begun.
     """
     fixed = len(root.fit.model.free)
+    # Most trials have the same hyperparameters: what these make of the slopes is found once.
+    likely = {t.hyper.log.tobytes(): replace(root.fit, hyper=t.hyper) for t in trials}
+    for fit in likely.values():
+        _ = fit.roots
 
     def work(trial: Trial) -> Trial | None:
         hypothesis = trial.cell.hypothesis
         own = slice(fixed, fixed + len(hypothesis.free))
-        # Slopes of what was there before the amendment serve as long as they lead somewhere.
-        blank = np.zeros((root.fit.jacobian.shape[0], len(hypothesis.free)))
-        slopes = np.hstack([root.fit.jacobian, blank])
         try:
-            fit = fitter.begin(_model(root, trial.cell), trial.z, trial.hyper, slopes, trial.bend)
-            fit = fitter.fit(fitter.settled(fit, fixed=fixed), steps=steps, fixed=fixed)
+            # Slopes of what was there before the amendment serve as long as they lead somewhere.
+            fit = fitter.grown(likely[trial.hyper.log.tobytes()], _model(root, trial.cell), trial.z, trial.bend)
+            fit = fitter.fit(fit, steps=steps, fixed=fixed)
             if moves:
                 fit = rested(fitter, fitter.settled(fit), own, hypothesis, steps)
         except (InputError, SolveError):

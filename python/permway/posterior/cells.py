@@ -10,6 +10,7 @@ from functools import partial
 from typing import cast
 
 import numpy as np
+from scipy.special import ndtr, ndtri
 
 from permway.arrays import Reals
 from permway.diagnosis.catalogue import entries
@@ -24,6 +25,13 @@ from permway.posterior.fit import Fit
 
 SPACING_M = 1.0
 """Between places along a body, m: a third of what the places' priors span."""
+
+BEYOND = 2.0**0.5
+"""Factor beyond the ends of the records' band that a resonator's frequency may lie at: it still shows there."""
+
+APART = 0.4
+"""Octaves between frequencies at which a resonator is begun. A peak is narrower, but at a discrepancy of 1 a fit
+reaches it from as far as that."""
 
 BAND_HZ, BANDS = (8.0, 200.0), 24
 """What a place that was not scanned is handed on with: frequencies where nothing stands out."""
@@ -81,10 +89,14 @@ def cells(base: Fit, ruled_out: Collection[str] = ()) -> list[Cell]:
     """
     offered: dict[str, list[Hypothesis]] = {}
     situations = list(_situations(base))
+    frequency = base.frame.evidence.rows.frequency_Hz
+    band = float(frequency.min()) / BEYOND, float(frequency.max()) * BEYOND
     for name, entry in {**entries(), **BESIDE}.items():
         if name not in ruled_out:
             found = [
-                scaled for hypothesis in _offered(entry, situations) for scaled in spread_out(widened(hypothesis))
+                scaled
+                for hypothesis in _offered(entry, situations)
+                for scaled in spread_out(widened(hypothesis if name == generic.ID else tuned(hypothesis, band)))
             ]
             if found:
                 offered[name] = found
@@ -164,15 +176,41 @@ def widened(hypothesis: Hypothesis) -> Hypothesis:
     free = []
     starts = np.array(hypothesis.starts, dtype=np.float64)
     for index, one in enumerate(hypothesis.free):
-        ends = [one.value(z) for z in (0.0, 1.0, 2.0)]
-        logarithmic = ends[0] > 0.0 and math.isclose(ends[1] ** 2, ends[0] * ends[2], rel_tol=1e-9)
-        if one.name != hypothesis.size or hypothesis.none != 0.0 or not logarithmic:
+        if one.name != hypothesis.size or hypothesis.none != 0.0 or not _logarithmic(one):
             free.append(one)
             continue
         low, high = one.limits
         free.append(replace(one, value=partial(_wider, one.value), limits=(min(low, -high), high / WIDER)))
         starts[:, index] /= WIDER
     return replace(hypothesis, free=tuple(free), starts=tuple(tuple(map(float, row)) for row in starts))
+
+
+def tuned(hypothesis: Hypothesis, band_Hz: tuple[float, float]) -> Hypothesis:
+    """The same with a frequency of its own anywhere in a band, evenly likely in its logarithm.
+
+    An entry states the frequencies that engineers met; a damper may be tuned to any.
+    """
+    at = next((i for i, f in enumerate(hypothesis.free) if f.name == "frequency_Hz" and _logarithmic(f)), None)
+    if at is None:
+        return hypothesis
+    free = list(hypothesis.free)
+    free[at] = replace(free[at], value=partial(_between, band_Hz), limits=(-4.0, 4.0))
+    low, high = np.log2(band_Hz)
+    count = max(1, round((high - low) / APART))
+    places = ndtri((np.arange(count) + 0.5) / count)
+    others = dict.fromkeys((start[:at], start[at + 1 :]) for start in hypothesis.starts)
+    starts = tuple((*before, float(z), *after) for before, after in others for z in places)
+    return replace(hypothesis, free=tuple(free), starts=starts)
+
+
+def _between(band: tuple[float, float], z: float) -> float:
+    return float(band[0] * (band[1] / band[0]) ** float(ndtr(z)))
+
+
+def _logarithmic(free: Free) -> bool:
+    """Whether its values go with the exponential of z."""
+    ends = [free.value(z) for z in (0.0, 1.0, 2.0)]
+    return ends[0] > 0.0 and math.isclose(ends[1] ** 2, ends[0] * ends[2], rel_tol=1e-9)
 
 
 def spread_out(hypothesis: Hypothesis) -> Iterator[Hypothesis]:

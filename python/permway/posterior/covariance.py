@@ -11,6 +11,7 @@ from scipy import linalg
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.blocks_noise import NoiseBlock
 from permway.diagnosis.blocks_passage import PassageBlock
 from permway.diagnosis.blocks_spectra import LEVEL, SpectraBlock
 from permway.diagnosis.evidence import Evidence, Solved
@@ -37,8 +38,10 @@ class Frame:
     evidence : Evidence
         Records as residuals whitened by their noise.
     chains : list of Chains
-    columns : ndarray, shape (n, b)
+    columns : ndarray, shape (m, b)
         Errors of unit variance that act by few columns: an irregularity's level, tables.
+    spanned : ndarray of int, shape (m,)
+        The rows that they act on.
     sigma : ndarray, shape (n,)
         Of each row's noise, neper.
     statistic : ndarray of str, shape (n,)
@@ -48,6 +51,7 @@ class Frame:
     evidence: Evidence
     chains: tuple[Chains, ...]
     columns: Reals
+    spanned: np.ndarray
     sigma: Reals
     statistic: np.ndarray
 
@@ -61,7 +65,9 @@ class Frame:
         )
         sigma = NEPER_PER_DB * np.concatenate([b.rows.scale_dB for b in blocks])
         columns = _columns(evidence, blocks)
-        return Frame(evidence, tuple(chains_of(blocks)), columns, np.maximum(sigma, 1e-9), statistic)
+        spanned = np.flatnonzero(np.any(columns, axis=1))
+        chains = tuple(chains_of(blocks))
+        return Frame(evidence, chains, columns[spanned], spanned, np.maximum(sigma, 1e-9), statistic)
 
     def about(self, solved: Solved, covariance: Covariance, residuals: Reals) -> Frame:
         """The same records weighed by what a fit predicts and by the errors of chains that it leaves.
@@ -122,7 +128,9 @@ class Frame:
 
 
 def _bare(block: Block) -> Block:
-    """Without the errors that the discrepancy stands for."""
+    """Without the errors that the discrepancy stands for, and without tails that are too light."""
+    if isinstance(block, NoiseBlock):
+        return block.as_student()
     if isinstance(block, FrfBlock):
         return block.with_floor(FLOOR).with_pair(PAIR)
     return block.with_floor(FLOOR) if isinstance(block, PassageBlock) else block
@@ -174,6 +182,14 @@ class Roots:
     above: Reals
     below: Reals
 
+    def beside(self, more: Roots) -> Roots:
+        """With further columns."""
+        return Roots(np.hstack([self.above, more.above]), np.hstack([self.below, more.below]))
+
+    def first(self, count: int) -> Roots:
+        """Of the first so many columns."""
+        return Roots(self.above[:, :count], self.below[:, :count])
+
     def times(self, other: Roots) -> Reals:
         """Inner products with other columns, shape (k, other's k)."""
         return np.asarray(self.above.T @ other.above - self.below.T @ other.below)
@@ -197,9 +213,22 @@ class Covariance:
 
     @cached_property
     def _spanned(self) -> tuple[Roots, Reals]:
-        """Of the columns: themselves, and the factor of their part."""
-        columns = self._of_chains(self.frame.columns)
-        return columns, linalg.cholesky(columns.times(columns) + np.eye(columns.below.shape[1]), lower=True)
+        """Of the columns: themselves at their rows, and the factor of their part."""
+        rows, columns = self.frame.spanned, self.frame.columns
+        above = np.sqrt(self.weights[rows])[:, None] * columns
+        weighted = np.zeros((self.weights.size, columns.shape[1]))
+        weighted[rows] = np.sqrt(self.weights[rows])[:, None] * above
+        below = []
+        for f in self.factors:
+            mine = weighted[f.chains.local]
+            met = bool(mine.any())
+            below.append(f.half(mine) if met else np.zeros((f.chains.parts * f.chains.size, mine.shape[1])))
+        roots = Roots(above, np.concatenate([np.zeros((0, columns.shape[1])), *below]))
+        return roots, linalg.cholesky(roots.times(roots) + np.eye(columns.shape[1]), lower=True)
+
+    def _across(self, found: Roots) -> Reals:
+        """Inner products of the columns with others of which these are the roots."""
+        return self._spanned[0].times(Roots(found.above[self.frame.spanned], found.below))
 
     def _of_chains(self, values: Reals) -> Roots:
         root = np.sqrt(self.weights)[:, None]
@@ -212,8 +241,7 @@ class Covariance:
         found = self._of_chains(values)
         if not self.frame.columns.shape[1]:
             return found
-        spanned, lower = self._spanned
-        beside = linalg.solve_triangular(lower, spanned.times(found), lower=True)
+        beside = linalg.solve_triangular(self._spanned[1], self._across(found), lower=True)
         return Roots(found.above, np.concatenate([found.below, beside]))
 
     def errors(self, residuals: Reals) -> Reals:
@@ -233,9 +261,10 @@ class Covariance:
         """Inverse times values, shape (n, k)."""
         found = self._without_columns(values)
         if self.frame.columns.shape[1]:
-            spanned, lower = self._spanned
-            inner = linalg.cho_solve((lower, True), spanned.times(self._of_chains(values)))
-            found -= self._without_columns(self.frame.columns @ inner)
+            inner = linalg.cho_solve((self._spanned[1], True), self._across(self._of_chains(values)))
+            taken = np.zeros_like(values)
+            taken[self.frame.spanned] = self.frame.columns @ inner
+            found -= self._without_columns(taken)
         return found
 
     def _without_columns(self, values: Reals) -> Reals:

@@ -27,6 +27,12 @@ from permway.posterior.masses import Masses
 from permway.posterior.search import explored
 from permway.recordings.campaign import Campaign
 
+FEW_LINES = 10.0
+"""Lines of a frequency response within its own frequency with which large changes are looked for."""
+
+MANY = 10_000
+"""Residuals from which that saves time: of fewer, most of the time is not theirs."""
+
 
 @one_thread_of_blas()
 def diagnose(
@@ -58,7 +64,10 @@ def diagnose(
     clock("read")
     kept, left_out, bad = predictable(campaign)
     frame = Frame.of(gather(campaign, kept, threads=threads))
-    masses = Masses.of(explored(Fitter(frame), ruled_out=ruled_out, progress=clock))
+    few = None
+    if frame.sigma.size > MANY:
+        few = Fitter(Frame.of(gather(campaign, kept, threads=threads, lines=FEW_LINES)))
+    masses = Masses.of(explored(Fitter(frame), few, ruled_out=ruled_out, progress=clock))
     base = as_base(masses.empty.fit)
     mixed = mislabelled(base)
     clock("hold out")

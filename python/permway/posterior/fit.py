@@ -74,6 +74,8 @@ class Fit:
         Slopes of the residuals at, or near, the state.
     bend : ndarray, shape (h, h), optional
         Curvature of the objective by the logarithms of hyperparameters, as it was met where they were estimated.
+    exact : bool
+        Whether all slopes are those at the state.
     """
 
     model: Model
@@ -82,6 +84,7 @@ class Fit:
     state: State
     jacobian: Reals
     bend: Reals | None = None
+    exact: bool = False
 
     @cached_property
     def covariance(self) -> Covariance:
@@ -131,6 +134,19 @@ class Fit:
         """By name."""
         return self.model.values(self.z)
 
+    def only(self, statistic: str) -> Fit:
+        """The same fit of one kind of record alone."""
+        blocks = self.frame.evidence.blocks
+        kept = [i for i, block in enumerate(blocks) if block.dataset.record.statistic == statistic]
+        rows = np.isin(self.frame.evidence.block_of, kept)
+        frame = Frame.of(self.frame.evidence.with_blocks(tuple(blocks[i] for i in kept)))
+        solved = self.state.solved
+        solved = replace(
+            solved, needs=tuple(solved.needs[i] for i in kept), datasets=[solved.datasets[i] for i in kept]
+        )
+        state = State(self.z, solved, self.state.deviations[rows])
+        return replace(self, frame=frame, state=state, jacobian=self.jacobian[rows])
+
 
 def grown(fit: Fit, hypothesis: Hypothesis, prefix: str) -> Model:
     """A fit's model with an amendment more, whose parameters' names get a prefix."""
@@ -154,6 +170,27 @@ class Fitter:
     def __init__(self, frame: Frame) -> None:
         self.frame = frame
 
+    def grown(self, fit: Fit, model: Model, z: Reals, bend: Reals | None) -> Fit:
+        """A model with further parameters at some values, with slopes of a smaller one's and of the new ones.
+
+        Parameters
+        ----------
+        fit : Fit
+            Of the smaller model, with the hyperparameters that are wanted.
+        model : Model
+        z : ndarray
+        bend : ndarray, optional
+
+        Raises
+        ------
+        InputError
+            If the model cannot be solved there.
+        """
+        blank = np.zeros((fit.jacobian.shape[0], z.size - fit.z.size))
+        new = self.begin(model, z, fit.hyper, np.hstack([fit.jacobian, blank]), bend)
+        new.__dict__["covariance"], new.__dict__["roots"] = fit.covariance, fit.roots
+        return self.settled(new, fixed=fit.z.size)
+
     def begin(
         self, model: Model, z: Reals, hyper: Hyper, jacobian: Reals | None = None, bend: Reals | None = None
     ) -> Fit:
@@ -169,7 +206,7 @@ class Fitter:
         if state is None:
             raise InputError("the model cannot be solved there", where="start", value=z.tolist())
         slopes = problem.jacobian(state) if jacobian is None else jacobian
-        return Fit(model, self.frame, hyper, state, slopes, bend)
+        return Fit(model, self.frame, hyper, state, slopes, bend, jacobian is None)
 
     def fit(self, start: Fit, *, steps: int, fixed: int = 0) -> Fit:
         """Descend by at most so many steps.
@@ -217,20 +254,29 @@ class Fitter:
 
     def settled(self, fit: Fit, *, fixed: int = 0) -> Fit:
         """With slopes taken where it is, but for the first so many parameters."""
+        if fit.exact:
+            return fit
         return self.sloped(Problem(self.frame.evidence, fit.model.build, fit.model.free), fit, fixed)
 
     def sloped(self, problem: Problem, fit: Fit, fixed: int) -> Fit:
         """With slopes of all parameters after the first so many taken where it is."""
         if not fixed:
-            return replace(fit, jacobian=problem.jacobian(fit.state))
+            new = replace(fit, jacobian=problem.jacobian(fit.state), exact=True)
+            new.__dict__["covariance"] = fit.covariance
+            return new
         columns = problem.columns(fit.state, range(fixed, len(fit.model.free)))
-        return replace(fit, jacobian=np.hstack([fit.jacobian[:, :fixed], columns]))
+        new = replace(fit, jacobian=np.hstack([fit.jacobian[:, :fixed], columns]), exact=False)
+        new.__dict__["covariance"] = fit.covariance
+        if "roots" in fit.__dict__:
+            # What the slopes that are kept make of the covariance is known.
+            new.__dict__["roots"] = fit.roots.first(fixed).beside(fit.covariance.roots(columns))
+        return new
 
     def _tried(self, problem: Problem, fit: Fit, z: Reals) -> Fit | None:
         state = problem.at(z, fit.state.solved)
         if state is None:
             return None
-        new = replace(fit, state=state)
+        new = replace(fit, state=state, exact=False)
         for known in ("covariance", "roots", "normal"):
             new.__dict__[known] = getattr(fit, known)
         return new

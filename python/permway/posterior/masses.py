@@ -65,9 +65,10 @@ class Masses:
         return self.empty if self.unamended >= LIKELY else self.members[0]
 
     def names(self, index: int) -> list[tuple[str, float]]:
-        """Names that one amendment of the best set may have, the others of the set as they are; they sum to 1.
+        """Names that one amendment of the best set may have, the others of the set as they are.
 
-        Those of other sets with as many amendments of which all others bear the same names.
+        Those of other sets with as many amendments of which all others bear the same names. They sum to the
+        probability that something is missing.
         """
         best = self.best
         others = sorted(a.entry for i, a in enumerate(best.amendments) if i != index)
@@ -86,7 +87,8 @@ class Masses:
         novel = best.fit.hyper.novel
         found = {name: (1.0 - novel) * w / known for name, w in weight.items()} if known > 0.0 else {}
         found[NOVEL] = found.get(NOVEL, 0.0) + (novel if found else 1.0)
-        return sorted([one for one in found.items() if one[1] >= SHOWN], key=lambda one: -one[1])
+        missing = 1.0 - self.nothing
+        return sorted([(n, missing * p) for n, p in found.items() if p >= SHOWN], key=lambda one: -one[1])
 
 
 def _coarse(member: Member) -> float:

@@ -8,7 +8,7 @@ the end each set of amendments is given its own most probable hyperparameters.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -65,41 +65,91 @@ MOST = 3
 
 
 def explored(
-    fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progress = lambda *_: None
+    fitter: Fitter,
+    few: Fitter | None = None,
+    *,
+    ruled_out: Collection[str] = (),
+    progress: Progress = lambda *_: None,
 ) -> list[Member]:
     """All sets of amendments that were fitted to the end, the most probable first; the empty set is among them.
 
     Parameters
     ----------
     fitter : Fitter
+    few : Fitter, optional
+        Of fewer lines of the same records. Large changes are looked for with these, as they show there, too; what
+        is found is then fitted to all lines.
     ruled_out : collection of str
     progress : callable
         Called with what is done, and how much of it.
     """
     campaign = fitter.frame.evidence.campaign
     nominal = Model(campaign.with_values, free_parameters(campaign))
-    coarse = fitter.frame.first().with_discrepancy(LEVELS[0])
-    z = _first_values(fitter, nominal)
-    start = fitter.begin(nominal, z, coarse)
-    fitter, (first,) = _weighed(fitter, [_annealed(fitter, start)], [()])
-    start = fitter.begin(nominal, z, coarse)
-    empty = Member((), first, ())
-    members = [empty]
-    far = Member((), start, ())
-    for count in range(1, MOST + 1):
-        best = members[0]
-        what = f"{count} amendment{'s' if count > 1 else ''}"
-        lacking = best.fit.hyper.novel > LACKING
-        found = [] if lacking else _near(fitter, best, ruled_out, progress, what)
-        # What the nominal parameters took up shows about their stated values only.
-        if lacking or count == 1:
-            root = far if count == 1 else best
-            found += _far(fitter, root, ruled_out, progress, what, WIDTHS if lacking else FEW)
-        fitter, members = _ordered(fitter, best, [*members, *found], empty.fit.model)
-        # A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it.
-        if len(members[0].amendments) < count:
-            break
-    return _apart(members)
+    searching = few or fitter
+    coarse = searching.frame.first().with_discrepancy(LEVELS[0])
+    z = _first_values(searching, nominal)
+    start = searching.begin(nominal, z, coarse)
+    searching, (first,) = _weighed(searching, [_annealed(searching, start)], [()])
+    far = Member((), searching.begin(nominal, z, coarse), ())
+    looked = _Look(nominal, far, near=few is None, ruled_out=ruled_out, progress=progress)
+    searching, members = looked.extended(searching, [Member((), first, ())])
+    if few is None:
+        return _apart(members)
+    fitter, members = _carried(fitter, members)
+    looked = _Look(nominal, None, near=True, ruled_out=ruled_out, progress=progress)
+    return _apart(looked.extended(fitter, members)[1])
+
+
+@dataclass(frozen=True)
+class _Look:
+    """How sets are extended.
+
+    Attributes
+    ----------
+    nominal : Model
+    far : Member, optional
+        The empty set about the stated values, for what the nominal parameters took up shows there only.
+    near : bool
+        Whether small changes are tried.
+    ruled_out : collection of str
+    progress : callable
+    """
+
+    nominal: Model
+    far: Member | None
+    near: bool
+    ruled_out: Collection[str]
+    progress: Progress
+
+    def extended(self, fitter: Fitter, members: list[Member]) -> tuple[Fitter, list[Member]]:
+        """Sets with an amendment more than the best, as long as one is better, in records that it weighs."""
+        while len(members[0].amendments) < MOST:
+            best = members[0]
+            count = len(best.amendments) + 1
+            what = f"{count} amendment{'s' if count > 1 else ''}"
+            lacking = best.fit.hyper.novel > LACKING
+            found = []
+            if self.near and not lacking:
+                found += _near(fitter, best, self.ruled_out, self.progress, what)
+            root = self.far if count == 1 else None
+            if lacking or root is not None:
+                widths = WIDTHS if lacking else FEW
+                found += _far(fitter, root or best, self.ruled_out, self.progress, what, widths)
+            fitter, members = _ordered(fitter, best, [*members, *found], self.nominal)
+            # A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it.
+            if len(members[0].amendments) < count:
+                break
+        return fitter, members
+
+
+def _carried(fitter: Fitter, members: Sequence[Member]) -> tuple[Fitter, list[Member]]:
+    """Sets fitted to more lines of the records, the most probable first; these tell them farther apart."""
+    kept = [m for m in members if m.log_mass > members[0].log_mass - 0.5 * LEFT or not m.amendments]
+    begun = [fitter.begin(m.fit.model, m.fit.z, m.fit.hyper, bend=m.fit.bend) for m in kept]
+    best = finished(fitter, begun[0], kept[0].amendments)
+    fitter, fits = _weighed(fitter, [best, *begun[1:]], [m.amendments for m in kept])
+    found = [replace(m, fit=fit) for m, fit in zip(kept, fits, strict=True)]
+    return fitter, sorted(found, key=lambda m: -m.log_mass)
 
 
 def _ordered(
