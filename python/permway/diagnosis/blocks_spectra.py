@@ -184,6 +184,17 @@ class SpectraBlock:
                 found.append((np.log(np.maximum(rest, 1e-12)) - mean_of_logarithm(self.averages - 1.0)) / sigma)
         return np.concatenate(found)
 
+    @property
+    def unshared(self) -> Reals:
+        """What a neper more of all that channels do not share does to the deviations, (n,)."""
+        found = []
+        for what, _, _, at, sigma in self._parts:
+            found.extend([np.zeros(at.size)] * (1 + (what == "transfer")))
+            if what == "rest":
+                found[-1] = 1.0 / sigma
+        column = np.concatenate(found)
+        return column if self._apart is None else np.asarray(self._apart @ column)
+
     def levels_dB(self, predicted: xr.Dataset) -> Reals:
         """See :class:`permway.diagnosis.blocks.Block`; imaginary parts of transfers are phases."""
         parts = []

@@ -101,9 +101,8 @@ class Trial:
     log_evidence: float = -np.inf
 
     @staticmethod
-    def of(root: Member, cell: Cell, discrepancy: float | None = None) -> Trial:
-        """Where the first look has it, by default with the hyperparameters of the smaller set."""
-        hyper = root.fit.hyper if discrepancy is None else root.fit.hyper.with_discrepancy(discrepancy)
+    def of(root: Member, cell: Cell, hyper: Hyper) -> Trial:
+        """Where the first look has it."""
         return Trial(cell, np.concatenate([root.fit.z, cell.z]), hyper, root.fit.bend)
 
     def with_discrepancy(self, value: float) -> Trial:

@@ -96,7 +96,9 @@ def cells(base: Fit, ruled_out: Collection[str] = ()) -> list[Cell]:
             found = [
                 scaled
                 for hypothesis in _offered(entry, situations)
-                for scaled in spread_out(widened(hypothesis if name == generic.ID else tuned(hypothesis, band)))
+                for scaled in spread_out(
+                    begun(widened(hypothesis if name == generic.ID else tuned(hypothesis, band)))
+                )
             ]
             if found:
                 offered[name] = found
@@ -166,6 +168,18 @@ def coordinate(free: Free, value: float) -> float | None:
         else:
             high = middle
     return 0.5 * (low + high)
+
+
+def begun(hypothesis: Hypothesis) -> Hypothesis:
+    """The same with starts on either side, in place of those at which there is nothing: no look tells of these."""
+    at = next((i for i, f in enumerate(hypothesis.free) if f.name == hypothesis.size), None)
+    if at is None:
+        return hypothesis
+    starts: list[tuple[float, ...]] = []
+    for start in hypothesis.starts:
+        away = (0.0,) if hypothesis.free[at].value(start[at]) != hypothesis.none else (-1.0, 1.0)
+        starts.extend((*start[:at], start[at] + side, *start[at + 1 :]) for side in away)
+    return replace(hypothesis, starts=tuple(starts))
 
 
 def widened(hypothesis: Hypothesis) -> Hypothesis:

@@ -6,9 +6,10 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
+from permway.diagnosis.advise import advise
 from permway.diagnosis.catalogue import known
 from permway.diagnosis.clock import Clock, Progress
-from permway.diagnosis.compare import assemble
+from permway.diagnosis.compare import RECALIBRATED, assemble
 from permway.diagnosis.fit import WIDTH
 from permway.diagnosis.fit import Fit as Base
 from permway.diagnosis.gather import gather, predictable
@@ -17,10 +18,12 @@ from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.result import Candidate, Diagnosis
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.speak_measurement import mixed_up, with_spoilt
-from permway.diagnosis.verdict_parts import Moved
+from permway.diagnosis.verdict import RIGHT, Verdict
+from permway.diagnosis.verdict_parts import Moved, NextMeasurement
 from permway.posterior.answer import verdict_of
 from permway.posterior.beam import Member
 from permway.posterior.covariance import Frame
+from permway.posterior.detectable import detectable
 from permway.posterior.fit import Fit, Fitter
 from permway.posterior.held_out import gains
 from permway.posterior.masses import Masses
@@ -67,7 +70,8 @@ def diagnose(
     few = None
     if frame.sigma.size > MANY:
         few = Fitter(Frame.of(gather(campaign, kept, threads=threads, lines=FEW_LINES)))
-    masses = Masses.of(explored(Fitter(frame), few, ruled_out=ruled_out, progress=clock))
+    search = explored(Fitter(frame), few, ruled_out=ruled_out, progress=clock)
+    masses = Masses.of(search.members)
     base = as_base(masses.empty.fit)
     mixed = mislabelled(base)
     clock("hold out")
@@ -79,6 +83,10 @@ def diagnose(
         if mixed is not None
         else verdict_of(masses, held_out, recalibrated_of(base), with_moved(recalibrated_of(after), best))
     )
+    if verdict.status in RIGHT:
+        verdict = verdict.model_copy(update={"detectable": detectable(*search.small)})
+    clock("advise")
+    verdict = verdict.model_copy(update={"next": _advice(masses, verdict, clock)})
     clock("compare")
     amended = after if verdict.effects and best.amendments else None
     return Diagnosis(
@@ -93,6 +101,15 @@ def diagnose(
         law_dZ={},
         seconds=clock.seconds(),
     )
+
+
+def _advice(masses: Masses, verdict: Verdict, progress: Progress) -> tuple[NextMeasurement, ...]:
+    """What to measure next, where the best set and another of other names are rivals."""
+    if verdict.status not in ("ambiguous", "insufficient") or not masses.best.amendments:
+        return ()
+    rival = next((m for m in masses.members if m.names != masses.best.names), masses.empty)
+    names = tuple(" and ".join(m.names) or RECALIBRATED for m in (masses.best, rival))
+    return advise(as_base(masses.best.fit), as_base(rival.fit), (names[0], names[1]), progress=progress)
 
 
 def with_moved(after: Mapping[str, Moved], member: Member) -> dict[str, Moved]:

@@ -69,6 +69,15 @@ class Hyper:
         log = np.where([n.startswith("discrepancy") for n in self.names], np.log(value), self.log)
         return Hyper(self.names, log)
 
+    def smaller(self) -> list[Hyper]:
+        """One for each kind of chain, its errors smaller by the factor of a standard deviation of their size.
+
+        Where errors of chains took up what is missing, they are smaller once that is modelled.
+        """
+        kinds = [n for n in self.names if n != "length" and not n.startswith("discrepancy")]
+        step = np.log(SIZE_FACTOR)
+        return [self.moved(np.where([n == kind for n in self.names], self.log - step, self.log)) for kind in kinds]
+
     def exact(self) -> Hyper:
         """The same of a model that lacks nothing."""
         return self.with_discrepancy(EXACT)

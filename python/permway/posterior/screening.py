@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import linalg
@@ -18,7 +18,9 @@ from permway.arrays import Reals
 from permway.diagnosis.side_by_side import SMALL, each
 from permway.errors import InputError, SolveError
 from permway.posterior.cells import Cell
+from permway.posterior.covariance import Roots
 from permway.posterior.fit import Fit, grown
+from permway.posterior.hyper import Hyper
 from permway.recordings.campaign import Campaign
 
 BATCH = 64
@@ -48,20 +50,31 @@ class Scores:
         That measure: 1 is the change as it stands, 0 none.
     shown : ndarray, shape (cells,)
         Square of its change as it stands, in standard deviations, the fit's parameters moved along.
+    view : ndarray of int, shape (cells,)
+        With which hyperparameters it gains most: 0 the fit's own.
     """
 
     objective: Reals
     gain: Reals
     measure: Reals
     shown: Reals
+    view: np.ndarray
 
     @staticmethod
     def none(count: int) -> Scores:
         """Of cells that are not scored."""
-        return Scores(np.full(count, np.inf), np.zeros(count), np.zeros(count), np.zeros(count))
+        nothing = np.zeros(count)
+        return Scores(
+            np.full(count, np.inf), nothing, nothing.copy(), nothing.copy(), np.zeros(count, dtype=np.int64)
+        )
 
 
-def screened(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object] = lambda _: None) -> Scores:
+def screened(
+    fit: Fit,
+    cells: Sequence[Cell],
+    progress: Callable[[int], object] = lambda _: None,
+    others: Sequence[Hyper] = (),
+) -> Scores:
     """Score all cells about a fit.
 
     Runs cost most, and say little of the line that hammer tests of it do not say. So where there are both, changes
@@ -75,10 +88,12 @@ def screened(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object] 
     cells : sequence of Cell
     progress : callable
         Called with how many are done.
+    others : sequence of Hyper
+        Hyperparameters with which a gain counts, too, less what the fit itself loses by them.
     """
     kinds = {block.dataset.record.statistic for block in fit.frame.evidence.blocks}
     if not {"frf", "csd"} <= kinds:
-        return _scored(fit, cells, progress)
+        return _scored(fit, cells, progress, others)
     of_line = [index for index, cell in enumerate(cells) if cell.hypothesis.domain == "path"]
     first = _scored(fit.only("frf"), [cells[i] for i in of_line], progress)
     chosen = set(range(len(cells))) - set(of_line)
@@ -92,19 +107,63 @@ def screened(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object] 
             if count[form] <= EACH_FORM:
                 chosen.add(index)
     again, done = sorted(chosen), len(of_line)
-    rest = _scored(fit, [cells[i] for i in again], lambda count: progress(min(done + count, len(cells))))
+    rest = _scored(fit, [cells[i] for i in again], lambda n: progress(min(done + n, len(cells))), others)
     found = Scores.none(len(cells))
-    for name in ("objective", "gain", "measure", "shown"):
+    for name in ("objective", "gain", "measure", "shown", "view"):
         getattr(found, name)[again] = getattr(rest, name)
     return found
 
 
-def _scored(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object]) -> Scores:
-    """By all records of a fit."""
+@dataclass(frozen=True)
+class _View:
+    """A fit with some hyperparameters, and what the first look needs of it."""
+
+    fit: Fit
+    factor: tuple[Reals, bool] | None
+    before: Roots
+    least: float
+    uphill: Reals
+    rest: float
+
+    @staticmethod
+    def of(fit: Fit) -> _View:
+        """Of a fit."""
+        before = fit.covariance.roots(fit.state.deviations[:, None])
+        least = float(before.squares()[0])
+        factor = linalg.cho_factor(fit.normal) if fit.z.size else None
+        uphill = fit.roots.times(before)[:, 0] + fit.z
+        return _View(fit, factor, before, least, uphill, fit.objective - least - float(fit.z @ fit.z))
+
+    def moved(self) -> float:
+        """The least objective of the fit itself, its parameters moved along."""
+        gain = 0.0 if self.factor is None else float(self.uphill @ linalg.cho_solve(self.factor, self.uphill))
+        return self.fit.objective - gain
+
+    def scores(self, residuals: Reals) -> tuple[Reals, Reals, Reals]:
+        """Of columns of residuals: the least objective, and of their change d the products r'd and d'd.
+
+        All with the fit's parameters moved along; without the prior of the change.
+        """
+        z, roots = self.fit.z, self.fit.covariance.roots(residuals)
+        square, across = roots.squares(), self.before.times(roots)[0]
+        along, size = across - self.least, square - 2.0 * across + self.least
+        if self.factor is not None:
+            slope = self.fit.roots.times(roots) + z[:, None]
+            square = square + float(z @ z) - np.einsum("pk,pk->k", slope, linalg.cho_solve(self.factor, slope))
+            change = slope - self.uphill[:, None]
+            turned = linalg.cho_solve(self.factor, change)
+            along, size = along - self.uphill @ turned, size - np.einsum("pk,pk->k", change, turned)
+        return square + self.rest, along, size
+
+
+def _scored(
+    fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object], others: Sequence[Hyper] = ()
+) -> Scores:
+    """By all records of a fit, and with other hyperparameters where these make more of a change."""
     evidence, solved, build = fit.frame.evidence, fit.state.solved, fit.model.build
     base = build(fit.values())
-    factor = linalg.cho_factor(fit.normal) if fit.z.size else None
-    rest = fit.objective - fit.covariance.square(fit.state.deviations) - float(fit.z @ fit.z)
+    views = [_View.of(replace(fit, hyper=hyper)) for hyper in (fit.hyper, *others)]
+    worse = [view.moved() - views[0].moved() for view in views]
 
     def amended(cell: Cell) -> Campaign:
         if not cell.hypothesis.moves:
@@ -121,29 +180,22 @@ def _scored(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object]) 
         return found if np.isfinite(found).all() else None
 
     scores = Scores.none(len(cells))
-    before = fit.covariance.roots(fit.state.deviations[:, None])
-    least = float(before.squares()[0])
-    uphill = fit.roots.times(before)[:, 0] + fit.z
     for start in range(0, len(cells), BATCH):
         batch = each(residuals, cells[start : start + BATCH], threads=evidence.threads, least=SMALL)
         solved_ones = {index: found for index, found in enumerate(batch) if found is not None}
         if solved_ones:
-            roots = fit.covariance.roots(np.stack(list(solved_ones.values()), axis=1))
-            square, across = roots.squares(), before.times(roots)[0]
-            # Of r + a d: d' r, and d' d, by the inverse of the covariance.
-            along, size = across - least, square - 2.0 * across + least
-            if factor is not None:
-                slope = fit.roots.times(roots) + fit.z[:, None]
-                square += float(fit.z @ fit.z) - np.einsum("pk,pk->k", slope, linalg.cho_solve(factor, slope))
-                change = slope - uphill[:, None]
-                turned = linalg.cho_solve(factor, change)
-                along = along - uphill @ turned
-                size = size - np.einsum("pk,pk->k", change, turned)
             at = start + np.array(list(solved_ones))
-            scores.objective[at] = square + np.array([float(cells[i].z @ cells[i].z) for i in at]) + rest
-            # Of r + a d with a at least 0.
-            scores.measure[at] = np.where(along < 0.0, -along / np.maximum(size, 1e-300), 0.0)
-            scores.gain[at] = -scores.measure[at] * along
-            scores.shown[at] = size
+            columns = np.stack(list(solved_ones.values()), axis=1)
+            for number, view in enumerate(views):
+                objective, along, size = view.scores(columns)
+                # Of r + a d with a at least 0.
+                measure = np.where(along < 0.0, -along / np.maximum(size, 1e-300), 0.0)
+                gain = -measure * along - worse[number]
+                if not number:
+                    scores.objective[at] = objective + [float(cells[i].z @ cells[i].z) for i in at]
+                    scores.shown[at] = size
+                better = np.full(at.size, True) if not number else gain > scores.gain[at]
+                scores.gain[at[better]], scores.measure[at[better]] = gain[better], measure[better]
+                scores.view[at[better]] = number
         progress(min(start + BATCH, len(cells)))
     return scores

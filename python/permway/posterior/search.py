@@ -31,9 +31,9 @@ from permway.posterior.beam import (
     finished,
     leading,
 )
-from permway.posterior.cells import cells, resized, small
+from permway.posterior.cells import Cell, cells, resized, small
 from permway.posterior.fit import Fit, Fitter, Model, extended
-from permway.posterior.screening import screened
+from permway.posterior.screening import Scores, screened
 
 LEVELS = (1.0, 0.2, 0.04)
 """Discrepancies at which cells are refined, neper: a factor, a fifth, a twenty-fifth of a response."""
@@ -64,14 +64,30 @@ MOST = 3
 """Amendments of one set, at most."""
 
 
+@dataclass(frozen=True)
+class Explored:
+    """What a search found.
+
+    Attributes
+    ----------
+    members : list of Member
+        All sets of amendments that were fitted to the end, the most probable first; the empty set is among them.
+    small : tuple of (list of Cell, Scores)
+        The last look at small changes; of none if the best set still lacks something.
+    """
+
+    members: list[Member]
+    small: tuple[list[Cell], Scores]
+
+
 def explored(
     fitter: Fitter,
     few: Fitter | None = None,
     *,
     ruled_out: Collection[str] = (),
     progress: Progress = lambda *_: None,
-) -> list[Member]:
-    """All sets of amendments that were fitted to the end, the most probable first; the empty set is among them.
+) -> Explored:
+    """Search the sets of amendments.
 
     Parameters
     ----------
@@ -91,13 +107,12 @@ def explored(
     start = searching.begin(nominal, z, coarse)
     searching, (first,) = _weighed(searching, [_annealed(searching, start)], [()])
     far = Member((), searching.begin(nominal, z, coarse), ())
-    looked = _Look(nominal, far, near=few is None, ruled_out=ruled_out, progress=progress)
-    searching, members = looked.extended(searching, [Member((), first, ())])
-    if few is None:
-        return _apart(members)
-    fitter, members = _carried(fitter, members)
-    looked = _Look(nominal, None, near=True, ruled_out=ruled_out, progress=progress)
-    return _apart(looked.extended(fitter, members)[1])
+    look = _Look(nominal, far, near=few is None, ruled_out=ruled_out, progress=progress)
+    members, seen = look.extended(searching, [Member((), first, ())])
+    if few is not None:
+        look = _Look(nominal, None, near=True, ruled_out=ruled_out, progress=progress)
+        members, seen = look.extended(*_carried(fitter, members))
+    return Explored(_apart(members), seen)
 
 
 @dataclass(frozen=True)
@@ -121,8 +136,12 @@ class _Look:
     ruled_out: Collection[str]
     progress: Progress
 
-    def extended(self, fitter: Fitter, members: list[Member]) -> tuple[Fitter, list[Member]]:
-        """Sets with an amendment more than the best, as long as one is better, in records that it weighs."""
+    def extended(self, fitter: Fitter, members: list[Member]) -> tuple[list[Member], tuple[list[Cell], Scores]]:
+        """Sets with an amendment more than the best, as long as one is better, in records that it weighs.
+
+        And the last look at small changes.
+        """
+        seen: tuple[list[Cell], Scores] = ([], Scores.none(0))
         while len(members[0].amendments) < MOST:
             best = members[0]
             count = len(best.amendments) + 1
@@ -130,7 +149,8 @@ class _Look:
             lacking = best.fit.hyper.novel > LACKING
             found = []
             if self.near and not lacking:
-                found += _near(fitter, best, self.ruled_out, self.progress, what)
+                seen = _small_changes(best, self.ruled_out, self.progress, what)
+                found += _near(fitter, best, *seen, self.progress, what)
             root = self.far if count == 1 else None
             if lacking or root is not None:
                 widths = WIDTHS if lacking else FEW
@@ -139,7 +159,7 @@ class _Look:
             # A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it.
             if len(members[0].amendments) < count:
                 break
-        return fitter, members
+        return members, seen
 
 
 def _carried(fitter: Fitter, members: Sequence[Member]) -> tuple[Fitter, list[Member]]:
@@ -225,19 +245,28 @@ def _annealed(fitter: Fitter, fit: Fit) -> Fit:
     return finished(fitter, fit)
 
 
-def _near(fitter: Fitter, root: Member, ruled_out: Collection[str], progress: Progress, what: str) -> list[Member]:
-    """Sets with one amendment more, whose change is small: begun where the smaller set fits best."""
+def _small_changes(
+    root: Member, ruled_out: Collection[str], progress: Progress, what: str
+) -> tuple[list[Cell], Scores]:
+    """A look at all small changes about a set that fits."""
     starts = small(cells(root.fit, ruled_out))
-    scores = screened(root.fit, starts, _saying(progress, f"small changes, {what}", len(starts)))
+    say = _saying(progress, f"small changes, {what}", len(starts))
+    return starts, screened(root.fit, starts, say, root.fit.hyper.smaller())
+
+
+def _near(
+    fitter: Fitter, root: Member, starts: Sequence[Cell], scores: Scores, progress: Progress, what: str
+) -> list[Member]:
+    """Sets with one amendment more, whose change is small: begun where the smaller set fits best."""
     promised = 0.5 * scores.gain + np.array([cell.log_prior for cell in starts])
-    worth = [
-        (-promised[i], starts[i].hypothesis, resized(starts[i], float(scores.measure[i])))
-        for i in range(len(starts))
-        if promised[i] > np.log(NEGLECTED)
-    ]
+    views = [root.fit.hyper, *root.fit.hyper.smaller()]
+    worth = []
+    for i in np.flatnonzero(promised > np.log(NEGLECTED)).tolist():
+        cell = resized(starts[i], float(scores.measure[i]))
+        worth.append((-promised[i], cell.hypothesis, Trial.of(root, cell, views[scores.view[i]])))
     # Hyperparameters are the smaller set's still: what is behind with them hardly comes first with its own.
     least = -root.fit.log_evidence - float(np.log(NEGLECTED))
-    trials = [Trial.of(root, cell) for cell in chosen(worth, WIDTHS[1], PER_FORM[1])]
+    trials = chosen(worth, WIDTHS[1], PER_FORM[1])
     for moves in (False, True):
         say = _saying(progress, f"{what}, from small changes", len(trials))
         trials = advanced(fitter, root, trials, steps=STEPS[int(moves)], moves=moves, progress=say)
@@ -262,12 +291,9 @@ def _far(
     about = replace(root.fit, hyper=root.fit.hyper.with_discrepancy(level))
     starts = cells(about, ruled_out)
     scores = screened(about, starts, _saying(progress, f"first look, {what}", len(starts)))
-    # A start that changes nothing is fitted whatever the first look says.
-    objective = np.where(np.isinf(scores.gain), -np.inf, scores.objective)
-    first = [
-        (objective[i] - 2.0 * starts[i].log_prior, starts[i].hypothesis, starts[i]) for i in range(len(starts))
-    ]
-    trials = [Trial.of(root, cell, level) for cell in chosen(first, widths[0], PER_FORM[0])]
+    ranked = scores.objective - 2.0 * np.array([cell.log_prior for cell in starts])
+    first = [(ranked[i], starts[i].hypothesis, starts[i]) for i in range(len(starts))]
+    trials = [Trial.of(root, cell, about.hyper) for cell in chosen(first, widths[0], PER_FORM[0])]
     for stage, value in enumerate(LEVELS):
         if value > level:
             continue
