@@ -5,11 +5,13 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import cast
 
+import numpy as np
 import pytest
-from permway.posterior.beam import Member
-from permway.posterior.masses import COARSENED, Masses
+from permway.posterior.beam import IDEALISED, Member, tempered
+from permway.posterior.masses import ALIKE, Masses
 
-PRIOR = -6.0
+PRIOR, COUNT = -6.0, 2000
+POWER, OF_MISSING = 1.0 / (1.0 + COUNT / ALIKE), 1.0 / (1.0 + COUNT / IDEALISED)
 
 
 def member(*names: str, nats: float, novel: float = 0.0) -> Member:
@@ -19,9 +21,13 @@ def member(*names: str, nats: float, novel: float = 0.0) -> Member:
     found = SimpleNamespace(
         amendments=amendments,
         names=tuple(sorted(names)),
-        fit=SimpleNamespace(log_evidence=nats, hyper=SimpleNamespace(novel=novel)),
+        fit=SimpleNamespace(
+            log_evidence=nats,
+            hyper=SimpleNamespace(novel=novel),
+            state=SimpleNamespace(deviations=np.zeros(COUNT)),
+        ),
         log_prior=prior,
-        log_mass=prior + nats,
+        log_mass=prior + tempered(nats, COUNT),
     )
     return cast(Member, found)
 
@@ -32,8 +38,8 @@ def logistic(x: float) -> float:
 
 def test_a_weak_effect_is_as_probable_as_its_odds_against_nothing() -> None:
     masses = Masses.of([member(nats=0.0), member("crack", nats=8.0)])
-    assert masses.nothing == pytest.approx(1.0 - logistic(8.0 + PRIOR))
-    assert masses.names(0) == [("crack", pytest.approx(logistic(8.0 + PRIOR)))]
+    assert masses.nothing == pytest.approx(1.0 - logistic(8.0 * OF_MISSING + PRIOR))
+    assert masses.names(0) == [("crack", pytest.approx(logistic(8.0 * OF_MISSING + PRIOR)))]
 
 
 def test_a_second_amendment_needs_evidence_in_the_coarsened_posterior() -> None:
@@ -47,8 +53,8 @@ def test_a_second_amendment_needs_evidence_in_the_coarsened_posterior() -> None:
 def test_names_share_the_coarsened_mass() -> None:
     masses = Masses.of([member(nats=0.0), member("crack", nats=50.0), member("joint", nats=46.0)])
     names = dict(masses.names(0))
-    assert names["crack"] == pytest.approx(logistic(4.0 * COARSENED))
-    assert names["joint"] == pytest.approx(1.0 - logistic(4.0 * COARSENED))
+    assert names["crack"] == pytest.approx(logistic(4.0 * POWER))
+    assert names["joint"] == pytest.approx(1.0 - logistic(4.0 * POWER))
 
 
 def test_what_fits_badly_may_be_of_no_catalogue() -> None:

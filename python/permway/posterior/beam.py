@@ -29,8 +29,19 @@ STEPS = (4, 8, 8, 20)
 SAME, ALIKE = 2.0, 0.01
 """Of the objective, and of each value in proportion: two fits of one form this near are one."""
 
+IDEALISED = 20_000.0
+"""Residuals from which the model's own idealisation tells. It errs on neighbouring lines and pairs alike, and the
+likelihood counts each anew. A posterior that allows for that has the evidence of n residuals to the power
+1 / (1 + n / a) (Miller and Dunson 2019, J. Am. Stat. Assoc. 114, 1113-1125): 0.9 of the 3,000 of a small campaign,
+0.25 of the 60,000 of a large one."""
+
 Item = TypeVar("Item")
 Progress = Callable[[str, int, int], object]
+
+
+def tempered(log_evidence: float, residuals: int, idealised: float = IDEALISED) -> float:
+    """Logarithm of an evidence to the power that a model's idealisation leaves it."""
+    return log_evidence / (1.0 + residuals / idealised)
 
 
 @dataclass(frozen=True)
@@ -56,8 +67,8 @@ class Member:
 
     @property
     def log_mass(self) -> float:
-        """Logarithm of prior times evidence, up to a constant of the records."""
-        return self.log_prior + self.fit.log_evidence
+        """Logarithm of prior times tempered evidence, up to a constant of the records."""
+        return self.log_prior + tempered(self.fit.log_evidence, self.fit.state.deviations.size)
 
     @property
     def names(self) -> tuple[str, ...]:

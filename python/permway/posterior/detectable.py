@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from permway.diagnosis.verdict_parts import Smallest
+from permway.posterior.beam import tempered
 from permway.posterior.cells import Cell, resized
 from permway.posterior.screening import Scores
 
@@ -14,7 +15,7 @@ ODDS = 4.0
 """Against nothing missing, from which an effect is called: see :data:`permway.posterior.answer.SUSPECTED`."""
 
 
-def detectable(cells: Sequence[Cell], scores: Scores) -> dict[str, Smallest]:
+def detectable(cells: Sequence[Cell], scores: Scores, residuals: int) -> dict[str, Smallest]:
     """The smallest size by effect, in the unit of the parameter that says how strong it is.
 
     A change d of the residuals, a times as large, raises the logarithm of the evidence by half of a^2 d' V^-1 d
@@ -27,6 +28,8 @@ def detectable(cells: Sequence[Cell], scores: Scores) -> dict[str, Smallest]:
         With small sizes.
     scores : Scores
         Of these about the fit that lacks nothing.
+    residuals : int
+        Of the records, by which evidence is tempered.
 
     Returns
     -------
@@ -37,7 +40,7 @@ def detectable(cells: Sequence[Cell], scores: Scores) -> dict[str, Smallest]:
     for cell, shown in zip(cells, scores.shown, strict=True):
         if not shown > 0.0 or not cell.hypothesis.size:
             continue
-        times = float(np.sqrt(_needed(cell.log_prior) / shown))
+        times = float(np.sqrt(_needed(cell.log_prior, residuals) / shown))
         fault = cell.hypothesis.domain == "measurement"
         channels = cell.hypothesis.locate(cell.values).channels if fault else ()
         place = cell.hypothesis.entry, channels
@@ -50,12 +53,12 @@ def detectable(cells: Sequence[Cell], scores: Scores) -> dict[str, Smallest]:
     return {entry: size for entry, (_, size) in found.items() if size is not None}
 
 
-def _needed(log_prior: float) -> float:
+def _needed(log_prior: float, residuals: int) -> float:
     """Square of a change, in standard deviations, that makes up for a prior and for its own parameter."""
-    wanted = float(np.log(ODDS)) - log_prior
-    square = 2.0 * wanted
+    wanted = 2.0 * (float(np.log(ODDS)) - log_prior) / tempered(1.0, residuals)
+    square = wanted
     for _ in range(20):
-        square = 2.0 * wanted + float(np.log1p(square))
+        square = wanted + float(np.log1p(square))
     return square
 
 

@@ -84,7 +84,7 @@ def diagnose(
         else verdict_of(masses, held_out, recalibrated_of(base), with_moved(recalibrated_of(after), best))
     )
     if verdict.status in RIGHT:
-        verdict = verdict.model_copy(update={"detectable": detectable(*search.small)})
+        verdict = verdict.model_copy(update={"detectable": detectable(*search.small, frame.sigma.size)})
     clock("advise")
     verdict = verdict.model_copy(update={"next": _advice(masses, verdict, clock)})
     clock("compare")

@@ -30,6 +30,7 @@ from permway.posterior.beam import (
     distinct,
     finished,
     leading,
+    tempered,
 )
 from permway.posterior.cells import Cell, cells, resized, small
 from permway.posterior.fit import Fit, Fitter, Model, extended
@@ -258,19 +259,21 @@ def _near(
     fitter: Fitter, root: Member, starts: Sequence[Cell], scores: Scores, progress: Progress, what: str
 ) -> list[Member]:
     """Sets with one amendment more, whose change is small: begun where the smaller set fits best."""
-    promised = 0.5 * scores.gain + np.array([cell.log_prior for cell in starts])
+    count = root.fit.state.deviations.size
+    promised = np.array([tempered(0.5 * gain, count) for gain in scores.gain.tolist()])
+    promised += [cell.log_prior for cell in starts]
     views = [root.fit.hyper, *root.fit.hyper.smaller()]
     worth = []
     for i in np.flatnonzero(promised > np.log(NEGLECTED)).tolist():
         cell = resized(starts[i], float(scores.measure[i]))
         worth.append((-promised[i], cell.hypothesis, Trial.of(root, cell, views[scores.view[i]])))
     # Hyperparameters are the smaller set's still: what is behind with them hardly comes first with its own.
-    least = -root.fit.log_evidence - float(np.log(NEGLECTED))
+    least = -tempered(root.fit.log_evidence, count) - float(np.log(NEGLECTED))
     trials = chosen(worth, WIDTHS[1], PER_FORM[1])
     for moves in (False, True):
         say = _saying(progress, f"{what}, from small changes", len(trials))
         trials = advanced(fitter, root, trials, steps=STEPS[int(moves)], moves=moves, progress=say)
-        rows = [(-t.log_evidence - t.cell.log_prior, t.cell.hypothesis, t) for t in trials]
+        rows = [(-tempered(t.log_evidence, count) - t.cell.log_prior, t.cell.hypothesis, t) for t in trials]
         if not moves:
             trials = [row[2] for row in leading(rows, 0.5 * BEHIND) if row[0] < least + MOVING]
     rows = [row for row in leading(distinct(rows), 2.0 * LEFT) if row[0] < least]
