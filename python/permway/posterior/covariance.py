@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -104,6 +104,19 @@ class Frame:
                 block = block.with_reference(prediction)
             blocks.append(block)
         return Frame.of(self.evidence.with_blocks(tuple(blocks)))
+
+    @property
+    def whole(self) -> Reals:
+        """The columns at all rows, (n, b)."""
+        found = np.zeros((self.sigma.size, self.columns.shape[1]))
+        found[self.spanned] = self.columns
+        return found
+
+    def with_columns(self, more: Reals) -> Frame:
+        """The same with further errors of unit variance, (n, c)."""
+        columns = np.hstack([self.whole, more])
+        spanned = np.flatnonzero(np.any(columns, axis=1))
+        return replace(self, columns=columns[spanned], spanned=spanned)
 
     def first(self) -> Hyper:
         """Hyperparameters at the medians of their priors."""

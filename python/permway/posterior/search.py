@@ -34,6 +34,7 @@ from permway.posterior.beam import (
 )
 from permway.posterior.cells import Cell, cells, resized, small
 from permway.posterior.fit import Fit, Fitter, Model, extended
+from permway.posterior.idealised import idealised
 from permway.posterior.screening import Scores, screened
 
 LEVELS = (1.0, 0.2, 0.04)
@@ -199,7 +200,9 @@ def _weighed(
 ) -> tuple[Fitter, list[Fit]]:
     """Records weighed by the first of some fits, and all of them fitted again."""
     best = fits[0]
-    again = Fitter(fitter.frame.about(best.state.solved, best.covariance, best.state.deviations))
+    frame = fitter.frame.about(best.state.solved, best.covariance, best.state.deviations)
+    slopes = Fitter(frame).begin(best.model, best.z, best.hyper)
+    again = Fitter(frame.with_columns(idealised(slopes)))
     begun = [again.begin(fit.model, fit.z, fit.hyper, bend=fit.bend) for fit in fits]
     return again, [finished(again, fit, own) for fit, own in zip(begun, amendments, strict=True)]
 
