@@ -16,6 +16,7 @@ from permway.cli_challenge import challenges
 from permway.cli_check import checks
 from permway.cli_import import imports
 from permway.cli_look import looking
+from permway.cli_modes import shapes
 from permway.cli_output import Json, Threads, examples, progress_bar, say, tell
 from permway.cli_track import tracks
 from permway.errors import InputError, PermwayError
@@ -56,6 +57,7 @@ app = typer.Typer(
 app.add_typer(looking)
 app.add_typer(checks)
 app.add_typer(campaigns)
+app.add_typer(shapes)
 app.add_typer(tracks)
 app.add_typer(imports, name="import")
 app.add_typer(challenges, name="challenge")
