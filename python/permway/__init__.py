@@ -53,6 +53,8 @@ if TYPE_CHECKING:
     from permway.model.vehicle_presets import crh380a, manchester_vehicle_1, zeng2014_trailer
     from permway.public import check, compare, diagnose
     from permway.recordings.campaign import read_campaign
+    from permway.recordings.insertion_loss import insertion_loss
+    from permway.recordings.track_decay import track_decay_rate
     from permway.response.decay import decay_rate
     from permway.response.dispersion import dispersion
     from permway.response.modes import modes
@@ -86,6 +88,8 @@ _HOMES = {
     "model.vehicle_presets": ("crh380a", "manchester_vehicle_1", "zeng2014_trailer"),
     "public": ("check", "compare", "diagnose"),
     "recordings.campaign": ("read_campaign",),
+    "recordings.insertion_loss": ("insertion_loss",),
+    "recordings.track_decay": ("track_decay_rate",),
     "response.decay": ("decay_rate",),
     "response.dispersion": ("dispersion",),
     "response.modes": ("modes",),
@@ -159,6 +163,7 @@ __all__ = [
     "diagnose",
     "dispersion",
     "hslm_a",
+    "insertion_loss",
     "law_from_dict",
     "law_to_dict",
     "manchester_vehicle_1",
@@ -173,6 +178,7 @@ __all__ = [
     "slab_track_viaduct_32m",
     "solve",
     "to_frame",
+    "track_decay_rate",
     "train_response",
     "wj7b",
     "wj7b_constant",

@@ -15,6 +15,7 @@ from permway.cli_campaign import campaigns
 from permway.cli_challenge import challenges
 from permway.cli_check import checks
 from permway.cli_import import imports
+from permway.cli_levels import levels
 from permway.cli_look import looking
 from permway.cli_modes import shapes
 from permway.cli_output import Json, Threads, examples, progress_bar, say, tell
@@ -58,6 +59,7 @@ app.add_typer(looking)
 app.add_typer(checks)
 app.add_typer(campaigns)
 app.add_typer(shapes)
+app.add_typer(levels)
 app.add_typer(tracks)
 app.add_typer(imports, name="import")
 app.add_typer(challenges, name="challenge")
