@@ -195,7 +195,11 @@ def __getattr__(name: str) -> object:
         value: object = getattr(import_module(f"permway.{_HOME[name]}"), name)
         globals()[name] = value
         return value
-    raise AttributeError(f"module 'permway' has no attribute {name!r}")
+    from difflib import get_close_matches
+
+    close = get_close_matches(name, __all__, n=1)
+    hint = f"; did you mean {close[0]!r}?" if close else ""
+    raise AttributeError(f"module 'permway' has no attribute {name!r}{hint}")
 
 
 def __dir__() -> list[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from permway.errors import InputError
+from permway.errors import InputError, must_be
 from permway.files import write_text
 
 if TYPE_CHECKING:
@@ -65,6 +65,7 @@ def write_csv(data: xr.Dataset | xr.DataArray, path: str | Path) -> Path:
     InputError
         As :func:`to_frame`, or if the place cannot be written.
     """
+    must_be(path, (str, Path), "path")
     return write_text(Path(path), to_frame(data).to_csv(index=False, float_format="%.9g", lineterminator="\n"))
 
 

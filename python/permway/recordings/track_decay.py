@@ -13,7 +13,7 @@ from permway.recordings.estimates.bands import bands_between
 from permway.recordings.estimates.decay_rate import grid_positions
 from permway.recordings.estimates.decay_rate import track_decay_rate as rate_of
 from permway.recordings.predict.decay import band_moduli, lines_of
-from permway.response.receptance import Formulation, Place, between
+from permway.response.receptance import Formulation, Place, between, check_line
 
 _KEPT = ("decay_rate", "far_drop_dB", "suitable")
 
@@ -64,9 +64,7 @@ def track_decay_rate(
     SolveError
         If the line cannot be solved.
     """
-    if not isinstance(line, Line):
-        remedy = "of a model it is model.line"
-        raise InputError(f"must be a Line, not a {type(line).__name__}", where="line", remedy=remedy)
+    check_line(line)
     if not is_real(at_m) or not np.isfinite(at_m):
         raise InputError("must be a place", where="at_m", value=at_m, remedy="give x in m")
     bands = bands_between(from_Hz, to_Hz)

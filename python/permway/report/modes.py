@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from permway.arrays import Complexes, Reals
+from permway.errors import must_be
 from permway.files import prepare_folder, write_bytes
 
 _WIDTH_IN, _ROW_IN, _TOP_IN = 6.3, 1.25, 0.55
@@ -53,6 +54,7 @@ def draw_modes(data: xr.Dataset, folder: str | Path, *, dpi: int = 150) -> list[
     InputError
         If the folder cannot be written.
     """
+    must_be(data, xr.Dataset, "data", remedy="as in draw_modes(permway.modes(line, 1.0, 60.0), folder)")
     many = _COLUMNS * _ROWS
     parts = [data.isel(mode=slice(i, i + many)) for i in range(0, data.sizes["mode"], many)]
     names = ["modes.png" if i == 0 else f"modes-{i + 1}.png" for i in range(len(parts))]

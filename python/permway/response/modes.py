@@ -14,7 +14,15 @@ from permway.model.line import Line
 from permway.response.everywhere import everywhere
 from permway.response.mode_search import search
 from permway.response.poles import Poles, lines_for, poles_of
-from permway.response.receptance import CONVENTION, Formulation, Place, between, check_places, place_coordinates
+from permway.response.receptance import (
+    CONVENTION,
+    Formulation,
+    Place,
+    between,
+    check_line,
+    check_places,
+    place_coordinates,
+)
 
 STRUCK = 24
 """Places at which forces excite the modes, at least four on every body."""
@@ -66,13 +74,12 @@ def modes(
     SolveError
         If the line cannot be solved, or its response is not one of modes.
     """
-    if not isinstance(line, Line):
-        remedy = "of a model it is model.line"
-        raise InputError(f"must be a Line, not a {type(line).__name__}", where="line", remedy=remedy)
+    check_line(line)
     _check_band(low_Hz, high_Hz)
-    chosen = everywhere(line, high_Hz) if places is None else list(places)
+    given = everywhere(line, high_Hz) if places is None else places
+    check_places(line, given, "places")
+    chosen = list(given)
     _check_some(chosen)
-    check_places(line, chosen, "places")
     struck = _struck(chosen)
 
     def response(frequency: Reals, everywhere: bool) -> Complexes:
