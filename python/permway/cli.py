@@ -48,8 +48,8 @@ Completion by the shell: permway --install-completion"""
 app = typer.Typer(
     name="permway",
     cls=_Commands,
-    help="Predicts how a train, its track and the viaduct below vibrate, frequency by frequency, holds that "
-    "against recordings, and says what physics is missing. Begin with: permway demo",
+    help="Predicts how a train, its track and the viaduct below vibrate vertically, frequency by frequency, "
+    "holds that against recordings, and says what physics is missing. Begin with: permway demo",
     epilog=EPILOG,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
