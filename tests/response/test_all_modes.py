@@ -16,6 +16,7 @@ from permway.laws import Hysteretic, KelvinVoigt
 from permway.model.bodies import Beam, Mass
 from permway.model.joints import Joints
 from permway.model.line import Line
+from permway.model.shafts import Shaft
 from permway.response.everywhere import everywhere
 from permway.response.modes import modes
 from permway.response.receptance import Place
@@ -174,3 +175,59 @@ def test_given_places_give_shapes_there() -> None:
 def test_what_is_asked_wrongly_is_refused(act, says: str) -> None:
     with pytest.raises(InputError, match=says):
         act()
+
+
+def test_an_endless_rail_against_its_characteristic_equation() -> None:
+    """A rail that radiates, with a hung mass at 0 and a support at 5 m: det(1 + G K) = 0 at complex frequencies.
+
+    Under exp(+i omega t) the endless beam has G(x) = (-i exp(-i k x) - exp(-k x)) / (4 E I k^3), k^4 = m omega^2 /
+    (E I) (Graff, Wave Motion in Elastic Solids, 1975, 3.2); the mass on its spring is a stiffness
+    -s m omega^2 / (s - m omega^2) to the ground.
+    """
+    rail = Beam(youngs_modulus_Pa=2.1e11, second_moment_m4=3e-5, density_kg_per_m3=7850.0, area_m2=7.7e-3)
+    hung = 200.0
+    joints = (
+        Joints(between=("rail", "mass"), law="s", at=(0.0,)),
+        Joints(between=("rail", "ground"), law="s", at=(5.0,)),
+    )
+    line = Line(
+        bodies={"rail": rail, "mass": Mass(mass_kg=hung)},
+        joints=joints,
+        laws={"s": KelvinVoigt(stiffness=2e7, damping=1e4)},
+    )
+    data = modes(line, 5.0, 500.0)
+    omega = 2.0 * np.pi * data.natural_frequency.values * np.exp(1j * np.arcsin(data.damping_ratio.values))
+
+    def determinant(w: complex) -> complex:
+        k = (7850.0 * 7.7e-3 * w**2 / (2.1e11 * 3e-5)) ** 0.25
+        near, far = (
+            (-1j * np.exp(-1j * k * x) - np.exp(-k * x)) / (4.0 * 2.1e11 * 3e-5 * k**3) for x in (0.0, 5.0)
+        )
+        s = 2e7 + 1j * w * 1e4
+        stiff = np.array([-s * hung * w**2 / (s - hung * w**2), s])
+        return complex(np.linalg.det(np.eye(2) + np.array([[near, far], [far, near]]) * stiff))
+
+    assert omega.size == 5
+    for w in omega:
+        # One step of Newton's method from the pole that was found ends where it began.
+        step = 1e-6 * w
+        slope = (determinant(w + step) - determinant(w - step)) / (2.0 * step)
+        assert abs(determinant(w) / slope) < 1e-7 * abs(w)
+
+
+def test_a_shaft_without_loss() -> None:
+    """Pinned at both ends: f_n = n / (2 L) sqrt(G J / (rho I_p)), modal mass rho I_p L / (2 arm^2)."""
+    shaft = Shaft(
+        shear_modulus_Pa=1.4e10,
+        torsion_constant_m4=0.5,
+        density_kg_per_m3=2500.0,
+        polar_moment_m4=2.0,
+        arm_m=0.5,
+        intervals_m=((0.0, 30.0),),
+        ends="pinned",
+    )
+    data = modes(Line(bodies={"deck": shaft}), 5.0, 70.0)
+    expected = np.arange(1, 4) / 60.0 * np.sqrt(1.4e10 * 0.5 / (2500.0 * 2.0))
+    assert data.natural_frequency.values == pytest.approx(expected, rel=1e-10)
+    assert data.damping_ratio.values == pytest.approx(0.0, abs=1e-9)
+    assert data.modal_mass.values == pytest.approx(2500.0 * 2.0 * 30.0 / 2.0 / 0.5**2, rel=0.01)
