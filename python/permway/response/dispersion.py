@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 from scipy.linalg import eigh
 from scipy.optimize import minimize_scalar
 
@@ -63,6 +64,33 @@ class Dispersion:
     def phase_speed_m_per_s(self) -> Reals:
         """Shape (K, branches)."""
         return np.asarray(2.0 * np.pi * self.frequency_Hz / self.wavenumber_rad_per_m[:, None])
+
+    def to_dataset(self) -> xr.Dataset:
+        """`frequency` in Hz and `phase_speed` in m/s over `wavenumber` in rad/m and `branch`."""
+        over = ("wavenumber", "branch")
+        critical = {
+            "critical_speed_m_per_s": self.critical_speed_m_per_s,
+            "critical_wavenumber_rad_per_m": self.critical_wavenumber_rad_per_m,
+        }
+        return xr.Dataset(
+            {
+                "frequency": (over, self.frequency_Hz, {"long_name": "frequency", "units": "Hz"}),
+                "phase_speed": (over, self.phase_speed_m_per_s, {"long_name": "phase speed", "units": "m/s"}),
+            },
+            coords={
+                "wavenumber": (
+                    "wavenumber",
+                    self.wavenumber_rad_per_m,
+                    {"long_name": "wavenumber", "units": "rad/m"},
+                ),
+                "branch": np.arange(1, self.frequency_Hz.shape[1] + 1),
+            },
+            attrs={
+                "bodies": list(self.bed.bodies),
+                "notes": "; ".join(self.notes),
+                **{name: value for name, value in critical.items() if value is not None},
+            },
+        )
 
 
 def dispersion(
