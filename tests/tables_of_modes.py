@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from permway.laws.toml import to_toml
 from permway.model.line import Line
-from permway.response.modes import modes
+from permway.response.modes import poles_between
 from permway.response.receptance import Place
 
 PLACES_M = {"a": 4.0, "b": 9.0, "c": 12.0, "d": 19.0}
@@ -73,7 +73,7 @@ def rows_of(
 ) -> list[str]:
     """The lines of a table of a model's modes, exact, or with scatter of a seed."""
     line = Line.model_validate(model["line"])
-    found = modes(line, 3.0, high_Hz, places=[Place(body="deck", x_m=x) for x in PLACES_M.values()])
+    found = poles_between(line, 3.0, high_Hz, places=[Place(body="deck", x_m=x) for x in PLACES_M.values()])
     rng = np.random.default_rng(seed)
     scatter = np.zeros((2, found.omega.size)) if seed is None else rng.standard_normal((2, found.omega.size))
     header = "frequency_Hz,frequency_sd_Hz,damping,damping_sd"

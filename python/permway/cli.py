@@ -15,7 +15,9 @@ from permway.cli_campaign import campaigns
 from permway.cli_challenge import challenges
 from permway.cli_check import checks
 from permway.cli_import import imports
+from permway.cli_levels import levels
 from permway.cli_look import looking
+from permway.cli_modes import shapes
 from permway.cli_output import Json, Threads, examples, progress_bar, say, tell
 from permway.cli_track import tracks
 from permway.errors import InputError, PermwayError
@@ -46,8 +48,8 @@ Completion by the shell: permway --install-completion"""
 app = typer.Typer(
     name="permway",
     cls=_Commands,
-    help="Predicts how a train, its track and the viaduct below vibrate, frequency by frequency, holds that "
-    "against recordings, and says what physics is missing. Begin with: permway demo",
+    help="Predicts how a train, its track and the viaduct below vibrate vertically, frequency by frequency, "
+    "holds that against recordings, and says what physics is missing. Begin with: permway demo",
     epilog=EPILOG,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
@@ -56,6 +58,8 @@ app = typer.Typer(
 app.add_typer(looking)
 app.add_typer(checks)
 app.add_typer(campaigns)
+app.add_typer(shapes)
+app.add_typer(levels)
 app.add_typer(tracks)
 app.add_typer(imports, name="import")
 app.add_typer(challenges, name="challenge")

@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import signal
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from datetime import timedelta
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -60,20 +62,32 @@ def progress_bar(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]
 
 @contextmanager
 def stage_bar(title: str, quiet: bool) -> Iterator[Callable[[str, int, int], None]]:
-    """A bar that names the stage it is in; of a stage whose length is not known it only shows that it moves."""
+    """A bar that names the stage it is in, the time spent in all, and the time that is left of the stage.
+
+    Of a stage whose length is not known it only shows that it moves.
+    """
     with _unwinding():
         if quiet or not sys.stderr.isatty():
             yield lambda _stage, _done, _total: None
             return
         from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-        columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
-        with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-            task = bar.add_task(title, total=None)
+        begun = time.monotonic()
+        columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[spent]}, left of this")
+        with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as bar:
+            task = bar.add_task(title, total=None, spent="0:00:00")
+            current = ""
 
             def progress(stage: str, done: int, total: int) -> None:
-                bar.update(task, description=f"{title}: {stage}", completed=done, total=total or None)
+                nonlocal current
+                if stage != current:
+                    # Its pace says nothing of the next stage's.
+                    bar.reset(task, total=total or None)
+                    current = stage
+                spent = str(timedelta(seconds=int(time.monotonic() - begun)))
+                said = f"{title}: {stage}"
+                bar.update(task, description=said, completed=done, total=total or None, spent=spent)
 
             yield progress
 

@@ -41,6 +41,38 @@ class SolveError(PermwayError, ArithmeticError):
     """A model that cannot be solved at a frequency: singular, not finite or badly conditioned."""
 
 
+def must_be(value: object, kinds: type | tuple[type, ...], where: str, *, remedy: str = "") -> None:
+    """Refuse an argument of another type than one of these.
+
+    Parameters
+    ----------
+    value
+        The argument.
+    kinds
+        Its possible types; by their names they are told.
+    where
+        Its name.
+    remedy
+        What would be right.
+
+    Raises
+    ------
+    InputError
+        "line: must be a Line, not a str".
+    """
+    if isinstance(value, kinds):
+        return
+    names = [_told(kind) for kind in (kinds if isinstance(kinds, tuple) else (kinds,))]
+    met = "None" if value is None else _told(type(value))
+    raise InputError(f"must be {' or '.join(dict.fromkeys(names))}, not {met}", where=where, remedy=remedy)
+
+
+def _told(kind: type) -> str:
+    names = {"PosixPath": "a path", "WindowsPath": "a path", "Path": "a path", "Mapping": "a dict"}
+    name = kind.__name__
+    return names.get(name, f"{'an' if name[0] in 'AEIOaeio' else 'a'} {name}")
+
+
 def _short(value: object, limit: int = 80) -> str:
-    text = repr(value)
+    text = " ".join(repr(value).split())
     return text if len(text) <= limit else text[: limit - 3] + "..."

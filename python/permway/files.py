@@ -73,6 +73,20 @@ def check_folder(folder: Path) -> None:
         raise InputError("is a file, not a folder", where=str(folder), remedy="name another folder")
 
 
+def check_output(path: Path, suffixes: tuple[str, ...]) -> None:
+    """See, before the work, that a file may be written: its folder is there, and its name says a known format.
+
+    Raises
+    ------
+    InputError
+        If not.
+    """
+    if path.suffix not in suffixes:
+        raise InputError("of what format?", where=str(path), remedy=f"end the name in {' or '.join(suffixes)}")
+    if not path.parent.is_dir():
+        raise InputError("there is no such folder", where=str(path.parent), remedy="make it first")
+
+
 def write_bytes(path: Path, content: bytes) -> Path:
     """Write a file whole or not at all.
 

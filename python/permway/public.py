@@ -118,5 +118,5 @@ def _campaign(given: Campaign | str | Path) -> Campaign:
     raise InputError(
         f"must be a campaign or the path of its file, not a {type(given).__name__}",
         where="campaign",
-        remedy='as in permway.diagnose("campaign.toml")',
+        remedy='as in "campaign.toml"',
     )

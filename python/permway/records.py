@@ -29,8 +29,9 @@ class FrozenModel(BaseModel):
 
     def __init__(self, *values: object, **data: Any) -> None:
         if values:
-            fields = list(type(self).model_fields)
-            said = ", ".join(f"{name}={value!r}" for name, value in zip(fields, values, strict=False))
+            said = ", ".join(
+                f"{name}={_brief(value)}" for name, value in zip(_in_order(type(self)), values, strict=False)
+            )
             raise InputError(
                 "takes its values by name", where=type(self).__name__, remedy=f"{said} if that is meant"
             )
@@ -41,6 +42,19 @@ class FrozenModel(BaseModel):
 
     # Pydantic then builds nested records itself, so that a fault inside one keeps its full path.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+
+def _in_order(model: type[BaseModel]) -> list[str]:
+    """Names of a record's values, as a call would list them: those it needs first, without tags of files."""
+    each = model.model_fields.items()
+    fields = {field.alias or name: field for name, field in each if name not in ("type", "format")}
+    return sorted(fields, key=lambda name: not fields[name].is_required())
+
+
+def _brief(value: object) -> str:
+    """A number or a text as it is, of anything longer its type."""
+    text = repr(value)
+    return text if len(text) <= 30 else f"<{type(value).__name__}>"
 
 
 def _unwarned(value: object) -> object:
@@ -84,7 +98,17 @@ def input_error(error: ValidationError, table: object, place: str, words: Words 
 
 
 def plain_words(complaint: Mapping[str, Any]) -> tuple[str, object]:
-    """What pydantic says, and the value met where it is not said."""
+    """What pydantic says, in shorter words where it has long ones, and the value met where it is not said."""
+    context = complaint.get("ctx", {})
+    match complaint["type"]:
+        case "missing":
+            return "missing", None
+        case "extra_forbidden":
+            return "unknown name", None
+        case "union_tag_invalid":
+            return f"there is no type {context['tag']!r}; use one of {context['expected_tags']}", None
+        case "union_tag_not_found":
+            return "type is missing", None
     what = str(complaint["msg"]).removeprefix("Value error, ")
     value = None if complaint["type"] in ("missing", "value_error", "union_tag_invalid") else complaint["input"]
     return what[:1].lower() + what[1:], value

@@ -62,7 +62,7 @@ SWEEP = DmaTable(
         (lambda: TABLE.check((0.1, 10.0)), "frequency_Hz", "does not extrapolate"),
         (lambda: Series(first=SPRING, second=AGAINST).complex(1.0), "series", "cancel"),
         (lambda: Hysteretic(stiffness=np.nan), "hysteretic.stiffness", "finite"),
-        (lambda: Hysteretic(stiffness=1.0, eta=0.1), "hysteretic.eta", "not permitted"),  # type: ignore[call-arg]
+        (lambda: Hysteretic(stiffness=1.0, eta=0.1), "hysteretic.eta", "unknown name"),  # type: ignore[call-arg]
         (lambda: Pad(material=SPRING, area_m2=-1.0, thickness_m=0.01), "pad.area_m2", "greater than 0"),
         (lambda: Prony(relaxed=1.0, strengths=(1.0,), relaxation_times_s=()), "prony", "1 strengths but 0"),
         (lambda: Prony(relaxed=1.0, strengths=(1.0,), relaxation_times_s=(-1.0,)), "prony", "above zero"),
@@ -79,9 +79,9 @@ SWEEP = DmaTable(
         (lambda: TFDV(law=SHIFTED, shift=WLF_20, reference_temperature_C=0.0), "tfdv", "shift it once only"),
         (lambda: TFDV(law=SPRING, shift=WLF_20, reference_temperature_C=-90.0), "temperature_C", "singular"),
         (lambda: law_from_dict({"type": "rubbery"}), "law", "'fractional_zener'"),
-        (lambda: law_from_dict({"stiffness": 1.0}), "law", "discriminator 'type'"),
+        (lambda: law_from_dict({"stiffness": 1.0}), "law", "type is missing"),
         (lambda: law_from_dict({**ZENER, "relaxed": "soft"}), "law.relaxed", "got 'soft'"),
-        (lambda: law_from_dict({k: v for k, v in ZENER.items() if k != "unrelaxed"}), "law.unrelaxed", "required"),
+        (lambda: law_from_dict({k: v for k, v in ZENER.items() if k != "unrelaxed"}), "law.unrelaxed", "missing"),
         (
             lambda: law_from_dict(
                 {"type": "pad", "area_m2": 1.0, "thickness_m": 1.0, "material": {**ZENER, "unrelaxed": None}},

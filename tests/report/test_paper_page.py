@@ -130,3 +130,9 @@ def test_an_unwritable_folder_is_refused_before_the_work(tmp_path: Path, monkeyp
     monkeypatch.setattr("permway.files.tempfile.TemporaryFile", refuse)
     with pytest.raises(InputError, match="cannot be written: Permission denied"):
         paper.write_report(tmp_path / "out")
+
+
+def test_no_figure_needs_webgl(report: Any) -> None:
+    kinds = set(re.findall(r'"type":"(\w+)"', report.page))
+    assert "contour" in kinds
+    assert not {kind for kind in kinds if kind == "surface" or kind.endswith(("gl", "3d"))}

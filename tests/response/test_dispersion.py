@@ -15,6 +15,7 @@ from permway.model.joints import Joints, Spread
 from permway.model.line import Line
 from permway.response.dispersion import dispersion
 from permway.response.receptance import Place, receptance
+from permway.tables import to_frame
 
 EI, RHO_A, S, D = 6.4e6, 60.0, 3.0e7, 0.6
 RAIL = {
@@ -46,6 +47,11 @@ def test_a_beam_on_a_bed_has_fryba_s_critical_speed() -> None:
     # Waves of two spacings are the shortest.
     assert kappa[-1] == pytest.approx(np.pi / D)
     assert found.notes == ()
+    data = found.to_dataset()
+    np.testing.assert_allclose(data.frequency.sel(branch=1), exact, rtol=1e-12)
+    np.testing.assert_allclose(data.phase_speed * data.wavenumber, 2.0 * np.pi * data.frequency, rtol=1e-12)
+    assert data.attrs["critical_speed_m_per_s"] == found.critical_speed_m_per_s
+    assert list(to_frame(data).columns) == ["wavenumber [rad/m]", "branch", "frequency [Hz]", "phase_speed [m/s]"]
 
 
 def test_waves_of_the_discrete_track_are_nearly_those_of_the_continuous_one() -> None:

@@ -18,7 +18,7 @@ from permway.laws import Hysteretic, KelvinVoigt
 from permway.model.bodies import Beam, Mass
 from permway.model.joints import Joints
 from permway.model.line import Line
-from permway.response.modes import modes
+from permway.response.modes import poles_between
 from permway.response.poles import lines_for, poles_of
 from permway.response.receptance import Place
 from scipy.optimize import brentq
@@ -66,14 +66,16 @@ def test_beams(name: str, eta: float) -> None:
     ends, beta = CASES[name]
     omega = (beta / LENGTH_M) ** 2 * np.sqrt(BENDING * (1.0 + 1j * eta) / MASS)
     expected = np.abs(omega) / (2.0 * np.pi)
-    found = modes(beam(ends, eta), 0.7 * expected[0], 1.3 * expected[-1], places=on("beam", 5.3, 11.0, 24.0 - 1.1))
+    found = poles_between(
+        beam(ends, eta), 0.7 * expected[0], 1.3 * expected[-1], places=on("beam", 5.3, 11.0, 24.0 - 1.1)
+    )
     assert found.frequency_Hz == pytest.approx(expected, rel=3e-8)
     assert found.damping == pytest.approx(omega.imag / np.abs(omega), abs=1e-8)
 
 
 def test_shapes_of_a_supported_beam() -> None:
     x = np.array([3.0, 9.5, 17.0])
-    found = modes(beam("pinned"), 3.0, 100.0, places=on("beam", *x))
+    found = poles_between(beam("pinned"), 3.0, 100.0, places=on("beam", *x))
     for number, shape in enumerate(found.shape, start=1):
         expected = np.sin(number * np.pi * x / LENGTH_M)
         expected = expected / expected[np.argmax(np.abs(expected))]
@@ -81,7 +83,7 @@ def test_shapes_of_a_supported_beam() -> None:
 
 
 def test_a_mode_that_no_place_sees_is_none() -> None:
-    found = modes(beam("pinned"), 3.0, 100.0, places=on("beam", 12.0))
+    found = poles_between(beam("pinned"), 3.0, 100.0, places=on("beam", 12.0))
     first = np.pi / 2.0 * np.sqrt(BENDING * abs(1.0 + 1j * ETA) / MASS) / LENGTH_M**2
     assert found.frequency_Hz == pytest.approx([first, 9.0 * first], rel=1e-9)
 
@@ -94,13 +96,13 @@ def mass_on(law: KelvinVoigt | Hysteretic) -> Line:
 @pytest.mark.parametrize("zeta", [1e-4, 0.02, 0.3, 0.6])
 def test_a_mass_on_spring_and_dashpot(zeta: float) -> None:
     law = KelvinVoigt(stiffness=2.7e4, damping=2.0 * zeta * np.sqrt(2.7e4 * 3.0))
-    found = modes(mass_on(law), 5.0, 50.0, places=on("m", 0.0))
+    found = poles_between(mass_on(law), 5.0, 50.0, places=on("m", 0.0))
     assert found.frequency_Hz == pytest.approx([np.sqrt(9.0e3) / (2.0 * np.pi)], rel=1e-10)
     assert found.damping == pytest.approx([zeta], rel=1e-9)
 
 
 def test_a_mass_on_a_hysteretic_spring() -> None:
-    found = modes(mass_on(Hysteretic(stiffness=2.7e4, loss_factor=0.4)), 5.0, 50.0, places=on("m", 0.0))
+    found = poles_between(mass_on(Hysteretic(stiffness=2.7e4, loss_factor=0.4)), 5.0, 50.0, places=on("m", 0.0))
     pole = np.sqrt(9.0e3 * (1.0 + 0.4j))
     assert found.frequency_Hz == pytest.approx([abs(pole) / (2.0 * np.pi)], rel=1e-10)
     assert found.damping == pytest.approx([pole.imag / abs(pole)], rel=1e-9)
@@ -121,7 +123,7 @@ def test_close_modes_stay_apart(apart: float) -> None:
         Joints(between=("a", "b"), law="tie", at=(0.5,)),
     )
     line = Line(bodies={"a": Mass(mass_kg=10.0), "b": Mass(mass_kg=10.0)}, joints=joints, laws=laws)
-    found = modes(line, 5.0, 20.0, places=on("a", 0.0))
+    found = poles_between(line, 5.0, 20.0, places=on("a", 0.0))
     expected = np.sqrt([spring / 10.0, (spring + 2.0 * tie) / 10.0]) / (2.0 * np.pi)
     assert found.frequency_Hz == pytest.approx(expected, rel=1e-8)
     assert found.damping * expected == pytest.approx(0.05 * expected[0], rel=1e-6)
@@ -165,7 +167,7 @@ def test_a_line_on_springs_and_dashpots_against_elements() -> None:
         Joints(between=("absorber", "beam"), law="tuned", at=(LENGTH_M / 4.0,)),
     )
     line = Line(bodies={**beam("free").bodies, "absorber": Mass(mass_kg=6000.0)}, joints=joints, laws=laws)
-    found = modes(line, 2.0, 60.0, places=on("beam", 1.0, 7.0, 15.0))
+    found = poles_between(line, 2.0, 60.0, places=on("beam", 1.0, 7.0, 15.0))
     k, c, m = quadratic(96)
     size = k.shape[0]
     # (-omega^2 M + i omega C + K) u = 0 as a first-order problem.
@@ -180,9 +182,9 @@ def test_a_line_on_springs_and_dashpots_against_elements() -> None:
 
 def test_what_is_asked_wrongly_is_refused() -> None:
     with pytest.raises(InputError, match="from low to high"):
-        modes(beam("pinned"), 5.0, 5.0, places=on("beam", 3.0))
+        poles_between(beam("pinned"), 5.0, 5.0, places=on("beam", 3.0))
     with pytest.raises(InputError, match="no place"):
-        modes(beam("pinned"), 5.0, 6.0, places=[])
+        poles_between(beam("pinned"), 5.0, 6.0, places=[])
 
 
 def test_a_response_that_has_no_few_poles_is_refused() -> None:
@@ -194,7 +196,7 @@ def test_a_response_that_has_no_few_poles_is_refused() -> None:
 
 def test_it_takes_milliseconds() -> None:
     places = on("beam", 3.0, 7.0, 15.0)
-    modes(beam("free"), 3.0, 60.0, places=places)
+    poles_between(beam("free"), 3.0, 60.0, places=places)
     start = time.process_time()
-    modes(beam("free"), 3.0, 60.0, places=places)
+    poles_between(beam("free"), 3.0, 60.0, places=places)
     assert time.process_time() - start < 0.5

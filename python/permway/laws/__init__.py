@@ -12,6 +12,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, TypeAdapter, ValidationError
 
+from permway.errors import must_be
 from permway.laws.base import Law
 from permway.laws.checks import LawCheck
 from permway.laws.combined import Parallel, Scaled, Series, StorageLossPair
@@ -112,6 +113,7 @@ def law_from_dict(table: Mapping[str, Any], *, where: str = "law") -> AnyLaw:
     InputError
         With the place in the table, the value and what would be right.
     """
+    must_be(table, Mapping, where, remedy='as in {"type": "hysteretic", "stiffness": 1e8, "loss_factor": 0.2}')
     try:
         return _ADAPTER.validate_python(dict(table))
     except ValidationError as error:
@@ -120,4 +122,5 @@ def law_from_dict(table: Mapping[str, Any], *, where: str = "law") -> AnyLaw:
 
 def law_to_dict(law: Law) -> dict[str, Any]:
     """Write a law as a table that `law_from_dict` reads back to an equal law."""
+    must_be(law, Law, "law")
     return law.model_dump(mode="python", by_alias=True)

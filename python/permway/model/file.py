@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field, PositiveFloat, ValidationError, field_validator, model_validator
 
 from permway.arrays import Reals
-from permway.errors import InputError
+from permway.errors import InputError, must_be
 from permway.model.faults import fault, model_error, refuse_coercion
 from permway.model.file_parts import below, line_of, table_at, train_of
 from permway.model.irregularity import AnyIrregularity, Conversion
@@ -202,6 +202,7 @@ def read_model(path: str | Path) -> Model:
         With file, place in the file, value and remedy, for a file that cannot be read, is not TOML, or says
         something that cannot be.
     """
+    must_be(path, (str, Path), "path", remedy="a table is read by model_from_dict")
     path = Path(path)
     table = read_toml(path, "name a model file (TOML)")
     try:
@@ -226,6 +227,7 @@ def model_from_dict(table: Mapping[str, Any], *, folder: Path | None = None) -> 
     InputError
         With the place in the table.
     """
+    must_be(table, Mapping, "table", remedy="a file is read by read_model")
     # A model written as JSON says null where a file says nothing.
     filled = {key: value for key, value in table.items() if value is not None}
     if "line" in filled:

@@ -15,7 +15,7 @@ from permway.model.file import Model
 from permway.recordings.campaign_parts import Condition, Record
 from permway.recordings.channel import Sensor
 from permway.recordings.readers import time_blocks
-from permway.response.modes import modes
+from permway.response.modes import poles_between
 from permway.response.passby.path import Path, path_of
 from permway.response.passby.window import FLAT
 from permway.response.receptance import Place, frequency_coordinate
@@ -128,7 +128,7 @@ def _decay_s(model: Model, condition: Condition, sensors: list[Sensor], highest_
     spots = dict.fromkeys((str(s.body), float(s.x_m or 0.0)) for s in sensors)
     temperature = model.temperature_C if condition.temperature_C is None else condition.temperature_C
     try:
-        found = modes(
+        found = poles_between(
             model.line,
             LOWEST * highest_Hz,
             highest_Hz,

@@ -13,6 +13,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from permway.errors import must_be
 from permway.files import prepare_folder, write_bytes
 from permway.report.passby import passage
 from permway.response.decay import decay_rate
@@ -50,6 +51,7 @@ def draw_dataset(data: xr.Dataset, folder: Path, *, dpi: int = 150) -> list[Path
     InputError
         If the folder cannot be written.
     """
+    must_be(data, xr.Dataset, "data", remedy="as in draw_dataset(solve(model), folder)")
     drawn = dict(_pictures(data))
     prepare_folder(Path(folder), drawn)
     paths = []

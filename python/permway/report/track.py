@@ -22,7 +22,7 @@ _HIGHEST_HZ = 2000.0
 """Of the picture of waves: half hides the wave of a rail on stiff pads, twice squeezes the rest."""
 
 
-def draw_dispersion(found: Dispersion, folder: Path) -> Path:
+def draw_dispersion(found: Dispersion, folder: str | Path) -> Path:
     """Draw `dispersion.png`: frequency and phase speed over wavenumber, and the critical speed.
 
     Parameters
@@ -58,7 +58,7 @@ def draw_dispersion(found: Dispersion, folder: Path) -> Path:
     return _write(figure, (left, right), folder, "dispersion.png")
 
 
-def draw_irregularity(irregularity: Irregularity, x_m: Reals, profile_m: Reals, folder: Path) -> Path:
+def draw_irregularity(irregularity: Irregularity, x_m: Reals, profile_m: Reals, folder: str | Path) -> Path:
     """Draw `irregularity.png`: the density over cycles per metre with the bands D1 to D3, and a profile.
 
     Parameters
@@ -90,7 +90,8 @@ def draw_irregularity(irregularity: Irregularity, x_m: Reals, profile_m: Reals, 
     return _write(figure, (left, right), folder, "irregularity.png")
 
 
-def _write(figure: Figure, panels: tuple[Axes, ...], folder: Path, name: str) -> Path:
+def _write(figure: Figure, panels: tuple[Axes, ...], where: str | Path, name: str) -> Path:
+    folder = Path(where)
     for axes in panels:
         axes.tick_params(labelsize=_FONT)
         axes.xaxis.label.set_fontsize(_FONT)

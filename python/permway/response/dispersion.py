@@ -10,9 +10,11 @@ Structures under Moving Loads, 3rd ed., 1999, chapter 13).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 from scipy.linalg import eigh
 from scipy.optimize import minimize_scalar
 
@@ -20,6 +22,7 @@ from permway.arrays import Reals
 from permway.errors import InputError
 from permway.model.line import Line
 from permway.response.continuous import Bed, continuous
+from permway.response.receptance import check_line
 
 _POINTS = 400
 """Wavenumbers at equal ratios. Half still shows every bend; the critical speed is refined between them."""
@@ -62,6 +65,33 @@ class Dispersion:
         """Shape (K, branches)."""
         return np.asarray(2.0 * np.pi * self.frequency_Hz / self.wavenumber_rad_per_m[:, None])
 
+    def to_dataset(self) -> xr.Dataset:
+        """`frequency` in Hz and `phase_speed` in m/s over `wavenumber` in rad/m and `branch`."""
+        over = ("wavenumber", "branch")
+        critical = {
+            "critical_speed_m_per_s": self.critical_speed_m_per_s,
+            "critical_wavenumber_rad_per_m": self.critical_wavenumber_rad_per_m,
+        }
+        return xr.Dataset(
+            {
+                "frequency": (over, self.frequency_Hz, {"long_name": "frequency", "units": "Hz"}),
+                "phase_speed": (over, self.phase_speed_m_per_s, {"long_name": "phase speed", "units": "m/s"}),
+            },
+            coords={
+                "wavenumber": (
+                    "wavenumber",
+                    self.wavenumber_rad_per_m,
+                    {"long_name": "wavenumber", "units": "rad/m"},
+                ),
+                "branch": np.arange(1, self.frequency_Hz.shape[1] + 1),
+            },
+            attrs={
+                "bodies": list(self.bed.bodies),
+                "notes": "; ".join(self.notes),
+                **{name: value for name, value in critical.items() if value is not None},
+            },
+        )
+
 
 def dispersion(
     line: Line,
@@ -69,7 +99,7 @@ def dispersion(
     body: str | None = None,
     from_m: float | None = None,
     to_m: float | None = None,
-    held: tuple[str, ...] = (),
+    held: Sequence[str] = (),
     temperature_C: float | None = None,
 ) -> Dispersion:
     """Dispersion curves of the track along a line.
@@ -81,7 +111,7 @@ def dispersion(
         The beam that the load moves on; by default the first beam without ends, or else the first beam.
     from_m, to_m : float, optional
         Stretch over which joints and masses are shared out; by default that of the layer below the body.
-    held : tuple of str
+    held : sequence of str
         Bodies taken as rigid and at rest.
     temperature_C : float, optional
         Needed if a law of the line depends on it.
@@ -95,6 +125,8 @@ def dispersion(
     InputError
         For a body that is no beam, a stretch without joints, or laws that need a temperature.
     """
+    check_line(line)
+    held = (held,) if isinstance(held, str) else tuple(held)
     bed = continuous(line, body=body, from_m=from_m, to_m=to_m, held=held)
     waves = _Waves(line, bed, temperature_C)
     wavenumber = np.geomspace(_LOWEST_RAD_PER_M, math.pi / bed.spacing_m, _POINTS)

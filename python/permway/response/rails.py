@@ -8,10 +8,10 @@ from typing import Any
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from permway.errors import InputError
+from permway.errors import InputError, must_be
 from permway.model.line import Line
 from permway.model.roll import Roll, antisymmetric
-from permway.response.receptance import Place, check_places, receptance
+from permway.response.receptance import Place, check_line, check_places, receptance
 
 
 def both_rails(
@@ -55,6 +55,8 @@ def both_rails(
     """
     if "extensions" in options:
         raise InputError("is not for both rails", where="extensions", remedy="ask for each half's own")
+    check_line(symmetric, "symmetric")
+    must_be(other, (Line, Roll), "other")
     odd = antisymmetric(symmetric, other) if isinstance(other, Roll) else other
     for kind, places in (("forces", forces), ("sensors", sensors)):
         check_places(odd, places, kind)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import get_args
 
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from permway import _core
 from permway.arrays import Reals, real_numbers
-from permway.errors import InputError
+from permway.errors import InputError, must_be
 from permway.model.bodies import Metres
 from permway.model.joint_table import JointTable
 from permway.model.line import Line
@@ -96,9 +96,7 @@ def receptance(
     SolveError
         If the line is singular, not finite or badly conditioned at a frequency.
     """
-    if not isinstance(line, Line):
-        remedy = "of a model it is model.line"
-        raise InputError(f"must be a Line, not a {type(line).__name__}", where="line", remedy=remedy)
+    check_line(line)
     frequency = check_sweep(frequency_Hz)
     solved = between(
         line,
@@ -157,6 +155,10 @@ def between(
     ):
         if chosen not in choices:
             raise InputError("unknown", where=where, value=chosen, remedy=f"use one of {list(choices)}")
+    if isinstance(temperature_C, str | bool):
+        raise InputError(
+            "must be a number", where="temperature_C", value=temperature_C, remedy="in degrees Celsius"
+        )
     points = {"forces": check_places(line, forces, "forces"), "sensors": check_places(line, sensors, "sensors")}
     return run(
         line,
@@ -171,6 +173,17 @@ def between(
     )
 
 
+def check_line(line: object, where: str = "line") -> None:
+    """Refuse what is no line.
+
+    Raises
+    ------
+    InputError
+        For anything else, a model too.
+    """
+    must_be(line, Line, where, remedy="of a model it is model.line")
+
+
 def check_places(line: Line, places: Sequence[Place], where: str) -> dict[str, np.ndarray]:
     """Places as the core's columns: segment of each, and x.
 
@@ -179,6 +192,10 @@ def check_places(line: Line, places: Sequence[Place], where: str) -> dict[str, n
     InputError
         For a name that stands twice, and a place that is on no body, off it, or where two beams meet.
     """
+    check_line(line)
+    if isinstance(places, Place | str) or not isinstance(places, Iterable):
+        remedy = "as in [Place(body=..., x_m=...)], also of one"
+        raise InputError("must be a list of Places", where=where, value=places, remedy=remedy)
     for index, place in enumerate(places):
         if not isinstance(place, Place):
             raise InputError("must be a Place", where=f"{where}[{index}]", value=place)
@@ -212,6 +229,8 @@ def check_sweep(frequency_Hz: ArrayLike) -> Reals:
     InputError
         Naming the first frequency at fault.
     """
+    if frequency_Hz is None:
+        raise InputError("must be given", where="frequency_Hz", remedy="as a list or an array in Hz")
     frequency = np.atleast_1d(real_numbers(frequency_Hz, "frequency_Hz"))
     if frequency.ndim != 1:
         raise InputError("frequencies must be a list", where="frequency_Hz", value=frequency.shape)

@@ -24,6 +24,7 @@ from permway.response.limits import check_answer
 from permway.response.receptance import (
     CONVENTION,
     Place,
+    check_line,
     check_places,
     check_sweep,
     frequency_coordinate,
@@ -88,6 +89,7 @@ def sensitivity(
     SolveError
         If a frequency cannot be solved.
     """
+    check_line(line)
     frequency = check_sweep(frequency_Hz)
     wanted = {"forces": check_places(line, forces, "forces"), "sensors": check_places(line, sensors, "sensors")}
     ports, sensor_port, force_port = _ports(wanted)

@@ -12,13 +12,15 @@ from typing import Any
 import h5netcdf
 import xarray as xr
 
-from permway.errors import InputError
+from permway.errors import InputError, must_be
 from permway.files import write_bytes
 from permway.model.file import Model
 from permway.response.passby.run import passby
 from permway.response.rails import both_rails
 from permway.response.receptance import Progress, receptance
 from permway.response.train import train_response
+
+_REMEDY = "as in solve(read_model(path)); a line alone is solved by permway.receptance"
 
 
 def solve(model: Model, *, threads: int | None = None, progress: Progress | None = None) -> xr.Dataset:
@@ -45,7 +47,7 @@ def solve(model: Model, *, threads: int | None = None, progress: Progress | None
         As those two.
     """
     if not isinstance(model, Model):
-        remedy = f"as in solve(read_model({str(model)!r}))" if isinstance(model, str | os.PathLike) else ""
+        remedy = f"as in solve(read_model({str(model)!r}))" if isinstance(model, str | os.PathLike) else _REMEDY
         raise InputError(f"must be a Model, not a {type(model).__name__}", where="model", remedy=remedy)
     frequency = model.frequencies.array()
     parts = []
@@ -142,6 +144,8 @@ def write_dataset(data: xr.Dataset, path: str | Path) -> Path:
     InputError
         If the place cannot be written.
     """
+    must_be(data, xr.Dataset, "data", remedy="as in write_dataset(data, path)")
+    must_be(path, (str, Path), "path")
     path = Path(path)
     if data.nbytes < LARGEST_IN_MEMORY:
         return write_bytes(path, netcdf_bytes({"": data}))

@@ -11,12 +11,12 @@ from pydantic import Field, field_validator
 
 from permway import _core
 from permway.arrays import Complexes, Reals
-from permway.errors import InputError, SolveError
+from permway.errors import InputError, SolveError, must_be
 from permway.model.bodies import Metres
 from permway.model.contact import ContactStiffness, GivenContact
 from permway.model.faults import fault
 from permway.model.irregularity import AnyIrregularity, Conversion
-from permway.model.irregularity_spectra import check_speed
+from permway.model.irregularity_spectra import Irregularity, check_speed
 from permway.model.line import Line
 from permway.model.vehicle import Vehicle
 from permway.records import FrozenModel, Number
@@ -27,6 +27,7 @@ from permway.response.receptance import (
     Formulation,
     Place,
     Progress,
+    check_line,
     check_sweep,
     frequency_coordinate,
     receptance,
@@ -118,6 +119,9 @@ def train_response(
     SolveError
         If line, or wheels on the line, cannot be solved at a frequency.
     """
+    check_line(line)
+    must_be(train, Train, "train", remedy="as in Train(vehicle=crh380a(), centre_m=16.0, speed_m_per_s=80.0)")
+    must_be(irregularity, Irregularity, "irregularity")
     frequency = check_sweep(frequency_Hz)
     wheels = train.wheels()
     places = [*wheels, *sensors]

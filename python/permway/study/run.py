@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from permway.errors import InputError, SolveError
+from permway.errors import InputError, SolveError, must_be
 from permway.interrupt import interruptible
 from permway.model.file import Frequencies
 from permway.response.limits import check_threads
@@ -86,6 +86,7 @@ def run_study(
         Before anything is computed, for a case that is no model, a variable that no answer has, or a folder that
         cannot be used.
     """
+    must_be(study, Study, "study", remedy="of a file it is permway.study.read_study(path)")
     check_threads(threads)
     for index in cases_to_check(study):
         study.model(index)

@@ -26,18 +26,27 @@ def need(campaign: Campaign, record: Record, temperature_C: float | None, data: 
 
 def lines(data: xr.Dataset) -> Reals:
     """Frequencies within the bands, `LINES` in each at equal ratios, Hz."""
+    return lines_of(1000.0 * 10.0 ** (np.round(10.0 * np.log10(data["band"].values / 1000.0)) / 10.0))
+
+
+def lines_of(middle_Hz: Reals) -> Reals:
+    """The same, from exact mid-band frequencies."""
     share = (np.arange(LINES) + 0.5) / LINES - 0.5
-    exact = 1000.0 * 10.0 ** (np.round(10.0 * np.log10(data["band"].values / 1000.0)) / 10.0)
-    return np.asarray((exact[:, None] * 10.0 ** (share / 10.0)[None, :]).reshape(-1), dtype=np.float64)
+    return np.asarray((middle_Hz[:, None] * 10.0 ** (share / 10.0)[None, :]).reshape(-1), dtype=np.float64)
+
+
+def band_moduli(receptance: Complexes, frequency_Hz: Reals) -> Reals:
+    """Root of the mean power in every band, (blows, bands), of receptances (F, 1, blows) at those lines."""
+    bands = frequency_Hz.size // LINES
+    power = np.abs(receptance[:, 0, :]).reshape(bands, LINES, -1) ** 2
+    # The same blow strikes all lines of a band; accelerance weighs them by the fourth power of their frequency.
+    weight = frequency_Hz.reshape(bands, LINES, 1) ** 4
+    return np.asarray(np.sqrt((power * weight).sum(axis=1) / weight.sum(axis=1)).T)
 
 
 def predicted(record: Record, data: xr.Dataset, receptance: Complexes) -> xr.Dataset:
     """The decay rate in every band, from receptances (F, 1, blows)."""
-    bands = data.sizes["band"]
-    power = np.abs(receptance[:, 0, :]).reshape(bands, LINES, -1) ** 2
-    # The same blow strikes all lines of a band; accelerance weighs them by the fourth power of their frequency.
-    weight = lines(data).reshape(bands, LINES, 1) ** 4
-    level = np.sqrt((power * weight).sum(axis=1) / weight.sum(axis=1))
     assert record.spacing_m is not None
-    rate = track_decay_rate(level.T, grid_positions(record.spacing_m), warn=False)["decay_rate"].values
+    level = band_moduli(receptance, lines(data))
+    rate = track_decay_rate(level, grid_positions(record.spacing_m), warn=False)["decay_rate"].values
     return data["decay_rate"].copy(data=rate).to_dataset(name="decay_rate")

@@ -87,51 +87,40 @@ def figure_8(law: AnyLaw) -> Any:
 
 def figure_9_storage(law: AnyLaw) -> Any:
     """Storage stiffness over temperature and frequency."""
-    f, t, value = _surface(law)
-    return _scene(f, t, value.real / 1e6, "storage, MN/m")
+    f, t, value = _grid(law)
+    return _map(f, t, value.real / 1e6, "MN/m")
 
 
 def figure_9_loss_factor(law: AnyLaw) -> Any:
     """Loss factor over temperature and frequency."""
-    f, t, value = _surface(law)
-    return _scene(f, t, value.imag / value.real, "loss factor")
+    f, t, value = _grid(law)
+    return _map(f, t, value.imag / value.real, "")
 
 
-def _surface(law: AnyLaw) -> tuple[Reals, Reals, Any]:
+def _grid(law: AnyLaw) -> tuple[Reals, Reals, Any]:
     f, t = np.linspace(1.0, 200.0, 50), np.linspace(*IDENTIFIED_C, 41)
     return f, t, law.complex(f[None, :], t[:, None])
 
 
-def _scene(f: Reals, t: Reals, z: Reals, title: str) -> Any:
+def _map(f: Reals, t: Reals, z: Reals, unit: str) -> Any:
+    """Lines of equal value, labelled; a surface in space would need WebGL, which not every browser has."""
     figure = dress(
         go.Figure(
-            go.Surface(
+            go.Contour(
                 x=f,
                 y=t,
                 z=z,
                 colorscale="Viridis",
-                showscale=False,
-                contours={"x": _net(0, 200, 20), "y": _net(-30, 20, 5)},
+                ncontours=14,
+                contours={"showlabels": True, "labelfont": {"size": 11, "color": "white"}},
+                line={"width": 0.7, "color": "rgba(255,255,255,0.6)"},
+                colorbar={"title": {"text": unit}, "thickness": 12, "outlinewidth": 0, "tickfont": {"size": 11}},
                 hovertemplate="%{x:.0f} Hz, %{y:.0f} °C: %{z:.3g}<extra></extra>",
             )
         ),
         height=400,
     )
-    axis = {"gridcolor": "#d5d9df", "backgroundcolor": "white", "showbackground": False, "tickfont": {"size": 11}}
-    figure.update_layout(
-        margin={"l": 0, "r": 0, "t": 0, "b": 0},
-        scene={
-            "xaxis": {**axis, "title": {"text": "frequency, Hz"}, "nticks": 5},
-            # Cold at the back: the hill rises there and would hide the rest.
-            "yaxis": {**axis, "title": {"text": "temperature, °C"}, "nticks": 6},
-            "zaxis": {**axis, "title": {"text": title}, "nticks": 6},
-            "camera": {"eye": {"x": -1.5, "y": 1.7, "z": 0.7}, "center": {"x": 0, "y": 0, "z": -0.16}},
-            "aspectmode": "manual",
-            "aspectratio": {"x": 1.0, "y": 1.0, "z": 0.75},
-        },
-    )
+    figure.update_layout(margin={"b": 52})
+    figure.update_xaxes(title_text="frequency, Hz")
+    figure.update_yaxes(title_text="temperature, °C")
     return figure
-
-
-def _net(start: float, end: float, size: float) -> dict[str, Any]:
-    return {"show": True, "start": start, "end": end, "size": size, "color": "rgba(255,255,255,0.45)", "width": 1}

@@ -80,3 +80,18 @@ for (const shot of document.querySelectorAll("figure.shot")) {
     frame.scrollLeft = across * image.getBoundingClientRect().width - frame.clientWidth / 2;
   });
 }
+
+// Where a table is wider than the phone it is a list of its rows, each cell with its column's name; but for those with
+// many columns or spans. In closed details nothing has a width: there the columns count.
+for (const table of document.querySelectorAll(".scroll > table")) {
+  const heads = table.tHead ? [...table.tHead.rows] : [], names = heads.length === 1 ? [...heads[0].cells] : [];
+  const spans = [...table.querySelectorAll("th, td")].some((cell) => cell.colSpan > 1 || cell.rowSpan > 1);
+  if (spans || names.length < 2 || names.length > 12) continue;
+  const wide = table.offsetWidth;
+  if (wide ? wide <= table.parentElement.clientWidth + 1 : names.length < 4) continue;
+  table.classList.add("stack");
+  for (const row of [...table.tBodies].flatMap((body) => [...body.rows]))
+    [...row.cells].forEach((cell, i) => {
+      if (cell.tagName === "TD" && i > 0 && cell.textContent.trim()) cell.dataset.label = names[i].textContent.trim();
+    });
+}

@@ -261,7 +261,7 @@ def _check(
     wraparound_limit: float,
 ) -> None:
     if not isinstance(train, Train | Axles):
-        raise InputError("must be a Train or Axles", where="train", value=train)
+        raise InputError(f"must be a Train or Axles, not a {type(train).__name__}", where="train")
     if irregularity is not None and not isinstance(train, Train):
         raise InputError("needs a Train: Axles have no vehicle to be shaken", where="irregularity")
     if (irregularity is None) != (seed is None):

@@ -1,0 +1,87 @@
+"""`permway modes`: what it lists, writes and draws."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from permway.cli import app
+from permway.errors import InputError
+from typer.testing import CliRunner
+
+MODEL = """
+[frequencies]
+from_Hz = 2.0
+to_Hz = 60.0
+step_Hz = 1.0
+[line.bodies.deck]
+type = "beam"
+youngs_modulus_Pa = 3.4e10
+second_moment_m4 = 1.2
+density_kg_per_m3 = 2500.0
+area_m2 = 4.0
+loss_factor = 0.04
+intervals_m = [[0.0, 24.0]]
+ends = "pinned"
+[[forces]]
+body = "deck"
+x_m = 6.0
+[[sensors]]
+body = "deck"
+x_m = 6.0
+"""
+FIRST_HZ = np.pi / (2.0 * 24.0**2) * np.sqrt(3.4e10 * 1.2 / 1.0e4) * (1.0 + 0.04**2) ** 0.25
+
+
+@pytest.fixture
+def model(tmp_path: Path) -> Path:
+    path = tmp_path / "model.toml"
+    path.write_text(MODEL)
+    return path
+
+
+def run(*arguments: object) -> dict:
+    result = CliRunner().invoke(app, ["modes", *map(str, arguments), "--json"])
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
+
+
+def test_it_lists_the_model_s_band(model: Path) -> None:
+    said = run(model)
+    assert said["band_Hz"] == [2.0, 60.0]
+    found = [one["frequency_Hz"] for one in said["modes"]]
+    assert found == pytest.approx(FIRST_HZ * np.array([1.0, 4.0, 9.0]), rel=1e-7)
+    first = said["modes"][0]
+    assert (first["moves_most"], first["damping_ratio"]) == ("deck@12", pytest.approx(0.02, rel=1e-3))
+    assert first["modal_mass_kg"] == pytest.approx(0.5 * 24.0 * 1.0e4, rel=1e-5)
+    assert said["notes"] == []
+
+
+def test_it_writes_and_draws(model: Path, tmp_path: Path) -> None:
+    said = run(model, "--to", 25, "-o", tmp_path / "modes.csv", "--plot", tmp_path / "pictures")
+    table = pd.read_csv(said["table"])
+    assert table["natural_frequency [Hz]"].to_numpy() == pytest.approx(FIRST_HZ * np.array([1.0, 4.0]), rel=1e-7)
+    (picture,) = said["pictures"]
+    assert Path(picture).read_bytes().startswith(b"\x89PNG")
+    said = run(model, "--to", 25, "-o", tmp_path / "modes.nc")
+    with xr.open_dataset(said["dataset"], engine="h5netcdf") as data:
+        assert data["shape"].dtype == np.complex128
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["--from", "80"], "from low to high"),
+        (["-o", "modes.xlsx"], r"end the name in .csv or .nc"),
+        (["-o", "/nowhere/at/all.csv"], "no such folder"),
+    ],
+)
+def test_wrong_input(model: Path, arguments: list[str], says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        run(model, *arguments)
