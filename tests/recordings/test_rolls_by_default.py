@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from campaigns import tables, write
+from permway.cli_check import checks
 from permway.errors import InputError
 from permway.recordings.campaign import Campaign, read_campaign
 from permway.recordings.campaign_excitation import Rolling
+from typer.testing import CliRunner
 
 LEFT_OUT = object()
 
@@ -94,6 +97,14 @@ def test_without_a_run_there_is_nothing_to_roll(tmp_path: Path) -> None:
     said["irregularity"]["rolling"] = True
     with pytest.raises(InputError, match="no run with sensors on board"):
         read_campaign(write(tmp_path, said, model))
+
+
+def test_a_check_says_so(tmp_path: Path) -> None:
+    said, model = tables()
+    del said["irregularity"]["rolling"]
+    path = write(tmp_path, said, model)
+    done = CliRunner().invoke(checks, ["check", str(path), "--json", "--no-picture"])
+    assert json.loads(done.stdout)["trains"] == "roll over supports 0.6 m apart"
 
 
 def test_stations_written_to_a_centimetre_repeat(tmp_path: Path) -> None:
