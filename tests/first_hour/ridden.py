@@ -51,7 +51,7 @@ DEGREES = {"axlebox1": "car1.wheelset1", "axlebox3": "car1.wheelset3", "bogie1":
 READ = (10.5, 14.1)
 STRUCK = (9.0, 10.5, 12.3, 15.0)
 BLOWS = 8
-FREQUENCY = np.arange(20.0, 421.0, 5.0)
+FREQUENCY = np.arange(20.0, 421.0, 10.0)
 ERRORS = Errors(size_dB=0.4, length_octaves=1.0, noise=0.02)
 
 CENTRE_M = 11.0
@@ -193,8 +193,8 @@ def _ride(campaign: dict[str, Any], model: dict[str, Any], floors: bool) -> None
         campaign["sensors"].append({"name": name, "degree": degree, "unit": "m/s2", **chain})
     condition = {"name": "ride", "kind": "train", "temperature_C": 12.0, "speed_m_per_s": SPEED_M_PER_S}
     campaign["conditions"].append(condition)
-    record = {"name": "ride", "file": "ride.npz", "condition": "ride", "statistic": "csd", "segment_s": 1.0}
-    campaign["records"].append({**record, "band_Hz": [4.0, 110.0], "channels": list(NOISE)})
+    record = {"name": "ride", "file": "ride.npz", "condition": "ride", "statistic": "csd", "segment_s": 0.5}
+    campaign["records"].append({**record, "band_Hz": [10.0, 90.0], "channels": list(NOISE)})
     level = {"name": "level", "unit": "dB", "paths": ["campaign.irregularity.level_dB"], "acts": "sets"}
     campaign["parameters"].append({**level, "tolerance_2sigma": 2.0, "absolute": True})
 
