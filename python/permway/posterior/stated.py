@@ -68,7 +68,7 @@ PREFIXED = ("N", "Pa")
 def _words(known: Known, deviations: float) -> str:
     """As an engineer says it: the value, how far it is from the stated one, and in standard deviations."""
     value, unit = known.value(deviations), known.parameter.unit
-    share = f"{abs(value / known.nominal - 1.0):.0%} {'below' if value < known.nominal else 'above'} "
+    share = f"{100.0 * abs(value / known.nominal - 1.0):.0f} % {'below' if value < known.nominal else 'above'} "
     far = share if known.nominal > 0.0 else ""
     return (
         f"about {_size(value, unit)}, {far}the stated {_size(known.nominal, unit)}, "

@@ -85,7 +85,7 @@ def _of(name: str, euler: Beam) -> Hypothesis:
 def _words(euler: Beam, radius_m: float, shear: float) -> str:
     return (
         f"the girder turns (radius of gyration {radius_m:.2g} m) and shears (E/kappa G {shear:.2g}) as it bends; "
-        f"without both its bending frequencies are right to {RIGHT:.0%} up to "
+        f"without both its bending frequencies are right to {100.0 * RIGHT:g} % up to "
         f"{trusted_Hz(euler, radius_m, shear):.2g} Hz"
     )
 
