@@ -38,6 +38,7 @@ def check(
     from permway.checking.check import check as run
     from permway.checking.table import blunder_rows, record_rows
     from permway.recordings.campaign import read_campaign
+    from permway.recordings.rolls import how_trains_run
 
     checked = run(read_campaign(campaign, allow_outside=allow_outside), threads=threads)
     rows = blunder_rows(checked)
@@ -45,6 +46,9 @@ def check(
         "blunders": rows if as_json else [told(row) for row in rows],
         "records": record_rows(checked),
     }
+    runs = how_trains_run(checked.campaign.said, checked.campaign.model)
+    if runs is not None:
+        result["trains"] = runs
     if checked.reading.left_out:
         result["not_predicted"] = [f"{name}: {why}" for name, why in checked.reading.left_out.items()]
     if not no_picture:

@@ -120,6 +120,8 @@ def test_layers_of_dashpots_are_imported_as_such(tmp_path: Path) -> None:
     write(case, tmp_path / "sheet")
     assert json.loads((tmp_path / "sheet" / "sheet.json").read_text())["values"]["pad"]["viscous_at_Hz"] == 80.0
     campaign = import_sheet(tmp_path / "sheet", tmp_path / "imported")
+    # Sheets of all tiers have the irregularity move, also where the truth is a train that rolls.
+    assert campaign.said.irregularity.rolling is False
     pad = case.nominal["pad"]
     law = campaign.model.line.laws["pad"]
     assert isinstance(law, KelvinVoigt)

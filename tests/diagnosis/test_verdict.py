@@ -256,6 +256,10 @@ def test_a_parameter_that_nobody_would_believe_is_said() -> None:
     found = verdict("located", effects=(LOST,), recalibrated=told).sentence
     assert found.endswith(words)
     assert "slab.E" not in found
+    # Of a wrong stated value its own effect tells.
+    member = ClassMember(name="owner_value", probability=1.0)
+    stated = Effect(domain="path", place=Place(body="pad.k"), name="owner_value", class_=(member,))
+    assert "pad.k has to be" not in verdict("named", effects=(stated,), recalibrated=told).sentence
     # What an amendment brings back is off no more.
     back = Recalibrated(before=far, after=dict.fromkeys(far, near))
     assert "has to be" not in verdict("named", effects=(LOST,), recalibrated=back).sentence

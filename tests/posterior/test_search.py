@@ -92,4 +92,4 @@ def test_a_wrong_stated_value_is_said_with_the_value_that_fits(
     assert found.high is not None
     assert found.low < 0.7 * made.truth["pad.k"] < found.high
     words = verdict.effects[0].law.words
-    assert "below the stated 3e+07 N/m" in words
+    assert "below the stated 30 MN/m" in words

@@ -107,7 +107,7 @@ CAMPAIGN: dict[str, Any] = {
         {"name": "rig", "kind": "shaker"},
         {"name": "tests", "kind": "table"},
     ],
-    "irregularity": {"knowledge": "within", "within_dB": 2.0},
+    "irregularity": {"knowledge": "within", "within_dB": 2.0, "rolling": False},
     "records": [
         {
             "name": "blows",

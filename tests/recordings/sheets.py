@@ -71,7 +71,7 @@ SHEET: dict[str, Any] = {
         "unit": "m/s^2",
         "speeds_kmh": list(SPEEDS_KMH),
         "channels": ["axlebox1", "axlebox2", "axlebox3", "axlebox4", "bogie1", "carbody"],
-        "position": "wheelsets 1..4 at x0+10, x0+7.5, x0-7.5, x0-10 with x0 = 6.4 m, "
+        "position": "wheelsets 1..4 at x0+10, x0+7.5, x0-7.5, x0-10 with x0 = 6.4 m (moving-irregularity model), "
         "each rounded to the nearest 0.16 m",
     },
 }

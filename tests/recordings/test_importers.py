@@ -62,6 +62,8 @@ def test_what_the_sheet_says_is_in_the_campaign(campaign: Campaign) -> None:
     floor = campaign.sensor("carbody").chain.noise_floor
     assert floor == pytest.approx(2.0 * NOISE**2 / RATE_HZ, rel=0.2)
     assert all(record.interpolated_Hz is None for record in campaign.said.records)
+    # The sheet has the irregularity move.
+    assert campaign.said.irregularity.rolling is False
 
 
 def test_records_are_predicted_within_their_noise(campaign: Campaign) -> None:

@@ -20,6 +20,9 @@ INCOMPLETE = 1.5
 MOST_OUTSIDE = 2
 """Parameters outside their tolerance that a sentence names, at most."""
 
+STATED = "owner_value"
+"""Effect whose place is a parameter that was stated wrongly."""
+
 STATUS = {
     "recalibrated": "nothing missing",
     "outside_tolerance": "parameter outside its tolerance",
@@ -227,10 +230,12 @@ def _moved(verdict: Verdict) -> dict[str, Moved]:
 def _beyond(verdict: Verdict) -> str:
     """Parameters outside their tolerances beside what else is said, the farthest first."""
     known = _moved(verdict)
+    # What an effect of its own says already.
+    told = {effect.place.body for effect in verdict.effects if effect.name == STATED}
     said = [
         f"{name} has to be {quantity(known[name].value)} for it, {quantity(abs(known[name].z))} standard "
         f"deviations from the owner's {quantity(known[name].prior)}"
-        for name in outside(known)[:MOST_OUTSIDE]
+        for name in [name for name in outside(known) if name not in told][:MOST_OUTSIDE]
     ]
     return " and ".join(said)
 

@@ -61,15 +61,28 @@ def _of(known: Known, domain: Domain) -> Hypothesis:
     )
 
 
+PREFIXED = ("N", "Pa")
+"""Beginnings of units that engineers write with kilo, mega and giga."""
+
+
 def _words(known: Known, deviations: float) -> str:
     """As an engineer says it: the value, how far it is from the stated one, and in standard deviations."""
-    value, unit = known.value(deviations), "" if known.parameter.unit == "1" else f" {known.parameter.unit}"
-    share = f"{abs(value / known.nominal - 1.0):.0%} {'below' if value < known.nominal else 'above'} "
+    value, unit = known.value(deviations), known.parameter.unit
+    share = f"{100.0 * abs(value / known.nominal - 1.0):.0f} % {'below' if value < known.nominal else 'above'} "
     far = share if known.nominal > 0.0 else ""
     return (
-        f"about {value:.3g}{unit}, {far}the stated {known.nominal:.3g}{unit}, "
+        f"about {_size(value, unit)}, {far}the stated {_size(known.nominal, unit)}, "
         f"{abs(deviations):.1f} standard deviations of its tolerance"
     )
+
+
+def _size(value: float, unit: str) -> str:
+    """Three digits and the unit: 21.2 MN/m."""
+    if unit.startswith(PREFIXED):
+        for prefix, factor in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
+            if abs(value) >= factor:
+                return f"{value / factor:.3g} {prefix}{unit}"
+    return f"{value:.3g}" + ("" if unit == "1" else f" {unit}")
 
 
 def _domain(path: str) -> Domain:

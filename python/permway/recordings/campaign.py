@@ -19,6 +19,7 @@ from permway.recordings.campaign_parts import Condition, HeldOut, IrregularityKn
 from permway.recordings.campaign_values import ParameterSet
 from permway.recordings.channel import Point, Sensor
 from permway.recordings.parameters import Parameter
+from permway.recordings.rolls import how_trains_run, rolling_said
 from permway.records import FrozenModel
 
 if TYPE_CHECKING:
@@ -142,7 +143,7 @@ class Campaign:
         One whose trains stand stays as it is.
         """
         known = self.said.irregularity
-        if known.rolling is None:
+        if known.rolls is None:
             return self
         warm = other.model.temperature_C
         runs = {
@@ -150,7 +151,7 @@ class Campaign:
             for c in other.said.conditions
             if c.kind == "train" and c.speed_m_per_s
         }
-        rolling = known.rolling.model_copy(update={"about": About(other.model.line, runs)})
+        rolling = known.rolls.model_copy(update={"about": About(other.model.line, runs)})
         irregularity = known.model_copy(update={"rolling": rolling})
         said = self.said.model_copy(update={"irregularity": irregularity})
         return replace(self, said=said, parameters=self.parameters.saying(said))
@@ -162,6 +163,7 @@ class Campaign:
 
     def summary(self) -> dict[str, str | int]:
         """What there is, for people and machines."""
+        runs = how_trains_run(self.said, self.model)
         return {
             "campaign": str(self.folder / self.file),
             "title": self.said.title,
@@ -169,6 +171,7 @@ class Campaign:
             "sensors": len(self.said.sensors),
             "parameters": len(self.said.parameters),
             "held_out": len(self.said.held_out),
+            **({} if runs is None else {"trains": runs}),
         }
 
     def load(self) -> list[Dataset]:
@@ -241,6 +244,7 @@ def campaign_from_dict(table: Mapping[str, Any], *, folder: Path, allow_outside:
             if name is not None and not beside(name, folder, where, outside=allow_outside).is_file():
                 raise InputError("there is no such file", where=where, value=name)
     check_campaign(said, model)
+    said = rolling_said(said, model)
     raw = read_toml(model_path, "name a model file (TOML)")
     read = Campaign(said, model, folder, ParameterSet(said.parameters, model, raw, said, model_path.parent))
     return read.rolling_about(read)

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, PositiveFloat, model_validator
+from pydantic import BeforeValidator, Field, PositiveFloat, StrictBool, model_validator
 
 from permway.arrays import Reals
 from permway.errors import InputError
@@ -322,8 +322,10 @@ class IrregularityKnown(FrozenModel):
     wheel_radius_m : float
         Rolling radius, which sets where the lines of `wheels` lie.
     pushes : sequence of Push
-    rolling : Rolling, optional
-        By default trains stand.
+    rolling : Rolling or bool, optional
+        By default trains roll over the model's own supports where these repeat and the rail reaches far enough
+        (:mod:`permway.recordings.rolls`). True: they do, or it is an error; false: they stand. A campaign that is
+        read has, for default and true, the supports that were found, or none where trains stand.
     """
 
     knowledge: Literal["known", "within", "unknown"] = "known"
@@ -339,7 +341,12 @@ class IrregularityKnown(FrozenModel):
     wheels: tuple[WheelLines, ...] = ()
     wheel_radius_m: float = Field(default=0.43, gt=0.1, lt=1.5)
     pushes: tuple[Push, ...] = ()
-    rolling: Rolling | None = None
+    rolling: Rolling | StrictBool | None = None
+
+    @property
+    def rolls(self) -> Rolling | None:
+        """What trains roll over; None where they stand."""
+        return self.rolling if isinstance(self.rolling, Rolling) else None
 
     @model_validator(mode="after")
     def _check(self) -> IrregularityKnown:

@@ -47,6 +47,7 @@ FOUND_ON: dict[str, tuple[str, ...]] = {
     "discrete_support": ("bed",),
     "span_coupling": ("two spans",),
     "girder_local_modes": ("viaduct", "two spans"),
+    "girder_shear": ("viaduct", "two spans"),
     "second_track": ("viaduct", "two spans"),
     "deck_attachment": ("viaduct", "two spans"),
     "pad_frequency": ("viaduct", "two spans", "ballast", "bed"),
@@ -100,6 +101,7 @@ INJECTED: dict[str, tuple[str, list[Values], dict[str, float]]] = {
         strengths("mass_share", 0.01, 0.04, 0.15, frequency_Hz=40.0, loss_factor=0.05),
         {"mass_share": 0.2, "frequency_Hz": 0.05},
     ),
+    "girder_shear": ("viaduct", strengths("turning", 0.3, 0.7, 1.5, shear=2.0), {}),
     "deck_attachment": (
         "viaduct",
         strengths("mass_kg", 150.0, 500.0, 1500.0, x_m=5.0, frequency_Hz=25.0, loss_factor=0.05),

@@ -102,7 +102,7 @@ CAMPAIGN: dict[str, Any] = {
         {"name": "slow", "kind": "train", "temperature_C": 12.0, "speed_m_per_s": 50.0},
         {"name": "fast", "kind": "train", "temperature_C": 12.0, "speed_m_per_s": 71.0},
     ],
-    "irregularity": {"knowledge": "within", "within_dB": 2.0},
+    "irregularity": {"knowledge": "within", "within_dB": 2.0, "rolling": False},
     "records": [
         {
             "name": "blows",

@@ -168,6 +168,8 @@ def _run(random: np.random.Generator, layout: Layout, campaign: dict[str, Any], 
     centre = round(0.5 * layout.length_m, 2)
     model["train"] = {"centre_m": centre, "speed_m_per_s": 50.0, "vehicle": vehicle}
     model["irregularity"] = {"type": "german_sato", "continuous": True}
+    # The model that makes the records has its train stand.
+    campaign["irregularity"] = {"rolling": False}
     names = ["axlebox1", *(n for n in list(ON_BOARD)[1:] if random.random() < 0.6)]
     for name in names:
         degree, noise = ON_BOARD[name]

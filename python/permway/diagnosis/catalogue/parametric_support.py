@@ -27,7 +27,7 @@ FAMILY = "tied to speed over length"
 SUMMARY = (
     "Wheels roll over fasteners, and from span to span: their weight shakes them at multiples n of V over the "
     "spacing; what a profile does at one frequency it does so far away, too. By the model's own supports, with "
-    "harmonics coupled; or as lines a n^-p in the profile, which leave out how the stiffness itself varies."
+    "harmonics coupled, where the campaign says that trains stand; or as lines a n^-p in the profile, beyond that."
 )
 SHAPE_M = tuple(0.2 * 2.0**octave for octave in range(7))
 """Wavelengths at which the profile's spectrum may differ from its owner's where trains roll."""
@@ -85,7 +85,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             law=lambda v: f"{1e6 * v['amplitude_m']:.3g} um at V over the fasteners' spacing",
             size="amplitude_m",
         )
-        if _pass(runs, spacing) and situation.campaign.said.irregularity.rolling is None:
+        if _pass(runs, spacing) and situation.campaign.said.irregularity.rolls is None:
             yield from _rolling(situation, law, spacing)
 
 
@@ -102,7 +102,7 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
     except (InputError, SolveError):
         return
     rolls = with_irregularity(situation.campaign, rolling=Rolling(spacing_m=spacing))
-    known = dict(rolls.rolling_about(still).said.irregularity.rolling or {})
+    known = dict(rolls.rolling_about(still).said.irregularity.rolls or {})
     shapes = {x: f"shape_{x:g}_m_dB" for x in SHAPE_M}
     sigma = float(POWER_DB) * first_size(situation.campaign, "irregularity")
 

@@ -13,7 +13,8 @@ from permway.reading import inside
 from permway.recordings.campaign import Campaign
 from permway.recordings.importers.sheet_form import Sheet, read_sheet
 from permway.recordings.importers.sheet_model import model_table
-from permway.recordings.importers.sheet_runs import UNITS, read_runs
+from permway.recordings.importers.sheet_position import MOVING
+from permway.recordings.importers.sheet_runs import UNITS, Runs, read_runs
 from permway.recordings.importers.sheet_spots import matched, names_of
 from permway.recordings.importers.writing import Draft, write_campaigns
 from permway.recordings.readers import read_frf
@@ -90,7 +91,7 @@ def import_sheet(folder: Path, output: Path, *, copy: bool = True) -> Campaign:
         "format": 1,
         "title": title,
         "model": "model.toml",
-        "irregularity": {"knowledge": "within", "within_dB": 2.0} if runs else None,
+        "irregularity": _irregularity(sheet, runs) if runs else None,
         "parameters": [*_parameters(sheet), *(_train_parameters(sheet, names) if runs else [])],
         "sensors": [*_line_sensors(sheet, unit), *(runs.sensors() if runs else [])],
         "forces": _points(sheet),
@@ -100,6 +101,13 @@ def import_sheet(folder: Path, output: Path, *, copy: bool = True) -> Campaign:
     }
     draft = Draft(campaign, model_table(sheet, title), sources)
     return write_campaigns(output, [draft], copy=copy)[0]
+
+
+def _irregularity(sheet: Sheet, runs: Runs) -> dict[str, Any]:
+    """As sheets measure it. Trains stand where the sheet has the irregularity move under them, or none ran."""
+    said = "" if sheet.runs is None else sheet.runs.position
+    stands = (isinstance(said, str) and MOVING in said) or any(runs.interpolated)
+    return {"knowledge": "within", "within_dB": 2.0} | ({"rolling": False} if stands else {})
 
 
 def _find(folder: Path, name: str) -> Path:

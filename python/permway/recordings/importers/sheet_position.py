@@ -28,13 +28,16 @@ REMEDY = (
     "x0 = 16 m', the leading one first, and where they were rounded add ', each rounded to the nearest 0.16 m'"
 )
 
+MOVING = "moving-irregularity model"
+"""How a sheet says that its trains stand while the irregularity moves."""
+
 _SIZE = r"\d+(?:\.\d+)?"
 _TERM = rf"(?:x0(?:\s*[+-]\s*{_SIZE})?|-?{_SIZE})(?:\s*m)?"
 _NEXT = r"(?:,\s*(?=x0)|,?\s+and\s+|,\s+)"
 _SENTENCE = re.compile(
     rf"wheelsets\s+1\s*(?:\.\.|\.\.\.|-|to)\s*{WHEELSETS}\s+at\s+(?P<places>{_TERM}(?:{_NEXT}{_TERM})*)"
     rf"(?:,?\s+with\s+x0\s*=\s*(?P<x0>-?{_SIZE})\s*m)?"
-    r"(?:\s*\(moving-irregularity model\))?"
+    rf"(?:\s*\({MOVING}\))?"
     rf"(?:,\s*not\s+rounded|,\s*(?:each\s+)?rounded\s+to\s+the\s+nearest\s+(?P<grid>{_SIZE})\s*m"
     r"(?:,\s*halfway\s+to\s+the\s+even\s+multiple)?)?",
     re.IGNORECASE,

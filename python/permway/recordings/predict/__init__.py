@@ -210,7 +210,7 @@ def _csd(
     grid = grid_of(lines_Hz, dataset.frequency_Hz, record.segment_s)
     work = worked(campaign.model, known, condition, grid, lines_Hz, values)
     temperature = hammer.temperature(campaign, condition)
-    rolls = rolling_of(work.model, known.rolling, condition, lines_Hz, values, temperature)
+    rolls = rolling_of(work.model, known.rolls, condition, lines_Hz, values, temperature)
     return run.expected_csd(
         work.model,
         known,

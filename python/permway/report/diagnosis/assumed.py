@@ -10,6 +10,7 @@ from permway import _core
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.compare import KIND
 from permway.diagnosis.result import Diagnosis
+from permway.recordings.rolls import how_trains_run
 from permway.report.compare.tables import decibels, smooth_rows
 
 LIBRARIES = ("numpy", "scipy", "xarray")
@@ -19,6 +20,7 @@ def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
     """Facts by heading: `model`, `records`, `smooth`, `noise`, `left_out`, `ruled_out`, `held_out`, how made."""
     campaign, comparison = diagnosis.comparison.campaign, diagnosis.comparison
     line = campaign.model.line
+    runs = how_trains_run(campaign.said, campaign.model)
     layers = dict.fromkeys(f"{layer.law} ({layer.between[0]} on {layer.between[1]})" for layer in line.joints)
     return {
         "model": [
@@ -26,6 +28,7 @@ def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
             ("Bodies", ", ".join(line.bodies)),
             ("Joints", f"{line.joint_table().x.size}: {', '.join(layers)}"),
             ("Parameters with tolerances", str(len(campaign.parameters.known))),
+            *([] if runs is None else [("Trains", runs)]),
         ],
         "records": [
             (row["kind"], row["records"], row["channels"], decibels(row["noise_dB_rms"]))

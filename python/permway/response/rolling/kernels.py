@@ -26,7 +26,7 @@ from permway.model.stations import TOUCH_M
 from permway.response.core import Formulation
 from permway.response.receptance import Place, between
 from permway.response.rolling.bays import bays
-from permway.response.rolling.passed import HARMONICS, STEP_HZ, TAPER, passed
+from permway.response.rolling.passed import AHEAD_S, BEHIND_M, HARMONICS, STEP_HZ, TAPER, passed
 
 NEAR = (-6, -2, 2, 6)
 """Bays by which wheels are moved to places whose mean is taken where nothing below comes in pieces of a length."""
@@ -147,6 +147,18 @@ def _starts(line: Line, body: str, wheels: Reals) -> Reals | None:
     edges = bays(line, body, start, stop).edges_m
     edges = edges[(edges >= start - TOUCH_M) & (edges < stop - TOUCH_M)]
     return np.asarray(edges[np.unique(np.linspace(0, edges.size - 1, min(edges.size, MOST)).round().astype(int))])
+
+
+def reach(
+    line: Line, body: str, wheels_m: Reals, *, speed_m_per_s: float, spacing_m: float
+) -> tuple[float, float]:
+    """From where to where a rail is read for a :func:`kernel` of the same arguments, m."""
+    starts, longest = _starts(line, body, wheels_m), float(np.ptp(wheels_m))
+    if starts is None:
+        first, last = wheels_m.min() + NEAR[0] * spacing_m, wheels_m.max() + NEAR[-1] * spacing_m
+    else:
+        first, last = starts.min() - longest, starts.max() + longest
+    return float(first - spacing_m - BEHIND_M), float(last + spacing_m + AHEAD_S * speed_m_per_s)
 
 
 def _answer(
