@@ -26,8 +26,8 @@ COLUMNS = {
 HEAD = """\
 # Measured pairs
 
-Recordings by others, whose cause is known: a model is stated from one state, and held against a record of another. What was
-expected was written down before the first run.
+Recordings by others, whose cause is known: a model is stated from one state, and held against a record of another.
+What was expected was written down before the first run.
 
 """
 
