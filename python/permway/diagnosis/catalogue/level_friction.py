@@ -16,7 +16,7 @@ SUMMARY = (
 )
 PARAMETERS = {
     "growth": "1, 0.01 to 98: q",
-    "softening": "1, -0.5 to 0.8: s",
+    "softening": "1, 0 to 0.8: s",
     "exponent": "1, 0.03 to 32: p",
 }
 SIGNATURE = "Resonances widen from level to level, and mostly fall a little; one level by itself looks linear."
@@ -44,14 +44,15 @@ def _of(name: str) -> Hypothesis:
         family=FAMILY,
         free=(
             log_free("growth", "1", 1.0, 2.5),
-            linear_free("softening", "1", 0.0, 0.1, -0.5, 0.8),
+            linear_free("softening", "1", 0.0, 0.1, 0.0, 0.8),
             log_free("exponent", "1", 1.0, 2.0),
         ),
         amend=amend,
         locate=lambda _: Where(what=name),
         starts=((0.0, 0.0, 0.0), (0.0, 0.3, 0.5)),
         law=lambda v: (
-            f"at the largest level {1.0 + v['growth']:.2f} times the loss, {1.0 - v['softening']:.3f} of the stiffness"
+            f"at the largest level {1.0 + v['growth']:.2f} times the loss, "
+            f"{1.0 - v['softening']:.3f} of the stiffness"
         ),
         size="growth",
         none=0.0,
