@@ -1,17 +1,16 @@
 """Makes campaigns of measured pairs and diagnoses each: `python benches/pairs/run.py FOLDER [NAME ...]`.
 
-Needs the recordings beside the repository. What is in FOLDER already is not diagnosed again; NAME takes those
-whose names begin so. Prints a line each: status, what is said, class, decibels of what was left out, before and
-after.
-`--first` takes the first method. Half a minute to two minutes of processor each; the whole takes half an hour.
+Needs the recordings beside the repository. What is in FOLDER already is not made or diagnosed again; NAME takes
+those whose names begin so. Prints a line each: seconds of processor, status, what is said with its class, decibels
+of what was left out, before and after. `--first` takes the first method. At most four minutes of processor each.
 """
 
 from __future__ import annotations
 
 import argparse
+import resource
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -25,6 +24,7 @@ from permway.recordings.importers.track_decay import import_track_decay
 from truss import passage
 
 LIMIT_S = 240
+"""Of processor."""
 
 
 def rubbers(folder: Path) -> dict[str, Path]:
@@ -83,25 +83,33 @@ def main() -> None:
     for begins, make in MADE.items():
         if not any(begins.startswith(name[: len(begins)]) for name in given.names):
             continue
-        for name, path in make(given.folder).items():
+        there = sorted(given.folder.glob(f"{begins}*/**/campaign.toml"))
+        made = {"-".join(path.parent.relative_to(given.folder).parts): path for path in there}
+        for name, path in (made or make(given.folder)).items():
             if not name.startswith(tuple(given.names)):
                 continue
             into = path.parent / out
-            begun = time.monotonic()
+            before = _processor_s()
             if not (into / "verdict.json").exists():
                 method = [] if given.first else ["--posterior"]
                 where = ["--allow-outside", "--threads", "1", "-o", str(into)]
                 command = [sys.executable, "-m", "permway", "diagnose", *method, str(path), *where]
-                try:
-                    done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_S, check=False)
-                except subprocess.TimeoutExpired:
-                    print(f"{name}: more than {LIMIT_S} s", flush=True)
-                    continue
+                done = subprocess.run(command, capture_output=True, text=True, preexec_fn=_limited, check=False)
                 if done.returncode:
-                    print(f"{name}: {done.stderr.strip().splitlines()[-1]}", flush=True)
+                    last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+                    print(f"{name}: status {done.returncode}, {_processor_s() - before:.0f} s: {last}", flush=True)
                     continue
             verdict = Verdict.read(into / "verdict.json")
-            print(f"{name} ({time.monotonic() - begun:.0f} s) {said(verdict)}", flush=True)
+            print(f"{name} ({_processor_s() - before:.0f} s) {said(verdict)}", flush=True)
+
+
+def _processor_s() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def _limited() -> None:
+    resource.setrlimit(resource.RLIMIT_CPU, (LIMIT_S, LIMIT_S))
 
 
 if __name__ == "__main__":
