@@ -16,10 +16,7 @@ DOMAIN: Domain = "path"
 FAMILY = "bearing and pier"
 SUMMARY = "A beam's pinned end, or both, turns against a spring."
 PARAMETERS = {"stiffness": "N m/rad, 0.0003 to 3000 times E I / L: against rotation"}
-SIGNATURE = (
-    "Less deflection and strain over the whole span, most near the bearing, where strain changes sign; a roller "
-    "that is stuck at a height below the axis does so by its thrust."
-)
+SIGNATURE = "Less deflection and strain over the whole span, most near the bearing, where strain changes sign."
 CONFUSED_WITH = {"bearing_stiffness": "the end itself moves", "girder_crack": "strain beside the place"}
 SOURCE = "Fryba, Dynamics of Railway Bridges (1996), section 2.1: beams clamped elastically at their ends"
 
