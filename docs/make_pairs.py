@@ -39,6 +39,9 @@ cart's damper was widened to 50 %.
 Causes of misses: a constant 1 dB counts as a calibration error (gain, and spring of damped carts); lines from 1 to
 2 Hz share errors (names below 0.9); the beam's base has a resonance at 23.8 Hz, too, which its model lacks; noise
 smears silverbox's resonance, which passes for loss; the bolted beam's frequency falls and rises with the level.
+
+Of the truss a least-squares fit with springs at both bearings takes the held-out error from 16 to 12 % and the
+factor of stiffness from 1.54 to 1.24: a thrust takes from the chord's force what bending alone does not.
 """
 """Below the table."""
 
