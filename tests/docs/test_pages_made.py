@@ -39,3 +39,7 @@ def test_the_validation_page_holds_what_is_computed() -> None:
 
 def test_the_performance_page_is_that_of_the_committed_results() -> None:
     assert import_module("make_performance").page() == (DOCS / "performance.md").read_text("utf-8")
+
+
+def test_the_page_of_measured_pairs_is_that_of_the_committed_runs() -> None:
+    assert import_module("make_pairs").page() == (DOCS / "pairs.md").read_text("utf-8")

@@ -53,7 +53,9 @@ def _row(dataset: Dataset, right: Compared | None) -> dict[str, Any]:
         variance = np.median(right.variance[right.used])
         row |= {"level_dB": round(float(middle), 1), "scatter_dB": round(float(0.5 * (high - low)), 1)}
         row["noise_dB"] = round(float(DECIBELS * np.sqrt(variance)), 2)
-    if "coherence" in data:
+    if data.attrs.get("noise") == "scatter":
+        row["coherence"] = "none: scatter of lines"
+    elif "coherence" in data:
         row["coherence"] = round(float(np.nanmedian(data["coherence"].values)), 3)
     return row
 

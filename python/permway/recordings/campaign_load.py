@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from permway.arrays import Reals
+from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.recordings import campaign_spectra
 from permway.recordings.campaign_parts import Condition, Record
 from permway.recordings.campaign_welch import cross_spectra_of
 from permway.recordings.channel import Sensor
+from permway.recordings.line_scatter import scatter_variance
 from permway.recordings.readers import read_frf, time_blocks
 from permway.recordings.record import FrfRecord
 from permway.response.receptance import frequency_coordinate
@@ -56,7 +57,8 @@ class Dataset:
         In SI, named by sensors and force points; by the record's statistic:
 
         - "frf": `frf` (sensor, force, frequency), complex; `coherence`; `log_variance`, of the log magnitude and
-          of the phase in rad; both NaN where the file gives no coherence; attribute `averages`.
+          of the phase in rad; attributes `noise` and `averages`. Of noise "scatter" the coherence is NaN, and
+          there are no averages.
         - "csd", "psd": as :func:`permway.recordings.estimates.welch.cross_spectra` gives them: `csd` (channel,
           channel2, frequency), `psd` (channel, frequency), `degrees_of_freedom`, attribute `averages`.
         - "bands": `mean_square` (channel, band).
@@ -218,27 +220,50 @@ def _frf(campaign: Campaign, record: Record) -> xr.Dataset:
     scale = np.array([campaign.sensor(name).to_SI for name in names])[:, None] / np.array(
         [1e3 if campaign.point(name).unit == "kN" else 1.0 for name in forces]
     )
-    averages = record.averages or file.averages
-    if averages is None:
-        remedy = "give the number of blows of each point, as in averages = 8"
-        raise InputError("missing, and the file does not say", where="averages", remedy=remedy)
-    if file.coherence is None:
-        remedy = "export it beside the responses, as an array or column named coherence, 0 to 1"
-        raise InputError("has no coherence, which says how sure each line is", where=record.file, remedy=remedy)
-    coherence = spread(file.coherence)
+    frf = spread(file.values) * scale[:, :, None]
+    coherence, variance, averages = _noise(record, file, frequency[used], frf, spread)
     data = xr.Dataset(
         {
-            "frf": (DIMENSIONS, spread(file.values) * scale[:, :, None]),
+            "frf": (DIMENSIONS, frf),
             "coherence": (DIMENSIONS, coherence),
-            "log_variance": (DIMENSIONS, log_variance(coherence, averages)),
+            "log_variance": (DIMENSIONS, variance),
         },
         coords={"frequency": frequency_coordinate(frequency[used]), "sensor": names, "force": forces},
     )
     data["frf"].attrs = {"long_name": "frequency response, read over read", "units": "SI/N"}
     data["coherence"].attrs = {"long_name": "coherence", "units": "1"}
     data["log_variance"].attrs = {"long_name": "variance of log magnitude and of phase", "units": "1"}
-    data.attrs["averages"] = float(averages)
+    data.attrs |= {"noise": record.noise} | ({} if averages is None else {"averages": averages})
     return data
+
+
+def _noise(
+    record: Record, file: FrfRecord, frequency_Hz: Reals, frf: Complexes, spread: Callable[[Reals], Reals]
+) -> tuple[Reals, Reals, float | None]:
+    """Coherence, variance of log magnitude and of phase, and averages, as the record says what tells them.
+
+    Raises
+    ------
+    InputError
+        Without averages or coherence where those should tell; with a coherence that would be left aside.
+    """
+    if record.noise == "scatter":
+        if file.coherence is not None:
+            remedy = 'leave noise = "scatter" out'
+            raise InputError("has a coherence, which tells more than scatter", where=record.file, remedy=remedy)
+        return np.full(frf.shape, np.nan), scatter_variance(frequency_Hz, frf, where="band_Hz"), None
+    averages = record.averages or file.averages
+    if averages is None:
+        remedy = "give the number of blows of each point, as in averages = 8"
+        raise InputError("missing, and the file does not say", where="averages", remedy=remedy)
+    if file.coherence is None:
+        remedy = (
+            "export it beside the responses, as an array or column named coherence, 0 to 1; without one, "
+            'noise = "scatter" takes the scatter of neighbouring lines for it'
+        )
+        raise InputError("has no coherence, which says how sure each line is", where=record.file, remedy=remedy)
+    coherence = spread(file.coherence)
+    return coherence, log_variance(coherence, averages), float(averages)
 
 
 def _check_units(campaign: Campaign, record: Record, file: FrfRecord, at: np.ndarray) -> None:

@@ -53,6 +53,8 @@ class Condition(FrozenModel):
         Where the middle of the train stands in the model; by default as the model has it.
     wheels_m : sequence of float, optional
         Where the wheels stand in the model, the leading one first; by default as vehicle and `centre_m` say.
+    level : float, optional
+        How hard is driven: of a drive, a drop height, an amplitude, in the same unit wherever it is given.
     load_N, date, note : optional
     factors : dict of path to float
         Numbers of the model file that are others under this condition, and what they are multiplied by.
@@ -65,6 +67,7 @@ class Condition(FrozenModel):
     centre_m: Number | None = None
     wheels_m: tuple[Number, ...] | None = Field(default=None, min_length=1)
     axles: PassingAxles | None = None
+    level: PositiveFloat | None = None
     load_N: Number | None = None
     date: str | None = None
     note: str = ""
@@ -156,6 +159,12 @@ class Record(FrozenModel):
     averages : float, optional
         Averages behind an FRF, if the file does not say. Of "csd" and "psd" it says that the file holds spectra,
         not samples, and how many independent averages are behind them.
+    noise : "coherence" or "scatter"
+        What tells the noise of an FRF: coherence and averages, or how far neighbouring lines scatter
+        (:mod:`permway.recordings.line_scatter`), where the file has no coherence.
+    lines_per_frequency : float
+        Of an FRF: lines within its own frequency that a diagnosis uses at most. A resonance of loss factor eta is
+        seen with 2 / eta of them and more.
     band_Hz : (low, high), optional
         What of the record is used; by default all.
     sampling_Hz : float, optional
@@ -197,6 +206,8 @@ class Record(FrozenModel):
     responses: Labels = Field(default_factory=dict)
     references: Labels = Field(default_factory=dict)
     averages: PositiveFloat | None = None
+    noise: Literal["coherence", "scatter"] = "coherence"
+    lines_per_frequency: PositiveFloat | None = None
     band_Hz: Band | None = None
     sampling_Hz: PositiveFloat | None = None
     segment_s: PositiveFloat = 1.0
@@ -251,6 +262,10 @@ class Record(FrozenModel):
             raise fault('goes with statistic = "material"', "loss_file")
         if self.averages is not None and self.statistic not in ("frf", "csd", "psd"):
             raise fault('goes with statistic "frf", or with "csd" or "psd" of a file of spectra', "averages")
+        if self.noise == "scatter" and (not frf or self.averages is not None):
+            raise fault('"scatter" goes with statistic = "frf", and without averages', "noise")
+        if self.lines_per_frequency is not None and not frf:
+            raise fault('goes with statistic = "frf"', "lines_per_frequency")
         if not frf and self.averages is not None and self.sampling_Hz is not None:
             raise fault("averages say that the file holds spectra, which have no sampling_Hz", "averages")
         if self.within_dB is not None and self.statistic not in ("transmissibility", "material"):

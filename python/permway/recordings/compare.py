@@ -12,6 +12,7 @@ from permway.recordings.campaign import Campaign
 from permway.recordings.campaign_load import SI_UNITS, Dataset
 from permway.recordings.estimates.bands import Bands
 from permway.recordings.estimates.intervals import frf_interval, power_interval
+from permway.recordings.line_scatter import FREEDOM as SCATTER_FREEDOM
 
 NEPER_DB, POWER_DB = 20.0 / np.log(10.0), 10.0 / np.log(10.0)
 """Decibels of a natural logarithm: of an amplitude, and of a power."""
@@ -199,10 +200,11 @@ def _interval(dataset: Dataset, measured: np.ndarray, scatter_dB: Reals) -> tupl
     match dataset.record.statistic:
         case "frf":
             variance = data["log_variance"].values.reshape(modulus.shape)
-            averages = float(data.attrs.get("averages", np.nan))
-            known = np.isfinite(variance) & np.isfinite(measured) & (averages > 1.0)
+            scattered = dataset.record.noise == "scatter"
+            free = SCATTER_FREEDOM if scattered else 2.0 * (float(data.attrs.get("averages", np.nan)) - 1.0)
+            known = np.isfinite(variance) & np.isfinite(measured) & (free > 0.0)
             if known.any():
-                found = frf_interval(measured[known], variance[known], 2.0 * (averages - 1.0))
+                found = frf_interval(measured[known], variance[known], free)
                 low[known], high[known] = found.magnitude
                 half[known] = 0.5 * (found.phase_rad.high - found.phase_rad.low)
         case "csd" | "psd":
