@@ -16,11 +16,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from permway.campaign.campaign import read_campaign
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.tangent import Problem
 from permway.diagnosis.whitener import Whitener
-from permway.recordings.campaign import read_campaign
 
 REPEATS = 7
 

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.load import Dataset
+from permway.campaign.predict import predict
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import predict
 from simulated import CAMPAIGN, MODEL
 
 BLOWS, AVERAGES, COHERENCE = 16, 60, 0.98

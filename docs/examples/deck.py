@@ -10,8 +10,8 @@ from blows_to_frf import responses
 from look import axes, show
 from make_deck import write
 from matplotlib.figure import Figure
-from permway.recordings.campaign import read_campaign
-from permway.recordings.predict import predict
+from permway.campaign.campaign import read_campaign
+from permway.campaign.predict import predict
 
 SHOWN = (("rail@6", "rail 6.0"), ("rail@6", "rail 9.3"))
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import permway.challenge
 import pytest
+from permway.campaign.importers.sheet import import_sheet
 from permway.challenge import TIERS, draw, make, write, write_truth
 from permway.challenge.errors_of_measurement import NEPER_PER_DB, struck, wander
 from permway.challenge.irregularity import WITHIN_DB, density, deviation, profile
@@ -19,7 +20,6 @@ from permway.challenge.layout import TOLERANCE
 from permway.challenge.run import ruled_out
 from permway.diagnosis.catalogue import entries
 from permway.errors import InputError
-from permway.recordings.importers.sheet import import_sheet
 from short_deck import TWO_SPANS, small_case
 
 PACKAGE = Path(permway.challenge.__file__).parent

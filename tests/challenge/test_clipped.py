@@ -6,6 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from permway.campaign.bad_channels import Spoilt
+from permway.campaign.importers.sheet import import_sheet
 from permway.challenge import write
 from permway.challenge.case import write_truth
 from permway.challenge.effects.recorders import Clipping
@@ -13,8 +15,6 @@ from permway.challenge.score import score
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.speak_measurement import with_spoilt
 from permway.diagnosis.verdict import Verdict
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.spoilt import Spoilt
 from short_deck import small_case
 
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.challenge.rivals import answered
 from permway.challenge.score import score
 from permway.diagnosis.catalogue import hypotheses
@@ -25,7 +26,6 @@ from permway.diagnosis.locate import scanned
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.rivals import NONE, RIVALS, independent, rivals
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
 from simulated import simulate
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.importers.sheet import import_sheet
 from permway.challenge import rolling
 from permway.challenge.assembly import assemble
 from permway.challenge.case import Case, draw, write
@@ -20,7 +21,6 @@ from permway.challenge.ring import Ring
 from permway.challenge.running import with_dashpots
 from permway.errors import InputError
 from permway.laws import KelvinVoigt
-from permway.recordings.importers.sheet import import_sheet
 from scipy.sparse.linalg import splu
 from short_deck import small_case
 

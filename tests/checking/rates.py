@@ -16,16 +16,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from permway.arrays import Complexes, Reals
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.load import Dataset, load_record
+from permway.campaign.predict import predict
 from permway.challenge.small.make import make_small
 from permway.checking.change import Change
 from permway.checking.check import check, common
 from permway.checking.compared import compared
 from permway.checking.search import Told, told
 from permway.files import write_text
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import Dataset, load_record
 from permway.recordings.channel import Sensor
-from permway.recordings.predict import predict
 
 SEED, COUNT, EVERY = 8803, 100, 2
 """Blunders are put into every second campaign."""

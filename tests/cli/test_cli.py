@@ -11,20 +11,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from permway.formats.model_file import model_from_dict, read_model
 from permway.laws import AnyLaw, Measured
 from permway.model.bodies import Beam, BeamChange, Mass, Shaft
 from permway.model.contact import GivenContact, HertzContact
-from permway.model.file import Frequencies, model_from_dict, read_model
 from permway.model.irregularity import AnyIrregularity
 from permway.model.joints import Ends, Joints, Spread
+from permway.model.place import Place
 from permway.model.presets import LAWS, LINES, SlabTrackViaduct
 from permway.model.roll import Lever, Roll, Rolling, Twisting
 from permway.model.shafts import ShaftChange
+from permway.model.train import Train
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_presets import VEHICLES
-from permway.response.receptance import Place
-from permway.response.solve import solve
-from permway.response.train import Train
+from permway.problem.model import Frequencies
+from permway.problem.solve import solve
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.toml"))

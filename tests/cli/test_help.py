@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 import typer.main
-from permway import cli_machine
 from permway.cli import app
+from permway.cli import machine as cli_machine
 
 
 def _walk(command: object, path: tuple[str, ...] = ()) -> list[tuple[tuple[str, ...], object]]:

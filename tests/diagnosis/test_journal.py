@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
 from permway.demo.run import campaign_files
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.journal import Journal, keeping, key_of
-from permway.recordings.campaign import Campaign, read_campaign
 
 
 class StoppedError(Exception):

@@ -7,6 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from effects.trains import campaign_in, drawn
+from permway.campaign.campaign import Campaign
+from permway.campaign.parameters import Parameter
+from permway.campaign.values import ParameterSet
 from permway.diagnosis.blocks import Basis
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import free_parameters
@@ -14,9 +17,6 @@ from permway.diagnosis.gather import gather
 from permway.diagnosis.nearby import Nearby
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.tangent import STEP, Problem
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_values import ParameterSet
-from permway.recordings.parameters import Parameter
 from simulated import simulate
 
 

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.predict import predict
 from permway.challenge.errors_of_measurement import struck
 from permway.diagnosis.blocks_noise import FEWEST, NoiseBlock
 from permway.diagnosis.catalogue import noise_floor
@@ -19,8 +21,6 @@ from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.learning import learnt
 from permway.diagnosis.recalibrate import recalibrate
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.predict import predict
 from simulated import BLOWS, CAMPAIGN, FREQUENCY, MODEL
 
 PLACES = [("rail", 6.0), ("rail", 9.0), ("deck", 3.0), ("deck", 6.0), ("deck", 8.0), ("deck", 10.5)]

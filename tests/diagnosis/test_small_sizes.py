@@ -16,6 +16,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from permway.campaign.campaign import Campaign
+from permway.campaign.parameters import Known
 from permway.cli import app
 from permway.diagnosis.bounded import bounded_step
 from permway.diagnosis.catalogue._change import with_chain, with_factors
@@ -24,8 +26,6 @@ from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.journal import keeping
 from permway.diagnosis.separability import separability
 from permway.diagnosis.verdict import UNPROVED, Verdict
-from permway.recordings.campaign import Campaign
-from permway.recordings.parameters import Known
 from permway.report.compare import write_comparison
 from permway.report.diagnosis import write_diagnosis
 from simulated import CAMPAIGN, FREQUENCY, MODEL, simulate

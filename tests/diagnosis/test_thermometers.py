@@ -10,6 +10,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue import pad_temperature
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.gather import gather
@@ -17,7 +18,6 @@ from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.thermometers import OFF_K, misread
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
 from simulated_train import measured, tables, written
 
 TRUE = {"softening_per_K": 0.006, "reference_factor": 1.0, "loss_ratio": 1.0}

@@ -22,18 +22,19 @@ import written
 from campaigns import tables
 from damage import damaged_bytes, damaged_table, toml
 from hypothesis import strategies as st
+from permway.campaign.campaign import read_campaign
+from permway.campaign.importers.sheet import import_sheet
 from permway.cli import app
 from permway.errors import InputError, PermwayError
+from permway.formats.model_file import read_model
 from permway.laws.dma import read_dma
 from permway.laws.lawfile import load_law
 from permway.laws.measured import read_measured
 from permway.laws.transmissibility import read_shaker
-from permway.model.file import Frequencies, read_model
-from permway.recordings.campaign import read_campaign
-from permway.recordings.importers.sheet import import_sheet
+from permway.problem.model import Frequencies
+from permway.problem.solve import solve
 from permway.recordings.readers import read_frf, read_table, read_time
 from permway.recordings.record import FrfRecord, TableRecord, TimeRecord
-from permway.response.solve import solve
 from permway.study.file import read_study
 from scipy import io as matlab
 

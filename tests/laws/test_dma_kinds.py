@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from permway.cli import app
 from permway.errors import InputError
+from permway.formats.model_file import model_from_dict
 from permway.laws import FractionalZener, law_to_dict
 from permway.laws.dma import DmaTable, read_dma
 from permway.laws.fitting import fit_table
 from permway.laws.identify import identify
 from permway.laws.lawfile import load_law, save_law
-from permway.model.file import model_from_dict
 
 # The same two rows in all tables: 1 and 10 Hz at 20 degC, 2 + 0.3i and 3 + 0.5i MPa.
 MODULUS = np.array([2e6 + 3e5j, 3e6 + 5e5j])

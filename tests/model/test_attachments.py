@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from lines import hysteretic, uic60
 from permway.errors import InputError
+from permway.formats.model_file import model_from_dict, read_model
 from permway.laws import Given, Hysteretic, KelvinVoigt, Measured
 from permway.model.bodies import Beam, Mass, Shaft
-from permway.model.file import model_from_dict, read_model
 from permway.model.joints import GROUND, Ends, Joints, Spread
 from permway.model.line import Line
-from permway.response.receptance import Place, receptance
-from permway.response.solve import solve
+from permway.model.place import Place
+from permway.problem.solve import solve
+from permway.response.receptance import receptance
 
 FREQUENCY_HZ = np.array([4.0, 60.0, 330.0, 1100.0])
 OMEGA = 2 * np.pi * FREQUENCY_HZ

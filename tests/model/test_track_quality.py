@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from permway.cli import app
 from permway.errors import InputError
+from permway.formats.irregularity_file import irregularity_of
 from permway.model.irregularity import CycleTable, DensityTable, En13848, Fra, GermanHigh, GermanLow, Iso3095
-from permway.model.irregularity_file import irregularity_of
 from permway.model.track_quality import BANDS_M, band_deviations, density_per_cycle, draw_profile
 
 A, C, R = 4.032e-7, 0.8246, 0.0206

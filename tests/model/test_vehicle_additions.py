@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from permway.errors import InputError
+from permway.formats.model_file import model_from_dict, read_model
 from permway.laws.toml import to_toml
-from permway.model.file import model_from_dict, read_model
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_additions import AirSpring, DamperSeries, FlexibleMode, Resonator
 from permway.model.vehicle_presets import crh380a

@@ -15,9 +15,10 @@ from permway.model.bodies import Beam
 from permway.model.irregularity import GermanSato
 from permway.model.joints import Joints
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.vehicle import Vehicle
 from permway.response.pseudo import pseudo_excitation, wheel_rail_forces
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from scipy import io
 
 SPACING = 0.64

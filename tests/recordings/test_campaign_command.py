@@ -10,10 +10,10 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from permway.recordings.campaign import Said
-from permway.recordings.campaign_parts import Condition, HeldOut, IrregularityKnown, Record
+from permway.campaign.campaign import Said
+from permway.campaign.parameters import Parameter
+from permway.campaign.parts import Condition, HeldOut, IrregularityKnown, Record
 from permway.recordings.channel import Chain, Point, Sensor
-from permway.recordings.parameters import Parameter
 from sheets import make_folder
 
 REFERENCE = (Path(__file__).resolve().parents[2] / "docs" / "campaign-file.md").read_text(encoding="utf-8")

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 from campaigns import small, tables, write
+from permway.campaign.campaign import read_campaign
+from permway.campaign.load import Dataset
+from permway.campaign.paths import parse_path, written
 from permway.errors import InputError
-from permway.recordings.campaign import read_campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.campaign_paths import parse_path, written
 
 Table = dict[str, Any]
 
@@ -364,7 +364,7 @@ def test_a_summary_names_the_file_that_was_read(tmp_path: Path) -> None:
 
 
 def test_priors() -> None:
-    from permway.recordings.parameters import Known, Parameter
+    from permway.campaign.parameters import Known, Parameter
 
     plain = Parameter(name="k", paths="a.b", tolerance_2sigma=0.5)
     known = Known(plain, 2.0, True, 0.5 * math.atanh(0.5))
@@ -402,7 +402,7 @@ def test_an_amended_model_keeps_the_parameters_it_can(tmp_path: Path) -> None:
 
 
 def held(campaign: Any, name: str, dataset: Dataset) -> Any:
-    from permway.recordings.campaign_groups import held_out
+    from permway.campaign.groups import held_out
 
     return held_out(campaign, next(g for g in campaign.said.held_out if g.name == name), dataset)
 

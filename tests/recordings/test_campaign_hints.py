@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 from campaigns import tables, write
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.load import load_record
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import load_record
 
 RATE = 512.0
 SAMPLES = np.random.default_rng(3).normal(size=(2, 3000))

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import xarray as xr
 from campaigns import tables, write
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.load import Dataset, load_record
+from permway.campaign.predict import predict, why_not
+from permway.campaign.welch import cross_spectra_of
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import Dataset, load_record
-from permway.recordings.campaign_welch import cross_spectra_of
 from permway.recordings.estimates.welch import cross_spectra
-from permway.recordings.predict import predict, why_not
 from permway.recordings.record import TimeRecord
 
 RATE = 512.0
@@ -127,7 +127,7 @@ def test_a_run_without_a_rate_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_pair_that_was_not_measured_stays_empty(tmp_path: Path) -> None:
-    import permway.recordings.campaign_load as module
+    import permway.campaign.load as module
     from permway.recordings.record import FrfRecord
 
     (tmp_path / "frf.npz").write_bytes(b"later")

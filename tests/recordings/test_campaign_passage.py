@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 import passages
 import pytest
+from permway.campaign.campaign import read_campaign
+from permway.campaign.passage import spectrum_of
+from permway.campaign.predict import predict
 from permway.errors import InputError
 from permway.model.line import Line
-from permway.recordings.campaign import read_campaign
-from permway.recordings.campaign_passage import spectrum_of
-from permway.recordings.predict import predict
+from permway.model.place import Place
 from permway.response.passby import Axles, passby
-from permway.response.receptance import Place
 from scipy.interpolate import CubicSpline
 
 LEFT = {"w": 3e-4, "v": 2e-3, "a": 3e-3, "e": 1.5e-3, "M": 1.5e-3}

@@ -9,16 +9,15 @@ import numpy as np
 import pytest
 import xarray as xr
 from campaigns import small, tables, write
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.load import Dataset, log_variance
+from permway.campaign.predict import need_of, plan, predict
+from permway.campaign.predict.run import solved_lines
+from permway.campaign.predict.sweeps import Answer, Need
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import Dataset, log_variance
-from permway.recordings.campaign_tables import table_derivatives
-from permway.recordings.campaign_tables import tables as compiled
+from permway.model.place import Place
 from permway.recordings.estimates.decay_rate import grid_positions, track_decay_rate
-from permway.recordings.predict import need_of, plan, predict
-from permway.recordings.predict.run import solved_lines
-from permway.recordings.predict.sweeps import Answer, Need
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from permway.response.train import train_response
 
 FREQUENCY = np.arange(10.0, 121.0, 2.0)
@@ -251,41 +250,6 @@ def test_what_cannot_be_predicted_is_said(tmp_path: Path, change: dict[str, Any]
     read = read_campaign(write(tmp_path, campaign, model))
     with pytest.raises(InputError, match=what):
         predict(read, [run(read)])
-
-
-def test_tables_follow_the_parameters(tmp_path: Path) -> None:
-    campaign = small(tmp_path)
-    values = {"pad.k": 7.0e7, "wheelset": 950.0}
-    frequency = np.array([10.0, 50.0])
-    found = table_derivatives(campaign, values, frequency, 12.0)
-    model = campaign.model_with(values)
-    at = compiled(model, frequency, 12.0)
-    sigma = {name: known.sigma for name, known in campaign.parameters.known.items()}
-    # Of ln k: dk/dz = sigma k.
-    assert found["pad.k"].laws[:, 0] == pytest.approx(sigma["pad.k"] * at.laws[:, 0], rel=1e-6)
-    assert not found["pad.k"].laws[:, 1].any()
-    assert found["pad.eta"].laws[:, 0] == pytest.approx(1j * sigma["pad.eta"] * at.laws[:, 0].imag, rel=1e-6)
-    assert found["deck.E"].bending == pytest.approx([0.0, sigma["deck.E"] * at.bending[1]], rel=1e-6)
-    assert not found["deck.E"].mass.any()
-    # Half of a wheelset of 1780 * 950/890 kg.
-    mass = 0.5 * 1780.0 * 950.0 / 890.0
-    wheel = -((2.0 * np.pi * frequency) ** 2) * mass * sigma["wheelset"]
-    assert found["wheelset"].vehicle[:, 6, 6] == pytest.approx(wheel, rel=1e-6)
-    assert not found["wheelset"].vehicle[:, 0, 0].any()
-    for name in ("level", "gain"):
-        assert not any(np.any(getattr(found[name], f)) for f in ("laws", "bending", "vehicle", "scale", "masses"))
-    assert list(table_derivatives(campaign, {}, frequency, names=["deck.E"])) == ["deck.E"]
-    with pytest.raises(InputError, match="no such parameter"):
-        table_derivatives(campaign, {}, frequency, names=["pod"])
-
-
-def test_tables_are_what_the_core_is_given(tmp_path: Path) -> None:
-    model = small(tmp_path).model
-    at = compiled(model, [20.0])
-    assert at.scale == pytest.approx(model.line.joint_table().scale)
-    assert at.laws == pytest.approx(model.line.stiffness([20.0], 12.0))
-    assert at.contact == pytest.approx([1.0 / 1.3e9])
-    assert at.masses.size == 0
 
 
 def test_variance_of_an_estimated_frequency_response() -> None:

@@ -12,19 +12,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.importers.pad_materials import import_pad_materials
+from permway.campaign.importers.rubber_rig import import_rubber_rig
+from permway.campaign.importers.sheet import import_sheet
+from permway.campaign.importers.track_decay import import_track_decay
+from permway.campaign.load import Dataset
+from permway.campaign.predict import predict
 from permway.diagnosis.diagnose import diagnose
 from permway.laws import TFDV, FractionalKelvinVoigt, FractionalZener, Hysteretic, Pad
 from permway.model.bodies import Mass
 from permway.model.changes import Change
-from permway.model.file import Model
 from permway.model.joints import Joints
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.importers.pad_materials import import_pad_materials
-from permway.recordings.importers.rubber_rig import import_rubber_rig
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.importers.track_decay import import_track_decay
-from permway.recordings.predict import predict
+from permway.problem.model import Model
 from scipy import optimize
 
 SHARED = Path(__file__).resolve().parents[3] / "shared"

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from campaigns import tables, write
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.factors import campaign_under
+from permway.campaign.predict import need_of, plan, predict
 from permway.diagnosis.evidence import Evidence
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_factors import campaign_under
-from permway.recordings.predict import need_of, plan, predict
 from test_campaign_predict import FREQUENCY, blows, run
 
 PAD, MASS = "line.laws.pad.stiffness", "train.vehicle.wheelset_mass_kg"

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lines import hysteretic, supported, uic60
 from permway.errors import InputError
+from permway.model.place import Place
 from permway.recordings.estimates.decay_rate import (
     TruncationWarning,
     band_response,
@@ -19,7 +20,7 @@ from permway.recordings.estimates.decay_rate import (
     grid_positions,
     track_decay_rate,
 )
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 
 NEPER_DB = 20.0 * np.log10(np.e)
 

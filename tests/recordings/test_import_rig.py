@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from folders import make_rig, make_shaken
+from permway.campaign.importers.rubber_rig import import_rubber_rig
+from permway.campaign.predict import predict
 from permway.errors import InputError
-from permway.recordings.importers.rubber_rig import import_rubber_rig
-from permway.recordings.predict import predict
 
 BOTH = ("01g_253g", "1g_253g", "1g_573g")
 

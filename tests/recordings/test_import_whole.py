@@ -15,14 +15,14 @@ import numpy as np
 import permway
 import pytest
 from folders import make_decay, make_pads, make_rig
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.importers import writing
+from permway.campaign.importers.pad_materials import import_pad_materials
+from permway.campaign.importers.rubber_rig import import_rubber_rig
+from permway.campaign.importers.sheet import import_sheet
+from permway.campaign.importers.track_decay import import_track_decay
 from permway.errors import InputError
 from permway.files import LEFT_BEHIND_S
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.importers import writing
-from permway.recordings.importers.pad_materials import import_pad_materials
-from permway.recordings.importers.rubber_rig import import_rubber_rig
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.importers.track_decay import import_track_decay
 from sheets import make_folder
 
 Run = Callable[[Path, Path], Any]

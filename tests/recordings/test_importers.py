@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 import pytest
 from folders import make_pads
+from permway.campaign.campaign import Campaign
+from permway.campaign.importers.pad_materials import import_pad_materials
+from permway.campaign.importers.rubber_rig import import_rubber_rig
+from permway.campaign.importers.sheet import import_sheet
+from permway.campaign.importers.sheet_form import read_sheet
+from permway.campaign.importers.track_decay import import_track_decay
+from permway.campaign.predict import predict
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
-from permway.recordings.importers.pad_materials import import_pad_materials
-from permway.recordings.importers.rubber_rig import import_rubber_rig
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.importers.sheet_form import read_sheet
-from permway.recordings.importers.track_decay import import_track_decay
-from permway.recordings.predict import predict
 from sheets import NOISE, RATE_HZ, SHEET, make_folder
 
 
@@ -204,7 +204,7 @@ def test_two_files_of_one_name_are_not_chosen_between(folder: Path, tmp_path: Pa
 
 
 def test_the_model_file_is_one_that_can_be_solved(campaign: Campaign) -> None:
-    from permway.model.file import read_model
+    from permway.formats.model_file import read_model
 
     text = (campaign.folder / "model.toml").read_text()
     assert tomllib.loads(text)["irregularity"] == {"type": "german_sato", "continuous": True, "exponent": 3.06}

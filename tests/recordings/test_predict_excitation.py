@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 from campaigns import tables, write
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.excitation import Push, TrackLines
+from permway.campaign.predict.excitation import deposit, push
+from permway.campaign.predict.grid import grid_of
+from permway.campaign.predict.run import expected_csd, influence, solved_lines, wheels_of
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_excitation import Push, TrackLines
+from permway.model.place import Place
 from permway.recordings.estimates.welch import cross_spectra
-from permway.recordings.predict.excitation import deposit, push
-from permway.recordings.predict.grid import grid_of
-from permway.recordings.predict.run import expected_csd, influence, solved_lines, wheels_of
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 
 SAMPLING_HZ, SPEED, RADIUS = 512.0, 50.0, 0.43
 ESTIMATE_HZ = np.arange(10.0, 81.0)

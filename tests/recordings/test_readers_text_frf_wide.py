@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from permway.campaign.parts import Record
 from permway.cli import app
 from permway.errors import InputError
-from permway.recordings.campaign_parts import Record
 from permway.recordings.look import look
 from permway.recordings.readers import read_frf, read_time
 from permway.recordings.readers.hints import Hints

@@ -12,11 +12,11 @@ import pyuff
 import written
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.predict import predict
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
 from permway.recordings.estimates.welch import cross_spectra
 from permway.recordings.look import look
-from permway.recordings.predict import predict
 from permway.recordings.readers import read_frf
 
 RATE = 256.0

@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.importers.sheet import import_sheet
+from permway.campaign.importers.sheet_form import Sheet
+from permway.campaign.importers.sheet_model import model_table
+from permway.campaign.importers.sheet_position import position
 from permway.errors import InputError
-from permway.model.file import model_from_dict
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.importers.sheet_form import Sheet
-from permway.recordings.importers.sheet_model import model_table
-from permway.recordings.importers.sheet_position import position
-from permway.response.receptance import Place, receptance
+from permway.formats.model_file import model_from_dict
+from permway.model.place import Place
+from permway.response.receptance import receptance
 from scipy import io
 from sheets import SHEET, make_folder
 

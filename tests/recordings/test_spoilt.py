@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from permway.arrays import Reals
+from permway.campaign.bad_channels import Spoilt, sound
+from permway.campaign.campaign import Campaign
+from permway.campaign.importers.sheet import import_sheet
 from permway.diagnosis.gather import predictable
 from permway.diagnosis.speak_measurement import with_spoilt
 from permway.diagnosis.verdict import Verdict
 from permway.diagnosis.verdict_parts import ClassMember, Effect, Place
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.spoilt import Spoilt, sound
 from sheets import make_folder
 
 CLIPPED = Spoilt("run", "axlebox2", "clipping", "4 samples flat at 3")

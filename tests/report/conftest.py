@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from permway.paper import report as paper
 from permway.paper.reproduce import Reproduction
-from permway.report import paper
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from permway.campaign.campaign import read_campaign
+from permway.campaign.compare import curves, third_octaves
+from permway.campaign.predict import predict
 from permway.diagnosis.compare import CLEAN, RAW, RECALIBRATED, Comparison, compare
 from permway.diagnosis.residuals import lag_correlation
 from permway.errors import InputError
-from permway.recordings.campaign import read_campaign
-from permway.recordings.compare import curves, third_octaves
-from permway.recordings.predict import predict
 from permway.report.compare import write_comparison
 from permway.report.compare.maps import ordered
 from permway.report.compare.tables import quantity, signed

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lines import hysteretic, supported, uic60
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.compare import assemble
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Where
@@ -35,7 +36,6 @@ from permway.errors import InputError
 from permway.laws import Hysteretic
 from permway.model.changes import Change
 from permway.model.joints import GROUND
-from permway.recordings.campaign import Campaign
 from permway.report.diagnosis import PAGE, write_report
 from permway.report.diagnosis.changes import changes, most_changed
 from permway.report.diagnosis.law import law_picture

@@ -7,10 +7,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from permway.campaign.campaign import read_campaign
 from permway.demo.run import campaign_files
-from permway.model.file import model_from_dict, read_model
+from permway.formats.model_file import model_from_dict, read_model
 from permway.model.presets import slab_track_viaduct_32m
-from permway.recordings.campaign import read_campaign
 from permway.report.notebook import MOST_DRAWN, line_svg
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 from permway.errors import InputError
-from permway.report import paper
-from permway.report.slips import slips
+from permway.paper import report as paper
+from permway.paper.misprints import slips
 from plotly.offline import get_plotlyjs
 
 FIGURES = [f"figure-{n}" for n in range(7, 19)]

@@ -9,12 +9,14 @@ from permway.model.bodies import Beam, Mass
 from permway.model.irregularity import GermanLow, Sato
 from permway.model.joints import Ends, Joints, Spread
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.presets import slab_track_viaduct_32m, wj7b_constant
+from permway.model.train import Train
 from permway.model.vehicle_presets import crh380a
+from permway.problem.solve import write_dataset
 from permway.response.decay import decay_rate
-from permway.response.receptance import Place, receptance
-from permway.response.solve import write_dataset
-from permway.response.train import Train, train_response
+from permway.response.receptance import receptance
+from permway.response.train import train_response
 
 RAIL = Beam(
     theory="timoshenko",

@@ -13,8 +13,9 @@ from permway.laws import FractionalKelvinVoigt, Hysteretic, Law
 from permway.model.bodies import AnyBody, Beam, Mass
 from permway.model.joints import Joints, Spread
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response.dispersion import dispersion
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 
 EI, RHO_A, S, D = 6.4e6, 60.0, 3.0e7, 0.6
 RAIL = {

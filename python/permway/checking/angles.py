@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.checking.blunder import Blunder
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
 from permway.recordings.readers import read_table
 from permway.recordings.readers.formats import recognise
 from permway.recordings.readers.stored import is_one_of

@@ -8,6 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset
+from permway.campaign.predict import predict
 from permway.checking.angles import angles
 from permway.checking.blunder import Blunder
 from permway.checking.compared import Compared, compared
@@ -17,9 +20,6 @@ from permway.checking.search import told
 from permway.checking.stated import places, tolerances
 from permway.checking.words import blunder_of
 from permway.errors import InputError, SolveError
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import predict
 
 COMPARABLE = ("frf", "csd", "psd", "transmissibility")
 

@@ -9,8 +9,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.load import Dataset
 from permway.checking.change import Change, Ratio
-from permway.recordings.campaign_load import Dataset
 
 SUREST, LEAST_SURE = 1e-4, 0.25
 """Variance of a line's logarithm that is taken at least, and beyond which the line is left out: noise of a quarter
@@ -146,7 +146,7 @@ def compared(dataset: Dataset, predicted: xr.Dataset, common: tuple[float, float
     dataset : Dataset
         Of statistic "frf", "csd", "psd" or "transmissibility".
     predicted : xarray.Dataset
-        As :func:`permway.recordings.predict.predict` gives it.
+        As :func:`permway.campaign.predict.predict` gives it.
     common : (float, float)
         Standard deviations of a level that nobody knows, neper, and of its slope, neper an octave.
     """

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset
 from permway.checking.blunder import Blunder
 from permway.checking.compared import Compared
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
 
 QUIET = 0.1
 """Share of the lines that count as quiet. Half of it makes the estimate scatter, twice lifts it."""

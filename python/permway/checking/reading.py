@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from permway.campaign.bad_channels import sound
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset, load_record
+from permway.campaign.parts import Record
+from permway.campaign.predict import why_not
 from permway.checking.blunder import Blunder
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset, load_record
-from permway.recordings.campaign_parts import Record
-from permway.recordings.predict import why_not
-from permway.recordings.spoilt import sound
 
 MOST_LINES = 64
 """Lines of a record that are held against the model: a check takes in proportion to them."""

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.checking.blunder import Blunder
-from permway.recordings.campaign import Campaign
 
 LARGEST = 1.0
 """Relative tolerance of two standard deviations from which it is asked back: 100 %. Half of it asks of what nobody

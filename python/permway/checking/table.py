@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.load import Dataset
 from permway.checking.check import Checked
 from permway.checking.compared import Compared
-from permway.recordings.campaign_load import Dataset
 
 DECIBELS = 20.0 / np.log(10.0)
 """Of a neper."""

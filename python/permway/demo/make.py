@@ -13,12 +13,12 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
+from permway.campaign.importers.sheet import import_sheet
 from permway.challenge.case import Case, draw
 from permway.challenge.effects.fasteners import FastenersLost
 from permway.challenge.files import write_mat
 from permway.challenge.layout import Layout
 from permway.files import write_text
-from permway.recordings.importers.sheet import import_sheet
 
 SEED = 1
 LAYOUT = Layout(spans=1, bays=26, spacing_m=0.64, approach_bays=14)

@@ -10,18 +10,9 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
-from permway.diagnosis.blocks import Block, Rows
-from permway.diagnosis.blocks_frf import FrfBlock
-from permway.diagnosis.blocks_noise import NoiseBlock
-from permway.diagnosis.blocks_passage import PassageBlock
-from permway.diagnosis.blocks_spectra import SpectraBlock
-from permway.diagnosis.side_by_side import threads_of_solver
-from permway.diagnosis.thinning import thinned
-from permway.diagnosis.wander import FIRST_LENGTH
-from permway.diagnosis.whitener import AllColumns, Whitener
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import (
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset
+from permway.campaign.predict import (
     Answer,
     Need,
     State,
@@ -32,6 +23,15 @@ from permway.recordings.predict import (
     predict_one,
     solve,
 )
+from permway.diagnosis.blocks import Block, Rows
+from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.blocks_noise import NoiseBlock
+from permway.diagnosis.blocks_passage import PassageBlock
+from permway.diagnosis.blocks_spectra import SpectraBlock
+from permway.diagnosis.side_by_side import threads_of_solver
+from permway.diagnosis.thinning import thinned
+from permway.diagnosis.wander import FIRST_LENGTH
+from permway.diagnosis.whitener import AllColumns, Whitener
 
 SMALLEST_SMOOTH, LARGEST_SMOOTH = 0.001, 0.2
 """Between which the size of smooth errors is learnt, neper or rad: 0.009 and 1.7 dB."""

@@ -8,6 +8,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from permway.campaign.bad_channels import Spoilt, sound
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset
+from permway.campaign.predict import added_to, predict, why_not
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_modes import ModesBlock
@@ -18,10 +22,6 @@ from permway.diagnosis.blocks_tabular import TableBlock
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.thinning import thinned
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import added_to, predict, why_not
-from permway.recordings.spoilt import Spoilt, sound
 
 
 class Readable(NamedTuple):

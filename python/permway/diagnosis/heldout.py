@@ -14,6 +14,8 @@ import xarray as xr
 from scipy import linalg
 
 from permway.arrays import Reals
+from permway.campaign.groups import held_out
+from permway.campaign.parts import HeldOut
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
@@ -22,8 +24,6 @@ from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit, limits_of
 from permway.diagnosis.whitener import Whitener
 from permway.errors import InputError, SolveError
-from permway.recordings.campaign_groups import held_out
-from permway.recordings.campaign_parts import HeldOut
 
 STEPS = 4
 OWN = 1e-3

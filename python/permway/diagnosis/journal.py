@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from permway._core import __version__
+from permway.campaign.campaign import Campaign
 from permway.errors import InputError
 from permway.files import write_bytes
-from permway.recordings.campaign import Campaign
 
 Arrays = Mapping[str, np.ndarray]
 

@@ -10,11 +10,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.compare import NEPER_DB
 from permway.diagnosis.evidence import LARGEST_SMOOTH, SMALLEST_SMOOTH, Evidence, Solved
 from permway.diagnosis.gather import first_size
 from permway.diagnosis.wander import LENGTHS
-from permway.recordings.campaign import Campaign
-from permway.recordings.compare import NEPER_DB
 
 USUAL, SEEN = 0.02, 4.0
 """Size of smooth errors that is expected beforehand, neper or rad, or as those of its kind have; and how many

@@ -9,10 +9,10 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset
 from permway.errors import InputError
 from permway.model.segments import Segment
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
 from permway.recordings.channel import Point, Sensor
 
 Kind = Literal["repeat", "sensor", "blows", "speed", "temperature"]

@@ -15,13 +15,13 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.factors import model_under
+from permway.campaign.predict import Answer, Need, Sweep, need_of, plan, predict_one, solve
+from permway.campaign.predict.sweeps import places_of
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.side_by_side import threads_of_solver
 from permway.model.line import Line
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_factors import model_under
-from permway.recordings.predict import Answer, Need, Sweep, need_of, plan, predict_one, solve
-from permway.recordings.predict.sweeps import places_of
 from permway.response.sensitivity import sensitivity
 
 COLUMNS = ("bending", "shear", "mass", "rotary")

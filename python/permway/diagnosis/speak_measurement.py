@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from permway.campaign.bad_channels import Spoilt
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.labels import Mislabelled
 from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.verdict import RIGHT, Status, Verdict
 from permway.diagnosis.verdict_parts import Effect, Mechanics, Place, Recalibrated
-from permway.recordings.spoilt import Spoilt
 
 LABELS = "sensor_labels"
 """Name of the fault that channels carry each other's labels."""

@@ -13,12 +13,12 @@ from dataclasses import replace
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Build, Fit
 from permway.diagnosis.quick import stacked
 from permway.diagnosis.search import Finalist
 from permway.errors import InputError, SolveError
-from permway.recordings.campaign import Campaign
 
 OFF_K = 0.5
 """Standard deviation by which what was read may be off what the structure had."""

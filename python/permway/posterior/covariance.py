@@ -9,6 +9,7 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
+from permway.campaign.predict import added_to, away_from_lines
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_passage import PassageBlock
@@ -17,7 +18,6 @@ from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.gather import first_size
 from permway.posterior.chains import Chains, Factor, chains_of
 from permway.posterior.hyper import Hyper
-from permway.recordings.predict import added_to, away_from_lines
 
 NEPER_PER_DB = float(np.log(10.0)) / 20.0
 

@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue import known
 from permway.diagnosis.clock import Clock, Progress
 from permway.diagnosis.compare import assemble
@@ -25,7 +26,6 @@ from permway.posterior.fit import Fit, Fitter
 from permway.posterior.held_out import gains
 from permway.posterior.masses import Masses
 from permway.posterior.search import explored
-from permway.recordings.campaign import Campaign
 
 
 @one_thread_of_blas()

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.model.bodies import Mass
 from permway.model.line import Line
-
-if TYPE_CHECKING:
-    from permway.model.file import Model
-    from permway.recordings.campaign import Campaign
+from permway.problem.model import Model
 
 WIDTH, LEFT, RIGHT, ROW, TOP = 860.0, 110.0, 20.0, 46.0, 26.0
 MOST_DRAWN = 400
@@ -87,6 +84,18 @@ def line_svg(line: Line, *, forces: Sequence[Spot] = (), sensors: Sequence[Spot]
         f'<svg viewBox="0 0 {WIDTH:g} {ground + 34.0:g}" role="img" style="max-width:{WIDTH:g}px;width:100%" '
         'font-family="sans-serif" font-size="12" fill="currentColor" stroke-width="1">' + "".join(parts) + "</svg>"
     )
+
+
+def html(thing: object) -> str:
+    """A line, a model or a campaign as HTML."""
+    match thing:
+        case Line():
+            return line_html(thing)
+        case Model():
+            return model_html(thing)
+        case Campaign():
+            return campaign_html(thing)
+    raise TypeError(f"a {type(thing).__name__} has no drawing")
 
 
 def line_html(line: Line) -> str:

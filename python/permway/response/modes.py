@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 from permway.errors import InputError
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response.poles import Poles, lines_for, poles_of
-from permway.response.receptance import Formulation, Place, between
+from permway.response.receptance import Formulation, between
 
 
 def modes(

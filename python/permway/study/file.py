@@ -12,8 +12,9 @@ from pydantic import ValidationError
 
 from permway import _core
 from permway.errors import InputError
+from permway.formats.model_file import model_from_dict
 from permway.model.faults import model_error
-from permway.model.file import Model, model_from_dict
+from permway.problem.model import Model
 from permway.reading import LARGEST_TABLE, inside, read_bytes, read_toml
 from permway.records import FrozenModel
 from permway.study.axes import read_axes

@@ -14,10 +14,10 @@ import numpy as np
 
 from permway.errors import InputError, SolveError
 from permway.interrupt import interruptible
-from permway.model.file import Frequencies
+from permway.problem.model import Frequencies
+from permway.problem.solve import solve
 from permway.response.limits import check_threads
 from permway.response.receptance import Progress
-from permway.response.solve import solve
 from permway.study.answer import select
 from permway.study.file import Study
 from permway.study.local import solve_locally

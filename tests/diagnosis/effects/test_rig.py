@@ -6,6 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.compare import NEPER_DB
+from permway.campaign.importers.rubber_rig import RIG, WITHIN_DB, import_rubber_rig
 from permway.diagnosis.catalogue import pad_frequency
 from permway.diagnosis.catalogue._roles import rubbers
 from permway.diagnosis.diagnose import diagnose
@@ -15,9 +18,6 @@ from permway.diagnosis.learning import TRUSTED
 from permway.diagnosis.recalibrate import recalibrate
 from permway.errors import InputError
 from permway.model.presets import slab_track_viaduct_32m
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.compare import NEPER_DB
-from permway.recordings.importers.rubber_rig import RIG, WITHIN_DB, import_rubber_rig
 
 ORDER, SHARE = 0.4, 0.5
 """Of the springpot, and its share of the stiffness at 60 Hz."""

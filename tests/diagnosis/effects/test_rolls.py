@@ -8,6 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.excitation import Rolling
+from permway.campaign.predict import predict
+from permway.campaign.predict import rolling as rolling_predicted
 from permway.diagnosis.bases import bases
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._excite import with_irregularity, with_speed
@@ -18,10 +22,6 @@ from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.refit import relearnt
 from permway.errors import InputError
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_excitation import Rolling
-from permway.recordings.predict import predict
-from permway.recordings.predict import rolling as rolling_predicted
 from trains import CAMPAIGN, blank, campaign_in, drawn, situation_of
 
 SPACING_M = 0.6

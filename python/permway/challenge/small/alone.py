@@ -45,7 +45,7 @@ def _up(*_: object) -> None:
 
 def _diagnosed(campaign: Path, out: Path, limit: float, module: str) -> str:
     """Write the verdict, or why there is none, and what it cost."""
-    from permway.recordings.campaign import read_campaign
+    from permway.campaign.campaign import read_campaign
 
     out.mkdir(parents=True, exist_ok=True)
     began, processor, failure = time.perf_counter(), _processor(), ""

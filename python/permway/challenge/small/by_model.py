@@ -12,6 +12,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset
+from permway.campaign.parameters import Parameter
+from permway.campaign.predict import predict
+from permway.campaign.values import ParameterSet
 from permway.challenge.beams import Complexes, Reals
 from permway.challenge.small.concealed import Concealed, moved
 from permway.challenge.small.layouts import Layout
@@ -24,11 +29,6 @@ from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.spot import Found, Spot
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.campaign_values import ParameterSet
-from permway.recordings.parameters import Parameter
-from permway.recordings.predict import predict
 
 STEP = 1e-3
 """Of slopes, in standard deviations of a prior."""

@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.predict import predict
 from permway.challenge.small.write import write_arrays, write_tables, write_truth
 from permway.diagnosis.catalogue._interval import weakened
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.predict import predict
 
 FIXTURE = "fixture"
 

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.challenge.small.concealed import Concealed, moved
 from permway.challenge.small.draws import log_between
 from permway.diagnosis.catalogue._interval import span_of, stations_of, weakened
 from permway.diagnosis.catalogue._roles import beds, carriers, laws_of, pads, spacing
-from permway.recordings.campaign import Campaign
 
 FAMILY = "local loss of support"
 

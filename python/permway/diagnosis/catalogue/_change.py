@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.laws import Hysteretic, Measured, Series, StorageLossPair
 from permway.laws.base import Law
 from permway.model.bodies import AnyBody
 from permway.model.changes import Change
 from permway.model.joints import Joints
 from permway.model.line import Line
-from permway.recordings.campaign import Campaign
 from permway.recordings.channel import Chain
 
 REACH_M = 1e-6

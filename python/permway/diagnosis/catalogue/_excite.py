@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.parts import IrregularityKnown
 from permway.diagnosis.hypothesis import Where
 from permway.model.line import Line
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_parts import IrregularityKnown
 from permway.recordings.channel import Chain
 
 END_M = 0.01

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.factors import model_under
+from permway.campaign.parts import Condition
 from permway.diagnosis.catalogue._roles import rubbers
 from permway.laws import AnyLaw, Parallel, Scaled
 from permway.model.line import Line
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_factors import model_under
-from permway.recordings.campaign_parts import Condition
 
 Keys = tuple[str, ...]
 

@@ -11,11 +11,11 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from permway.arrays import Reals
+from permway.campaign.parts import Condition
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Situation
 from permway.model.irregularity_spectra import RangeWarning
-from permway.recordings.campaign_parts import Condition
 from permway.recordings.channel import Sensor
 
 AROUND_LINES = 8

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._excite import stays, with_irregularity
 from permway.diagnosis.catalogue._runs import excesses
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, log_free
-from permway.recordings.campaign import Campaign
 
 ID = "contact_filter"
 DOMAIN: Domain = "irregularity"

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.excitation import Dips
 from permway.diagnosis.catalogue._excite import stays, with_irregularity
 from permway.diagnosis.catalogue._lines import coordinate
 from permway.diagnosis.catalogue._runs import excesses
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, log_free
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import Dips
 
 ID = "dipped_welds"
 DOMAIN: Domain = "irregularity"

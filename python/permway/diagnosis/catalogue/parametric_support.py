@@ -7,6 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.compare import POWER_DB
+from permway.campaign.excitation import Rolling
+from permway.campaign.parts import IrregularityKnown
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue._excite import rail_laws, stays, with_irregularity
 from permway.diagnosis.catalogue._interval import spacing_of
@@ -16,10 +20,6 @@ from permway.diagnosis.gather import first_size
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, linear_free, log_free
 from permway.diagnosis.recalibrate import recalibrate
 from permway.errors import InputError, SolveError
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import Rolling
-from permway.recordings.campaign_parts import IrregularityKnown
-from permway.recordings.compare import POWER_DB
 
 ID = "parametric_support"
 DOMAIN: Domain = "irregularity"

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
-from permway.recordings.campaign import Campaign
 
 ID = "sensor_gain"
 DOMAIN: Domain = "measurement"

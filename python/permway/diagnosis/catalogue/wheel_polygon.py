@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.excitation import WheelLines
 from permway.diagnosis.catalogue._excite import stays, with_irregularity
 from permway.diagnosis.catalogue._lines import coordinate
 from permway.diagnosis.catalogue._runs import combs, excesses, on_board, suspects
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, log_free
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import WheelLines
 
 ID = "wheel_polygon"
 DOMAIN: Domain = "irregularity"

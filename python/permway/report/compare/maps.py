@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.compare import KIND, Comparison
-from permway.recordings.campaign import Campaign
 from permway.report.compare.looks import FONT, NAME, edges, heat, logarithmic_hertz, name_rows
 from permway.report.compare.writing import file_name
 

@@ -8,8 +8,8 @@ from typing import Any
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from permway import _core
+from permway.campaign.compare import UNSURE_DB
 from permway.diagnosis.compare import CLEAN, Comparison
-from permway.recordings.compare import UNSURE_DB
 from permway.report.compare.curves import nearest_points
 from permway.report.compare.looks import NAME
 from permway.report.compare.maps import LEVEL_DB, SIGMAS, UNSEEN_DB, groups

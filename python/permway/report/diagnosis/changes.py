@@ -23,7 +23,7 @@ class Change:
     ----------
     name : str
     before, after : Dataset
-        The record as :func:`permway.recordings.compare.curves` has it; `after` is None without an amendment.
+        The record as :func:`permway.campaign.compare.curves` has it; `after` is None without an amendment.
     before_dB, after_dB : DataArray (channel, band)
         Deviations in one-third octaves; `after_dB` is None without an amendment.
     """

@@ -11,10 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Colormap, Normalize
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.spot import Found
 from permway.model.bodies import Mass
 from permway.model.line import Line
-from permway.recordings.campaign import Campaign
 from permway.report.compare.looks import FONT, INK
 
 HALF = 0.13

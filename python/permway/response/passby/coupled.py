@@ -19,10 +19,11 @@ from permway.arrays import Reals, is_real, real_numbers
 from permway.errors import InputError
 from permway.model.irregularity_spectra import check_speed
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response.passby.kernel import kernels
 from permway.response.passby.path import Path, path_of
 from permway.response.passby.sprung import AnyVehicle, Stepper, stepper
-from permway.response.receptance import CONVENTION, Formulation, Place, Progress, check_places
+from permway.response.receptance import CONVENTION, Formulation, Progress, check_places
 
 _MOST_STEPS = 200_000
 _OFTEN = 16

@@ -22,9 +22,10 @@ from permway.arrays import Complexes, Reals, is_real, real_numbers
 from permway.errors import InputError
 from permway.model.bodies import Beam
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.stations import TOUCH_M
 from permway.response.core import Formulation
-from permway.response.receptance import Place, between
+from permway.response.receptance import between
 from permway.response.rolling.bays import bays
 from permway.response.rolling.passed import HARMONICS, STEP_HZ, TAPER, passed
 
