@@ -61,6 +61,7 @@ LONG = {
         fuzz report/test_paper_page.py report/test_paper_tables.py response/test_rolling.py
         laws/test_law_recordings.py property recordings/test_readers_fuzz.py recordings/test_readers_drawn.py
         recordings/test_estimates_coverage.py recordings/test_import_whole.py recordings/test_inputs_shared.py
+        recordings/test_campaign_passage.py recordings/test_campaigns_shared.py docs/test_five_exports.py
     """,
 }
 """By marker, files and folders that `pytest` alone leaves out; the tests of all others are marked "quick"."""

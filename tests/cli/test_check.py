@@ -54,7 +54,7 @@ def test_an_honest_campaign_has_no_blunders(tmp_path: Path) -> None:
 
 
 def test_a_diagnosis_tells_blunders_first(in_g: Path, tmp_path: Path) -> None:
-    done = run("diagnose", in_g, "-o", tmp_path / "out", "--posterior", "--no-report")
+    done = run("diagnose", in_g, "-o", tmp_path / "out", "--no-report")
     assert done.returncode == 0
     assert done.stderr.startswith("permway: put right first: records.blows: levels are 9.80665 times")
     assert done.stdout.startswith("blunders ")
