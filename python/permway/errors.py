@@ -1,4 +1,4 @@
-"""What goes wrong, said once and clearly.
+"""What goes wrong, stated once and clearly.
 
 Every error a user can cause carries what is wrong, where, the value met and the remedy.
 """

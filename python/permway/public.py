@@ -48,7 +48,7 @@ def compare(
     ----------
     campaign : Campaign or path
     raw_only : bool
-        With the owner's values only.
+        With the nominal values only.
     threads : int, optional
     progress : callable, optional
         Called with (done, total).

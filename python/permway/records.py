@@ -1,4 +1,4 @@
-"""Frozen, validated records, whose faults are said with place, value and remedy."""
+"""Frozen, validated records, whose faults are stated with place, value and remedy."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class FrozenModel(BaseModel):
     def __init__(self, *values: object, **data: Any) -> None:
         if values:
             fields = list(type(self).model_fields)
-            said = ", ".join(f"{name}={value!r}" for name, value in zip(fields, values, strict=False))
+            stated = ", ".join(f"{name}={value!r}" for name, value in zip(fields, values, strict=False))
             raise InputError(
-                "takes its values by name", where=type(self).__name__, remedy=f"{said} if that is meant"
+                "takes its values by name", where=type(self).__name__, remedy=f"{stated} if that is meant"
             )
         try:
             super().__init__(**{name: _unwarned(value) for name, value in data.items()})
@@ -70,7 +70,7 @@ def input_error(error: ValidationError, table: object, place: str, words: Words 
     place : str
         Name of the table itself; "" for the whole file.
     words : callable, optional
-        What to say of a complaint; by default what pydantic says.
+        What to say of a complaint; by default what pydantic states.
     """
     words = words or plain_words
     first, *others = error.errors(include_url=False)
@@ -78,13 +78,13 @@ def input_error(error: ValidationError, table: object, place: str, words: Words 
     remedy = ""
     if others:
         each = [f"{place_in(table, one['loc'], place)}: {words(one)[0]}" for one in others[:MOST_TOLD]]
-        told = "; ".join(dict.fromkeys(each)) + ("; ..." if len(others) > MOST_TOLD else "")
-        remedy = f"{len(others)} further fault(s) in the same table: {told}"
+        reported = "; ".join(dict.fromkeys(each)) + ("; ..." if len(others) > MOST_TOLD else "")
+        remedy = f"{len(others)} further fault(s) in the same table: {reported}"
     return InputError(what, where=place_in(table, first["loc"], place), value=value, remedy=remedy)
 
 
 def plain_words(complaint: Mapping[str, Any]) -> tuple[str, object]:
-    """What pydantic says, and the value met where it is not said."""
+    """What pydantic states, and the value met where it is not stated."""
     what = str(complaint["msg"]).removeprefix("Value error, ")
     value = None if complaint["type"] in ("missing", "value_error", "union_tag_invalid") else complaint["input"]
     return what[:1].lower() + what[1:], value

@@ -1,4 +1,4 @@
-"""Noise floors that nobody stated are estimated from what channels do not share, and said as such."""
+"""Noise floors that nobody stated are estimated from what channels do not share, and stated as such."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Slips of the pen: places off the track, phases whose header is wrong."""
+"""Misprints of the pen: places off the track, phases whose header is wrong."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ def evidence(tmp_path_factory: pytest.TempPathFactory) -> Evidence:
 
 def with_groups(evidence: Evidence, *groups: HeldOut) -> Evidence:
     campaign = evidence.campaign
-    said = campaign.said.model_copy(update={"held_out": groups})
+    said = campaign.stated.model_copy(update={"held_out": groups})
     changed = Campaign(said, campaign.model, campaign.folder, campaign.parameters)
     return Evidence(changed, evidence.blocks, evidence.sizes, 1)
 

@@ -19,7 +19,7 @@ from simulated_train import measured, tables, written
 
 def flat(campaign: Campaign, amplitude_m: float = 1.5e-5) -> Campaign:
     lines = WheelLines(wheel=2, amplitude_m=amplitude_m, decay=0.3)
-    return with_irregularity(campaign, wheels=(*campaign.said.irregularity.wheels, lines))
+    return with_irregularity(campaign, wheels=(*campaign.stated.irregularity.wheels, lines))
 
 
 @pytest.fixture(scope="module")

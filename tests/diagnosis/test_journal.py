@@ -61,7 +61,7 @@ def test_another_record_or_seed_is_another_diagnosis(campaign: Campaign, tmp_pat
         (copy / path.name).write_bytes(path.read_bytes())
     other = read_campaign(copy / "campaign.toml")
     assert key_of(other, 0) == key
-    record = other.path(other.said.records[0])
+    record = other.path(other.stated.records[0])
     record.write_bytes(record.read_bytes() + b" ")
     assert key_of(other, 0) != key
 

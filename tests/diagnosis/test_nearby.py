@@ -82,7 +82,7 @@ def test_a_speed_noted_wrongly_is_found(tmp_path: Path) -> None:
         acts="scales",
         tolerance_2sigma=0.005,
     )
-    said = owner.said.model_copy(update={"parameters": (*owner.said.parameters, speed)})
+    said = owner.stated.model_copy(update={"parameters": (*owner.stated.parameters, speed)})
     parameters = ParameterSet(said.parameters, owner.model, {}, said, owner.folder)
     owner = Campaign(said, owner.model, owner.folder, parameters)
     noted = owner.condition("fast").speed_m_per_s

@@ -28,9 +28,9 @@ def _read_off(campaign: Campaign, off_K: float) -> Campaign:
     """The test in the cold was so much warmer than was read."""
     conditions = tuple(
         c.model_copy(update={"temperature_C": (c.temperature_C or 0.0) + off_K}) if c.name == "cold" else c
-        for c in campaign.said.conditions
+        for c in campaign.stated.conditions
     )
-    said = campaign.said.model_copy(update={"conditions": conditions})
+    said = campaign.stated.model_copy(update={"conditions": conditions})
     return Campaign(said, campaign.model, campaign.folder, campaign.parameters)
 
 
@@ -42,7 +42,7 @@ def test_what_is_told_by_two_temperatures_is_as_sure_as_their_thermometers(tmp_p
 
     def ending(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         """As of a law that is known up to the warmest temperature that was read, and no further."""
-        warmest = max(c.temperature_C or 0.0 for c in campaign.said.conditions)
+        warmest = max(c.temperature_C or 0.0 for c in campaign.stated.conditions)
         if warmest > 12.0:
             raise InputError("is known up to 12 degC", where="law", value=warmest)
         return hypothesis.amend(campaign, values)

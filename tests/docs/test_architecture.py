@@ -1,4 +1,4 @@
-"""What the page on the architecture says of imports and threads, by the code."""
+"""What the page on the architecture states about imports and threads, by the code."""
 
 from __future__ import annotations
 

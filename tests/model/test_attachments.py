@@ -102,12 +102,12 @@ def test_anything_hangs_on_any_body(body, formulation):
     places = [Place(body=body, x_m=x, name="here"), other]
     before = respond(bare(), places, formulation)
     inertia = -(OMEGA**2) * KG
-    hung = Mass(mass_kg=KG)
+    attached = Mass(mass_kg=KG)
     cases = {
         "resonator": (
             with_it(
                 Joints(between=(body, "block"), law="spring", at=(x,)),
-                bodies={"block": hung},
+                bodies={"block": attached},
                 spring=hysteretic(SPRING),
             ),
             SPRING * inertia / (SPRING + inertia),
@@ -116,7 +116,7 @@ def test_anything_hangs_on_any_body(body, formulation):
         "mass": (
             with_it(
                 Joints(between=(body, "block"), law="rigid", at=(x,)),
-                bodies={"block": hung},
+                bodies={"block": attached},
                 rigid=hysteretic(2e12 + 0j),
             ),
             2e12 * inertia / (2e12 + inertia),

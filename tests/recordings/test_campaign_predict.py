@@ -11,9 +11,9 @@ import xarray as xr
 from campaigns import small, tables, write
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.load import Dataset, log_variance
-from permway.campaign.predict import need_of, plan, predict
+from permway.campaign.predict import plan, predict, request_of
 from permway.campaign.predict.run import solved_lines
-from permway.campaign.predict.sweeps import Answer, Need
+from permway.campaign.predict.sweeps import Request, Result
 from permway.errors import InputError
 from permway.model.place import Place
 from permway.recordings.estimates.decay_rate import grid_positions, track_decay_rate
@@ -25,7 +25,7 @@ FREQUENCY = np.arange(10.0, 121.0, 2.0)
 
 def blank(campaign: Campaign, name: str, variable: str, **coordinates: Any) -> Dataset:
     """A dataset of zeros with the coordinates of a record."""
-    record = next(r for r in campaign.said.records if r.name == name)
+    record = next(r for r in campaign.stated.records if r.name == name)
     shape = [len(c) for c in coordinates.values()]
     data = xr.Dataset({variable: (list(coordinates), np.zeros(shape, dtype=complex))}, coords=coordinates)
     return Dataset(record, campaign.condition(record.condition), data)
@@ -67,21 +67,21 @@ def test_a_hammer_test_is_receptance_through_the_chains(tmp_path: Path) -> None:
 
 def test_records_of_one_temperature_and_of_the_same_lines_share_one_solve(tmp_path: Path) -> None:
     campaign = small(tmp_path)
-    hammer, train = (need_of(campaign, d) for d in (blows(campaign), run(campaign)))
+    hammer, train = (request_of(campaign, d) for d in (blows(campaign), run(campaign)))
     assert hammer is not None
     assert train is not None
-    mine = Need(hammer.temperature_C, hammer.frequency_Hz.copy(), (("rail", 1.0),), (("rail", 2.0),))
+    mine = Request(hammer.temperature_C, hammer.frequency_Hz.copy(), (("rail", 1.0),), (("rail", 2.0),))
     shared, wheels = plan([hammer, mine, train])
     # Two sensors, and one place of another record; four wheels push at lines of their own.
     assert len(shared.forces) == 3
     assert len(wheels.forces) == 4
-    cold = Need(-10.0, hammer.frequency_Hz, (("rail", 1.0),), (("rail", 2.0),))
+    cold = Request(-10.0, hammer.frequency_Hz, (("rail", 1.0),), (("rail", 2.0),))
     assert len(plan([cold, hammer, mine])) == 2
-    answer = Answer(shared, np.zeros((shared.frequency_Hz.size, len(shared.sensors), 3), dtype=complex))
+    answer = Result(shared, np.zeros((shared.frequency_Hz.size, len(shared.sensors), 3), dtype=complex))
     with pytest.raises(InputError, match="pair is not in the sweep"):
-        answer.of(Need(12.0, FREQUENCY, (("deck", 1.0),), (("rail", 2.0),)))
+        answer.of(Request(12.0, FREQUENCY, (("deck", 1.0),), (("rail", 2.0),)))
     with pytest.raises(InputError, match="of another temperature, factor or frequency"):
-        answer.of(Need(12.0, np.array([0.123]), (("rail", 12.0),), (("rail", 12.0),)))
+        answer.of(Request(12.0, np.array([0.123]), (("rail", 12.0),), (("rail", 12.0),)))
 
 
 def test_a_run_is_the_trains_response(tmp_path: Path) -> None:
@@ -197,7 +197,7 @@ def test_masses_on_a_shaken_ground(tmp_path: Path) -> None:
 
 def test_a_materials_table_is_its_law(tmp_path: Path) -> None:
     campaign = rig(tmp_path)
-    record = campaign.said.records[1]
+    record = campaign.stated.records[1]
     data = xr.Dataset(
         {"modulus": ("point", np.zeros(3, dtype=complex))}, coords={"frequency": ("point", [1.0, 10.0, 5.0])}
     )

@@ -76,7 +76,7 @@ def test_a_campaign(tmp_path: Path) -> None:
     html = campaign._repr_html_()
     assert (len(named(drawn(html), "force")), len(named(drawn(html), "sensor"))) == (9, 5)
     assert "hammer_+12C.mat" in html
-    assert all(p.name in html for p in campaign.said.parameters)
+    assert all(p.name in html for p in campaign.stated.parameters)
 
 
 def test_names_cannot_bring_markup() -> None:

@@ -333,8 +333,8 @@ def test_tables_of_a_wrong_type(changes):
     with pytest.raises((TypeError, OverflowError)) as caught:
         _core.solve_line(**tables(**changes))
     # What is at fault stands in the message or in a note below it.
-    told = [str(caught.value), *getattr(caught.value, "__notes__", [])]
-    assert any(next(iter(changes)).partition("_")[0] in text for text in told)
+    reported = [str(caught.value), *getattr(caught.value, "__notes__", [])]
+    assert any(next(iter(changes)).partition("_")[0] in text for text in reported)
 
 
 def test_missing_column():

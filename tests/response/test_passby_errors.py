@@ -1,4 +1,4 @@
-"""A passage said wrongly: one clear error each; and the model file, the command line and the pictures."""
+"""A passage stated wrongly: one clear error each; and the model file, the command line and the pictures."""
 
 import json
 

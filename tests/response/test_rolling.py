@@ -28,7 +28,7 @@ SPEED = LAPS * LAYOUT.length_m / SECONDS
 
 
 def case() -> Case:
-    """Three short spans with layers of dashpots, as their owner says."""
+    """Three short spans with layers of dashpots, as the file states."""
     drawn = draw(3, "null")
     tests = replace(
         drawn.tests,

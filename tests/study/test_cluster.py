@@ -12,7 +12,7 @@ from permway.study import cluster as cluster_module
 from permway.study import read_study, run_study
 
 distributed = pytest.importorskip("distributed")
-# What distributed says of itself on closing, above all when a worker was killed.
+# What distributed states about itself on closing, above all when a worker was killed.
 pytestmark = [
     pytest.mark.filterwarnings("ignore::ResourceWarning"),
     pytest.mark.filterwarnings("ignore::DeprecationWarning"),

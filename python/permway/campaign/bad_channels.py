@@ -1,4 +1,4 @@
-"""Channels whose samples are spoilt: told before anything is estimated from them, and left out of it."""
+"""Bad channels: reported before anything is estimated from them, and left out of it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Spoilt:
+class BadChannel:
     """A channel of a record that nothing should be estimated from.
 
     Attributes
@@ -36,10 +36,10 @@ class Spoilt:
     what: str
 
 
-def sound(campaign: Campaign) -> tuple[Campaign, tuple[Spoilt, ...]]:
-    """A campaign without its spoilt channels, and what they are.
+def without_bad_channels(campaign: Campaign) -> tuple[Campaign, tuple[BadChannel, ...]]:
+    """A campaign without its bad channels, and what they are.
 
-    A channel is spoilt if screening finds an error in it: clipped, held, dead, or a copy of another.
+    A channel is bad if screening finds an error in it: clipped, held, dead, or a copy of another.
 
     Raises
     ------
@@ -47,24 +47,24 @@ def sound(campaign: Campaign) -> tuple[Campaign, tuple[Spoilt, ...]]:
         If a file cannot be read, or no record is left.
     """
     records: list[Record] = []
-    spoilt: list[Spoilt] = []
-    for record in campaign.said.records:
-        found = list(_spoilt(campaign, record)) if record.sampled else []
+    bad: list[BadChannel] = []
+    for record in campaign.stated.records:
+        found = list(_bad_channels(campaign, record)) if record.sampled else []
         names = {one.channel for one in found}
         kept = {label: name for label, name in record.channels.items() if name not in names}
         if kept or not found:
             records.append(record.model_copy(update={"channels": kept}) if found else record)
-        spoilt += found
+        bad += found
     if not records:
-        one = spoilt[0]
+        one = bad[0]
         remedy = "measure again, or give the records' sound parts"
-        raise InputError("every record is spoilt", where=f"records.{one.record}", value=one.what, remedy=remedy)
-    if not spoilt:
+        raise InputError("every record is bad", where=f"records.{one.record}", value=one.what, remedy=remedy)
+    if not bad:
         return campaign, ()
-    return campaign.with_records(tuple(records)), tuple(spoilt)
+    return campaign.with_records(tuple(records)), tuple(bad)
 
 
-def _spoilt(campaign: Campaign, record: Record) -> Iterator[Spoilt]:
+def _bad_channels(campaign: Campaign, record: Record) -> Iterator[BadChannel]:
     """One for each kind of error of each channel."""
     blocks = time_blocks(
         campaign.path(record),
@@ -82,4 +82,4 @@ def _spoilt(campaign: Campaign, record: Record) -> Iterator[Spoilt]:
                 errors.setdefault((finding.channel, finding.kind), []).append(finding)
     for (label, kind), findings in errors.items():
         more = ", and elsewhere" if len(findings) > 1 else ""
-        yield Spoilt(record.name, record.channels[label], kind, f"{findings[0].what}{more}")
+        yield BadChannel(record.name, record.channels[label], kind, f"{findings[0].what}{more}")

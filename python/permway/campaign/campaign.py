@@ -1,4 +1,4 @@
-"""The campaign file: recordings with their conditions and sensors, and the model as its owner believes it."""
+"""The campaign file: recordings with their conditions and sensors, and the model as the user believes it."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from permway.campaign.load import Dataset
 
 
-class Said(FrozenModel):
-    """A campaign file, as it says it.
+class CampaignFile(FrozenModel):
+    """A campaign file, as it states it.
 
     Parameters
     ----------
@@ -38,8 +38,8 @@ class Said(FrozenModel):
     model : str
         Name of the model file, beside the campaign file or in a folder below it.
     allow_outside : bool
-        Says that `model` or the files of records lie outside the campaign's folder on purpose. It allows nothing:
-        whoever reads the campaign does.
+        States that `model` or the files of records lie outside the campaign's folder on purpose. It allows
+        nothing: whoever reads the campaign does.
     parameters : sequence of Parameter
     sensors : sequence of Sensor
     forces : sequence of Point
@@ -68,10 +68,10 @@ class Campaign(Shown):
 
     Attributes
     ----------
-    said : Said
+    stated : Stated
         The file.
     model : Model
-        As its owner believes it.
+        As the user believes it.
     folder : Path
         Where the campaign file lies.
     parameters : ParameterSet
@@ -80,7 +80,7 @@ class Campaign(Shown):
         Name of the campaign file in the folder.
     """
 
-    said: Said
+    stated: CampaignFile
     model: Model
     folder: Path
     parameters: ParameterSet = field(repr=False, compare=False)
@@ -88,15 +88,15 @@ class Campaign(Shown):
 
     def sensor(self, name: str) -> Sensor:
         """The sensor of that name."""
-        return self.said.sensors[_named(self.said.sensors, name, "sensors")]
+        return self.stated.sensors[_named(self.stated.sensors, name, "sensors")]
 
     def point(self, name: str) -> Point:
         """The force point of that name."""
-        return self.said.forces[_named(self.said.forces, name, "forces")]
+        return self.stated.forces[_named(self.stated.forces, name, "forces")]
 
     def condition(self, name: str) -> Condition:
         """The condition of that name."""
-        return self.said.conditions[_named(self.said.conditions, name, "conditions")]
+        return self.stated.conditions[_named(self.stated.conditions, name, "conditions")]
 
     def path(self, record: Record) -> Path:
         """Where the file of a record lies."""
@@ -115,18 +115,18 @@ class Campaign(Shown):
     def with_values(self, values: Mapping[str, float]) -> Campaign:
         """The campaign with other values, also of sensors' chains and of conditions.
 
-        Its `parameters` stay those of the file, so values count from the owner's belief as before.
+        Its `parameters` stay those of the file, so values count from the nominal belief as before.
 
         Raises
         ------
         InputError
             As :meth:`model_with`.
         """
-        model, said = self.parameters.changed(values)
-        return replace(self, said=said, model=model)
+        model, stated = self.parameters.changed(values)
+        return replace(self, stated=stated, model=model)
 
     def with_model(self, model: Model) -> Campaign:
-        """The campaign with another model, as an amendment makes it of the owner's.
+        """The campaign with another model, as an amendment makes it of the nominal.
 
         Parameters keep their names, nominals and priors, and act on the new model; one whose numbers it no longer
         has (of a law that was replaced) acts no more.
@@ -138,34 +138,34 @@ class Campaign(Shown):
 
         One whose trains stand stays as it is.
         """
-        known = self.said.irregularity
+        known = self.stated.irregularity
         if known.rolling is None:
             return self
         warm = other.model.temperature_C
         runs = {
             c.name: (c.speed_m_per_s, warm if c.temperature_C is None else c.temperature_C)
-            for c in other.said.conditions
+            for c in other.stated.conditions
             if c.kind == "train" and c.speed_m_per_s
         }
         rolling = known.rolling.model_copy(update={"about": About(other.model.line, runs)})
         irregularity = known.model_copy(update={"rolling": rolling})
-        said = self.said.model_copy(update={"irregularity": irregularity})
-        return replace(self, said=said, parameters=self.parameters.saying(said))
+        stated = self.stated.model_copy(update={"irregularity": irregularity})
+        return replace(self, stated=stated, parameters=self.parameters.restated(stated))
 
     def with_records(self, records: Sequence[Record]) -> Campaign:
         """The campaign with some of its records, or of their channels, alone."""
-        said = self.said.model_copy(update={"records": tuple(records)})
-        return replace(self, said=said)
+        stated = self.stated.model_copy(update={"records": tuple(records)})
+        return replace(self, stated=stated)
 
     def summary(self) -> dict[str, str | int]:
         """What there is, for people and machines."""
         return {
             "campaign": str(self.folder / self.file),
-            "title": self.said.title,
-            "records": len(self.said.records),
-            "sensors": len(self.said.sensors),
-            "parameters": len(self.said.parameters),
-            "held_out": len(self.said.held_out),
+            "title": self.stated.title,
+            "records": len(self.stated.records),
+            "sensors": len(self.stated.sensors),
+            "parameters": len(self.stated.parameters),
+            "held_out": len(self.stated.held_out),
         }
 
     def load(self) -> list[Dataset]:
@@ -221,25 +221,25 @@ def campaign_from_dict(table: Mapping[str, Any], *, folder: Path, allow_outside:
         With the place in the table.
     """
     try:
-        said = Said.model_validate(dict(table))
+        stated = CampaignFile.model_validate(dict(table))
     except ValidationError as error:
         raise model_error(error, table, "") from error
-    refuse_coercion(table, said, "")
-    model_path = beside(said.model, folder, "model", outside=allow_outside)
+    refuse_coercion(table, stated, "")
+    model_path = beside(stated.model, folder, "model", outside=allow_outside)
     try:
         model = read_model(model_path)
     except InputError as error:
         raise InputError(
             error.what, where=f"model: {error.where}", value=error.value, remedy=error.remedy
         ) from error
-    for index, record in enumerate(said.records):
+    for index, record in enumerate(stated.records):
         for key, name in (("file", record.file), ("loss_file", record.loss_file)):
             where = f"records[{index}].{key}"
             if name is not None and not beside(name, folder, where, outside=allow_outside).is_file():
                 raise InputError("there is no such file", where=where, value=name)
-    check_campaign(said, model)
+    check_campaign(stated, model)
     raw = read_toml(model_path, "name a model file (TOML)")
-    read = Campaign(said, model, folder, ParameterSet(said.parameters, model, raw, said, model_path.parent))
+    read = Campaign(stated, model, folder, ParameterSet(stated.parameters, model, raw, stated, model_path.parent))
     return read.rolling_about(read)
 
 

@@ -17,13 +17,13 @@ from permway.recordings.channel import Sensor
 from permway.response.receptance import check_places
 
 if TYPE_CHECKING:
-    from permway.campaign.campaign import Said
+    from permway.campaign.campaign import CampaignFile
 
 SAME_SPEED = 1e-3
 """Speeds within a thousandth are the same."""
 
 
-def check_campaign(said: Said, model: Model) -> None:
+def check_campaign(stated: CampaignFile, model: Model) -> None:
     """Check names, places and kinds.
 
     Raises
@@ -32,22 +32,22 @@ def check_campaign(said: Said, model: Model) -> None:
         With the place in the campaign file.
     """
     for key in ("sensors", "forces", "conditions", "records", "held_out"):
-        _check_names(getattr(said, key), key)
-    for index, sensor in enumerate(said.sensors):
+        _check_names(getattr(stated, key), key)
+    for index, sensor in enumerate(stated.sensors):
         _check_sensor(sensor, model, f"sensors[{index}]")
-    for index, point in enumerate(said.forces):
+    for index, point in enumerate(stated.forces):
         _check_place(model, point.body, point.x_m, f"forces[{index}]")
-    for index, condition in enumerate(said.conditions):
+    for index, condition in enumerate(stated.conditions):
         _check_condition(condition, model, f"conditions[{index}]")
-    check_factors(said.conditions, model)
-    for index, record in enumerate(said.records):
-        _check_record(record, said, model, f"records[{index}]")
-    if said.irregularity.knowledge != "known" and model.irregularity is None:
+    check_factors(stated.conditions, model)
+    for index, record in enumerate(stated.records):
+        _check_record(record, stated, model, f"records[{index}]")
+    if stated.irregularity.knowledge != "known" and model.irregularity is None:
         remedy = "name an irregularity in the model file"
         raise InputError("the model has no irregularity", where="irregularity.knowledge", remedy=remedy)
-    check_excitation(said.irregularity, said.conditions, model)
-    for index, group in enumerate(said.held_out):
-        _check_group(group, said, f"held_out[{index}]")
+    check_excitation(stated.irregularity, stated.conditions, model)
+    for index, group in enumerate(stated.held_out):
+        _check_group(group, stated, f"held_out[{index}]")
 
 
 def _check_names(items: Iterable[Any], key: str) -> None:
@@ -108,8 +108,8 @@ def _check_condition(condition: Condition, model: Model, where: str) -> None:
             raise InputError(error.what, where=f"{where}.{key}", value=error.value, remedy=error.remedy) from error
 
 
-def _check_record(record: Record, said: Said, model: Model, where: str) -> None:
-    conditions = {condition.name: condition for condition in said.conditions}
+def _check_record(record: Record, stated: CampaignFile, model: Model, where: str) -> None:
+    conditions = {condition.name: condition for condition in stated.conditions}
     _known(record.condition, conditions, "condition", f"{where}.condition")
     kind = conditions[record.condition].kind
     if kind not in KIND_OF[record.statistic]:
@@ -119,8 +119,8 @@ def _check_record(record: Record, said: Said, model: Model, where: str) -> None:
             value=record.condition,
             remedy=f"use a condition of kind {' or '.join(KIND_OF[record.statistic])}",
         )
-    sensors = {sensor.name: sensor for sensor in said.sensors}
-    points = {point.name for point in said.forces}
+    sensors = {sensor.name: sensor for sensor in stated.sensors}
+    points = {point.name for point in stated.forces}
     for key, names in (("channels", sensors), ("responses", sensors), ("references", points)):
         for label, name in getattr(record, key).items():
             _known(name, names, "force point" if key == "references" else "sensor", f"{where}.{key}.{label}")
@@ -152,10 +152,10 @@ def _check_record(record: Record, said: Said, model: Model, where: str) -> None:
             raise InputError("leads to no law", where=f"{where}.law", value=record.law)
 
 
-def _check_group(group: HeldOut, said: Said, where: str) -> None:
+def _check_group(group: HeldOut, stated: CampaignFile, where: str) -> None:
     names = {
-        "record": {record.name for record in said.records},
-        "channel": {sensor.name for sensor in said.sensors},
+        "record": {record.name for record in stated.records},
+        "channel": {sensor.name for sensor in stated.sensors},
     }.get(group.axis)
     if names is not None:
         for index, member in enumerate(group.members):
@@ -169,7 +169,7 @@ def _check_group(group: HeldOut, said: Said, where: str) -> None:
     if matches is None:
         return
     for index, member in enumerate(group.members):
-        if not any(matches(condition, float(member)) for condition in said.conditions):
+        if not any(matches(condition, float(member)) for condition in stated.conditions):
             what = f"no condition has this {group.axis}"
             raise InputError(what, where=f"{where}.members[{index}]", value=member)
 

@@ -32,7 +32,7 @@ POWERS = ("psd", "decay_rate")
 """Variables whose decibels are 10 lg."""
 
 UNSURE_DB = 1.0
-"""A line of larger standard deviation says nothing of a level, and is left out of levels in bands."""
+"""A line of larger standard deviation states nothing of a level, and is left out of levels in bands."""
 
 
 def curves(
@@ -124,20 +124,20 @@ def third_octaves(record: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        `deviation_dB` (model, channel, band), NaN where no line says anything; `scatter_dB` (channel, band), its
+        `deviation_dB` (model, channel, band), NaN where no line states anything; `scatter_dB` (channel, band), its
         standard deviation by noise; `lines` (channel, band).
     """
     number = np.round(10.0 * np.log10(record["frequency"].values)).astype(np.int64)
     bands = Bands(number=np.arange(number.min(), number.max() + 1))
     member = (number[None, :] == bands.number[:, None]).astype(np.float64)
-    said = np.isfinite(record["deviation_dB"].values).all(axis=0) & (record["scatter_dB"].values <= UNSURE_DB)
+    stated = np.isfinite(record["deviation_dB"].values).all(axis=0) & (record["scatter_dB"].values <= UNSURE_DB)
     power = record.attrs["variable"] in POWERS
 
     def squares(values: np.ndarray) -> Reals:
-        return np.where(said, np.abs(values) ** (1 if power else 2), 0.0)
+        return np.where(stated, np.abs(values) ** (1 if power else 2), 0.0)
 
     measured = squares(record["measured"].values)
-    scatter = np.where(said, measured * record["scatter_dB"].values, 0.0)
+    scatter = np.where(stated, measured * record["scatter_dB"].values, 0.0)
     # Neighbouring lines under Hann's window say half the same.
     alike = 2.0 if record.attrs["variable"] == "psd" else 1.0
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -158,7 +158,7 @@ def third_octaves(record: xr.Dataset) -> xr.Dataset:
             ),
             "lines": (
                 ("channel", "band"),
-                (said @ member.T).astype(np.int64),
+                (stated @ member.T).astype(np.int64),
                 {"long_name": "lines", "units": "1"},
             ),
         },

@@ -111,7 +111,7 @@ class TrackLines(_Lines):
     @model_validator(mode="after")
     def _falls_once(self) -> Self:
         if self.dip_m is not None and "decay" in self.model_fields_set:
-            raise fault("a dip says how its lines fall: leave out decay, or dip_m", "decay")
+            raise fault("a dip states how its lines fall: leave out decay, or dip_m", "decay")
         return self
 
     def amplitude(self, number: Reals) -> Reals:
@@ -209,7 +209,7 @@ class Push(FrozenModel):
 
 
 def check_excitation(known: IrregularityKnown, conditions: Iterable[Condition], model: Model) -> None:
-    """Check what an irregularity says of conditions, wheels and degrees of freedom.
+    """Check what an irregularity states about conditions, wheels and degrees of freedom.
 
     Raises
     ------

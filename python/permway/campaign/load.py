@@ -37,7 +37,7 @@ SI_UNITS = {
 }
 
 LEAST_COHERENCE = 1e-3
-"""Coherence below this counts as this: its line says nothing, but its variance stays a number."""
+"""Coherence below this counts as this: its line states nothing, but its variance stays a number."""
 
 MOST_COHERENCE = 1.0 - 1e-5
 """Coherence above this counts as this: files print so many digits, and no measurement is exact."""
@@ -110,7 +110,7 @@ def load(campaign: Campaign) -> list[Dataset]:
     InputError
         With the record and what is wrong in its file.
     """
-    return [load_record(campaign, record) for record in campaign.said.records]
+    return [load_record(campaign, record) for record in campaign.stated.records]
 
 
 def load_record(campaign: Campaign, record: Record) -> Dataset:
@@ -224,7 +224,7 @@ def _frf(campaign: Campaign, record: Record) -> xr.Dataset:
         raise InputError("missing, and the file does not say", where="averages", remedy=remedy)
     if file.coherence is None:
         remedy = "export it beside the responses, as an array or column named coherence, 0 to 1"
-        raise InputError("has no coherence, which says how sure each line is", where=record.file, remedy=remedy)
+        raise InputError("has no coherence, which states how sure each line is", where=record.file, remedy=remedy)
     coherence = spread(file.coherence)
     data = xr.Dataset(
         {
@@ -254,18 +254,18 @@ def _check_units(campaign: Campaign, record: Record, file: FrfRecord, at: np.nda
             found = None if at[i, j] < 0 else file.unit_of(int(at[i, j]))
             if found is None:
                 continue
-            said = f"({campaign.sensor(name).unit})/{campaign.point(point).unit}"
+            stated = f"({campaign.sensor(name).unit})/{campaign.point(point).unit}"
             where = f"{record.file}: {label} / {struck}"
             try:
-                check_same(found, said, where=where)
+                check_same(found, stated, where=where)
             except InputError as error:
-                what = f"{error.what}: the sensor and the force point make it {said!r}"
+                what = f"{error.what}: the sensor and the force point make it {stated!r}"
                 what = (
                     what
                     if record.unit is None
-                    else f"the record states {found!r}, sensor and force point {said!r}"
+                    else f"the record states {found!r}, sensor and force point {stated!r}"
                 )
-                remedy = f'correct the unit of the sensor or of the point; if the file is wrong, unit = "{said}"'
+                remedy = f'correct the unit of the sensor or of the point; if the file is wrong, unit = "{stated}"'
                 raise InputError(what, where=where, value=found, remedy=remedy) from error
 
 

@@ -50,7 +50,7 @@ def modes(campaign: Campaign, record: Record) -> xr.Dataset:
     chosen = [row for row in rows if _fits(row, header, path) and _selected(row, header, record)]
     where = f"{path}: line {header.number}"
     if not chosen:
-        raise InputError("no row says this" if rows else "no row", where=where, value=dict(record.select))
+        raise InputError("no row states this" if rows else "no row", where=where, value=dict(record.select))
     frequency = np.array([_above_zero(row, header, FREQUENCY[0], path) for row in chosen])
     low, high = record.band_Hz or (0.0, np.inf)
     used = np.flatnonzero((frequency >= low) & (frequency <= high))

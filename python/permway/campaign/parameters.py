@@ -34,7 +34,7 @@ class Parameter(FrozenModel):
     acts : "scales", "sets" or "adds"
         With the value v and the nominal n: every number is multiplied by v/n, or becomes v, or grows by v - n.
     nominal : float, optional
-        What the owner believes; by default the number at the first path, and 0 for "adds".
+        What the user believes; by default the number at the first path, and 0 for "adds".
     tolerance_2sigma : float, optional
         Two standard deviations: relative to the nominal, or with `absolute` in `unit`.
     absolute : bool

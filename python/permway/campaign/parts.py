@@ -141,7 +141,7 @@ class Record(FrozenModel):
     file : str
         Beside the campaign file, or in a folder below it.
     format : str, optional
-        By default told from the file's content and name.
+        By default reported from the file's content and name.
     part : str, optional
         Group or array of a file that holds several.
     condition : str
@@ -154,7 +154,7 @@ class Record(FrozenModel):
     responses, references : dict of file's label to sensor, and to force point
         Of frequency responses; the force points are in [[forces]]. Labels that are names may be a list.
     averages : float, optional
-        Averages behind an FRF, if the file does not say. Of "csd" and "psd" it says that the file holds spectra,
+        Averages behind an FRF, if the file does not say. Of "csd" and "psd" it states that the file holds spectra,
         not samples, and how many independent averages are behind them.
     band_Hz : (low, high), optional
         What of the record is used; by default all.
@@ -162,7 +162,7 @@ class Record(FrozenModel):
         Of a record in time whose file does not say it. It wins over a remark in a text; with times or a rate of
         the file's own the two must agree, but for `time_column = "none"`.
     header_row, skip_rows, time_column, decimal, encoding, unit, axes, pairs
-        What the file does not say or says wrongly, and wins over it; see
+        What the file does not say or states wrongly, and wins over it; see
         :class:`permway.recordings.readers.hints.Hints`.
     segment_s : float
         Length of a Welch segment, which for Hann's window sets the lines apart by its inverse.
@@ -223,7 +223,7 @@ class Record(FrozenModel):
 
     @property
     def hints(self) -> Hints:
-        """What is said of how its file is read."""
+        """What is stated about how its file is read."""
         return Hints(**{key: getattr(self, key) for key in _HINTS})
 
     @model_validator(mode="after")

@@ -28,13 +28,13 @@ TAPERED = 0.05
 """Share of the record at either end over which it is faded, so that a train cut off does not ring."""
 
 QUIET, FEWEST_QUIET = 0.9, 50
-"""Share of the time before the train enters that tells the noise, and of how many samples at least."""
+"""Share of the time before the train enters that states the noise, and of how many samples at least."""
 
 AFTER, LEAST_S, MOST_S = 1.0, 4.0, 120.0
 """Times the passage that the line has after it to come to rest, and seconds at least and at most."""
 
 DECAYS = 6.0
-"""Times the slowest mode falls by e in that rest, to a 400th: unless `window_s` says how long it is."""
+"""Times the slowest mode falls by e in that rest, to a 400th: unless `window_s` states how long it is."""
 
 LOWEST = 0.02
 """Share of the highest frequency from which modes are looked for."""
@@ -68,7 +68,7 @@ def passage(campaign: Campaign, record: Record) -> xr.Dataset:
     ------
     InputError
         For a record without a rate, in several blocks, sampled too slowly for its band; for noise that nothing
-        tells.
+        states.
     """
     condition = campaign.condition(record.condition)
     names = list(record.channels.values())
@@ -147,7 +147,7 @@ def _decay_s(model: Model, condition: Condition, sensors: list[Sensor], highest_
 def path_under(model: Model, condition: Condition, sensors: list[Sensor], highest_Hz: float) -> Path:
     """Where the axles run, panels ending at every point that is read.
 
-    Loads come on at once where a body begins, and not over a ramp, unless the condition says otherwise.
+    Loads come on at once where a body begins, and not over a ramp, unless the condition states otherwise.
     """
     axles = condition.axles
     assert axles is not None
@@ -169,7 +169,7 @@ def path_under(model: Model, condition: Condition, sensors: list[Sensor], highes
 
 
 def points_of(model: Model, sensor: Sensor) -> tuple[float, ...]:
-    """Where displacement tells what a sensor reads: there, or of a bent beam at three points about it."""
+    """Where displacement states what a sensor reads: there, or of a bent beam at three points about it."""
     x = float(sensor.x_m or 0.0)
     if not sensor.bends:
         return (x,)
@@ -235,7 +235,7 @@ def _noise(sensor: Sensor, values: Reals, rate: float, start: float, entry: floa
         quiet = int(QUIET * (entry - start) * rate)
         if quiet < FEWEST_QUIET:
             raise InputError(
-                "nothing tells the noise: the record does not begin long enough before the train",
+                "nothing states the noise: the record does not begin long enough before the train",
                 where=f"sensors.{sensor.name}.chain.noise_floor",
                 remedy="state it, as unit squared per hertz",
             )

@@ -66,7 +66,7 @@ def value_at(record: object, steps: Steps) -> object:
     Raises
     ------
     KeyError
-        If the path leads nowhere; its text says where it ends.
+        If the path leads nowhere; its text states where it ends.
     """
     for depth, step in enumerate(steps):
         record = _child(record, step, steps[:depth])
@@ -184,8 +184,8 @@ def _key(record: object, step: str | int, before: Steps) -> str | int:
         known = [field.alias or key for key, field in type(record).model_fields.items()]
     else:
         known = [str(key) for key in record] if isinstance(record, Mapping) else []
-    said = f": it has {', '.join(known[:12])}{', ...' if len(known) > 12 else ''}" if known else ""
-    raise KeyError(f"{written(before) or 'the file'} has no {step!r}{said}")
+    stated = f": it has {', '.join(known[:12])}{', ...' if len(known) > 12 else ''}" if known else ""
+    raise KeyError(f"{written(before) or 'the file'} has no {step!r}{stated}")
 
 
 def _field(record: BaseModel, step: str | int) -> str | None:

@@ -31,7 +31,7 @@ def from_file(campaign: Campaign, record: Record) -> xr.Dataset:
     Raises
     ------
     InputError
-        For a file of another format; for spectra that are not said to be densities, or of another unit than the
+        For a file of another format; for spectra that are not stated to be densities, or of another unit than the
         sensors squared per hertz; for lines that `segment_s` does not set apart.
     """
     path = existing_file(campaign.path(record))
@@ -75,22 +75,22 @@ def _check_density(file: SpectraRecord, row: int, sensor: Sensor, record: Record
     where = f"{record.file}: channel '{name}'"
     stated = record.hints.channel_unit(name)
     found = stated or file.units[row]
-    told = f"({sensor.unit})^2/Hz"
+    reported = f"({sensor.unit})^2/Hz"
     if found is None and file.plain[row]:
         return
     try:
-        density = found is not None and parse_unit(found).dimension == parse_unit(told).dimension
+        density = found is not None and parse_unit(found).dimension == parse_unit(reported).dimension
     except InputError:
         density = False
     if not density:
         raise InputError(
-            "whether these are densities is not said: a power of each line, its root and a density differ",
+            "whether these are densities is not stated: a power of each line, its root and a density differ",
             where=where,
             value=found,
-            remedy=f'if they are one-sided densities, say so in the record: unit = {{ "{name}" = "{told}" }}',
+            remedy=f'if they are one-sided densities, say so in the record: unit = {{ "{name}" = "{reported}" }}',
         )
     assert found is not None
-    check_unit(found, told, where, name, stated is not None)
+    check_unit(found, reported, where, name, stated is not None)
 
 
 def _step(file: SpectraRecord, record: Record) -> float:

@@ -99,7 +99,7 @@ def material(campaign: Campaign, record: Record) -> xr.Dataset:
 
 
 def _row(campaign: Campaign, record: Record) -> tuple[np.ndarray, np.ndarray]:
-    """Bands and values of the one row that says what `select` asks for.
+    """Bands and values of the one row that states what `select` asks for.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def _row(campaign: Campaign, record: Record) -> tuple[np.ndarray, np.ndarray]:
         raise InputError(what, where=f"{path}: line {short.number}")
     found = [row for row in rows if all(says(row, header, key, want) for key, want in record.select.items())]
     if len(found) != 1:
-        what = "no row says this" if not found else f"{len(found)} rows say this"
+        what = "no row states this" if not found else f"{len(found)} rows say this"
         raise InputError(what, where="select", value=dict(record.select), remedy="select exactly one row")
     columns = [i for i, cell in enumerate(header.cells) if _BAND.fullmatch(cell)]
     band = np.array([float(header.cells[i]) for i in columns])

@@ -90,7 +90,7 @@ class ParameterSet:
         return list(self.known)
 
     def nominal(self) -> dict[str, float]:
-        """What the owner believes, by name."""
+        """What the user believes, by name."""
         return {name: known.nominal for name, known in self.known.items()}
 
     def changed(self, values: Mapping[str, float]) -> tuple[Model, Any]:
@@ -132,7 +132,7 @@ class ParameterSet:
         other._table = {}
         return other
 
-    def saying(self, own: object) -> ParameterSet:
+    def restated(self, own: object) -> ParameterSet:
         """The same parameters, acting on another record of the campaign file, alike where they act."""
         other = copy.copy(self)
         other._own = own
@@ -146,7 +146,7 @@ class ParameterSet:
             found.add(".".join(str(step) for step in head[:2]))
         return found
 
-    def moved(self, model: Model, name: str, old: float, new: float) -> Model | None:
+    def shifted(self, model: Model, name: str, old: float, new: float) -> Model | None:
         """A model that has one parameter at `old`, with it at `new` instead; None if it must be built again."""
         steps = self._new(name, new, old)
         if any(place.kind == "table" for place, _ in steps):

@@ -7,7 +7,16 @@ from typing import Annotated
 
 import typer
 
-from permway.cli.output import Json, Outside, Threads, examples, progress_bar, say, stage_bar, tell
+from permway.cli.output import (
+    Json,
+    Outside,
+    Threads,
+    examples,
+    print_message,
+    print_result,
+    progress_bar,
+    stage_bar,
+)
 
 campaigns = typer.Typer(rich_markup_mode=None)
 
@@ -23,14 +32,14 @@ def compare(
         Path | None,
         typer.Option("--output", "-o", help="Folder for page, numbers, pictures; by default beside the campaign."),
     ] = None,
-    raw_only: Annotated[bool, typer.Option("--raw-only", help="With the owner's values only.")] = False,
+    raw_only: Annotated[bool, typer.Option("--raw-only", help="With the nominal values only.")] = False,
     allow_outside: Outside = False,
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
     """Predicted against measured, as a page.
 
-    With the owner's values, and recalibrated within the tolerances that the campaign file states.
+    With the nominal values, and recalibrated within the tolerances that the campaign file states.
     """
     from permway.campaign.campaign import read_campaign
     from permway.diagnosis.compare import compare as run
@@ -41,7 +50,7 @@ def compare(
     folder = prepare_folder(output or campaign.parent / "comparison")
     with progress_bar("comparing", as_json) as progress:
         result = run(described, raw_only=raw_only, threads=threads, progress=progress)
-    say(write_comparison(result, folder), as_json)
+    print_result(write_comparison(result, folder), as_json)
 
 
 @campaigns.command(
@@ -86,10 +95,10 @@ def diagnose(
 ) -> None:
     """What a model leaves out, where, how surely.
 
-    First tells what is probably stated wrongly, as `permway check` does. Then recalibrates the model, looks for
-    what no value of it explains, names the effect or says that the records do not tell, and proves it on records
-    that were not fitted. Writes report.html, verdict.json and amended.toml; takes minutes. The same seed gives the
-    same verdict. Stopped and called again, it goes on where it was.
+    First states what is probably stated wrongly, as `permway check` does. Then recalibrates the model, looks for
+    what no value of it explains, names the effect or states that the records do not decide, and proves it on
+    records that were not fitted. Writes report.html, verdict.json and amended.toml; takes minutes. The same seed
+    gives the same verdict. Stopped and called again, it goes on where it was.
     """
     from permway.campaign.campaign import read_campaign
     from permway.checking.check import check
@@ -106,11 +115,11 @@ def diagnose(
     folder = prepare_folder(output or campaign.parent / "diagnosis")
     checked = check(described, threads=threads)
     for blunder in checked.blunders:
-        tell(f"{'asked' if blunder.asked else 'put right first'}: {blunder.sentence}")
+        print_message(f"{'asked' if blunder.asked else 'put right first'}: {blunder.sentence}")
     if posterior:
         with stage_bar("diagnosing", as_json) as progress:
             by_posterior = explain(described, ruled_out=ruled_out, threads=threads, progress=progress)
-        say(write_diagnosis(doubted(by_posterior, checked), folder, page=not no_report), as_json)
+        print_result(write_diagnosis(doubted(by_posterior, checked), folder, page=not no_report), as_json)
         return
     with keeping(folder / FOLDER, key_of(described, seed, ruled_out)) as journal:
         with stage_bar("diagnosing", as_json) as progress:
@@ -119,7 +128,7 @@ def diagnose(
             )
         written = write_diagnosis(doubted(result, checked), folder, page=not no_report)
         journal.close()
-    say(written, as_json)
+    print_result(written, as_json)
 
 
 @campaigns.command(epilog=examples("permway separability campaign/campaign.toml --json"))
@@ -129,7 +138,7 @@ def separability(
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
-    """What a campaign's sensors can tell apart.
+    """What a campaign's sensors can distinguish.
 
     Before any record is read: which effects the sensors would confuse, whatever they measure.
     """
@@ -139,7 +148,7 @@ def separability(
     described = read_campaign(campaign, allow_outside=allow_outside)
     with stage_bar("separability", as_json) as progress:
         result = run(described, threads=threads, progress=progress)
-    say(result.summary(), as_json)
+    print_result(result.summary(), as_json)
 
 
 @campaigns.command(
@@ -156,10 +165,10 @@ def demo(
     """A whole diagnosis of an embedded campaign.
 
     Lays a small campaign with something concealed in it into a folder, diagnoses it in under a minute, opens the
-    report, and says what was concealed.
+    report, and states what was concealed.
     """
     from permway.demo import run
 
     with stage_bar("demo", as_json) as progress:
         result = run(output, threads=threads, show=not (no_open or as_json), progress=progress)
-    say(result, as_json)
+    print_result(result, as_json)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from permway.cli.output import Folder, Json, examples, progress_bar, say, stage_bar
+from permway.cli.output import Folder, Json, examples, print_result, progress_bar, stage_bar
 from permway.errors import InputError
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def challenge_make(
     """Campaigns with something concealed in each.
 
     Made by finite elements that share no code with the solver. The truths lie in a folder of their own. Graded
-    effects are faded until the records hardly tell of them, which takes a minute each; trains that run are
+    effects are faded until the records hardly constrain them, which takes a minute each; trains that run are
     integrated in time, which takes ten. Small ones are drawn whole, layout and all, from `--seed` and a number
     from 0 on, and take a fraction of a second; half are made by the tool's own model.
     """
@@ -53,7 +53,7 @@ def challenge_make(
             for index, name in enumerate(names):
                 made(output, name)
                 progress(index + 1, len(names))
-        say({"folder": str(output), "campaigns": len(names)}, as_json)
+        print_result({"folder": str(output), "campaigns": len(names)}, as_json)
         return
     if tier not in TIERS:
         remedy = f"use one of {[*TIERS, *SMALL_TIERS]}"
@@ -62,7 +62,7 @@ def challenge_make(
         for index in range(cases):
             make(seed + index, 1, tier, output, against=against_folder)
             progress(index + 1, cases)
-    say({"folder": str(output), "campaigns": cases}, as_json)
+    print_result({"folder": str(output), "campaigns": cases}, as_json)
 
 
 @challenges.command("run", epilog=examples("permway challenge run cases --workers 2"))
@@ -77,7 +77,7 @@ def challenge_run(
 
     with progress_bar("running", as_json) as progress:
         result = run(folder, workers=workers, report=report, progress=progress)
-    say(dict(result), as_json)
+    print_result(dict(result), as_json)
 
 
 @challenges.command("rivals", epilog=examples("permway challenge rivals cases --workers 2"))
@@ -96,7 +96,7 @@ def challenge_rivals(
 
     with progress_bar("rivals", as_json) as progress:
         answered(folder, of_file, workers=workers, progress=progress)
-    say({"rivals": _rivals(folder)}, as_json)
+    print_result({"rivals": _rivals(folder)}, as_json)
 
 
 @challenges.command("weigh", epilog=examples("permway challenge weigh cases --workers 2"))
@@ -116,13 +116,13 @@ def challenge_weigh(
 
     with progress_bar("weighing", as_json) as progress:
         found = weigh(folder, against_folder, workers=workers, progress=progress)
-    say({"deviance": found} if as_json else {k: round(v, 1) for k, v in found.items()}, as_json)
+    print_result({"deviance": found} if as_json else {k: round(v, 1) for k, v in found.items()}, as_json)
 
 
 @challenges.command("score", epilog=examples("permway challenge score cases --json"))
 def challenge_score(folder: Folder, as_json: Json = False) -> None:
     """Hold the verdicts against the truths."""
-    say(_scores(folder), as_json)
+    print_result(_scores(folder), as_json)
 
 
 @challenges.command("follow", epilog=examples("permway challenge follow cases --workers 2"))
@@ -133,7 +133,7 @@ def challenge_follow(
 ) -> None:
     """Measure what verdicts advise, and diagnose again.
 
-    Of campaigns that were run: whether the rivals are told apart then. The new ones lie in the folder's
+    Of campaigns that were run: whether the rivals are distinguished then. The new ones lie in the folder's
     `followed`, a challenge of its own.
     """
     from dataclasses import asdict
@@ -151,7 +151,7 @@ def challenge_follow(
         "right": share([one.right for one in found if one.apart and one.right is not None]),
     }
     cases = [asdict(one) for one in found]
-    say({**result, **shares, **({"cases": cases} if as_json else {})}, as_json)
+    print_result({**result, **shares, **({"cases": cases} if as_json else {})}, as_json)
 
 
 def _asked_for(campaign: Path, words: str) -> Advice:
@@ -203,7 +203,7 @@ def challenge_suite(
     205 campaigns, some minutes each. Stopped and called again, it goes on where it was; called with more cases, it
     adds them. Writes score.json, from which docs/make_challenge.py makes the page of results.
 
-    With --tiers small: random small campaigns of that seed, 1,000 unless --cases says otherwise.
+    With --tiers small: random small campaigns of that seed, 1,000 unless --cases states otherwise.
     With --tiers fixture: forty campaigns of one layout. Writes score.json and table.md.
     """
     import json
@@ -215,7 +215,7 @@ def challenge_suite(
     from permway.diagnosis.rivals import of_file
 
     if tiers is not None:
-        say(_small(output, tiers, seed, cases, workers, method, posterior, limit, as_json), as_json)
+        print_result(_small(output, tiers, seed, cases, workers, method, posterior, limit, as_json), as_json)
         return
     if posterior:
         raise InputError("goes with --tiers", where="--posterior")
@@ -237,7 +237,7 @@ def challenge_suite(
     if rivals:
         scores["rivals"] = _rivals(output)
     whole(output / "score.json", json.dumps(scores, indent=1) + "\n")
-    say({**result, "scores": str(output / "score.json")}, as_json)
+    print_result({**result, "scores": str(output / "score.json")}, as_json)
 
 
 def _small(

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from permway.cli.output import Folder, Json, Outside, Threads, examples, say
+from permway.cli.output import Folder, Json, Outside, Threads, examples, print_result
 
 checks = typer.Typer(rich_markup_mode=None)
 
@@ -42,7 +42,7 @@ def check(
     checked = run(read_campaign(campaign, allow_outside=allow_outside), threads=threads)
     rows = blunder_rows(checked)
     result: dict[str, Any] = {
-        "blunders": rows if as_json else [told(row) for row in rows],
+        "blunders": rows if as_json else [sentence_of(row) for row in rows],
         "records": record_rows(checked),
     }
     if checked.reading.left_out:
@@ -53,12 +53,12 @@ def check(
         picture = draw_check(checked, output or campaign.parent / "check")
         if picture is not None:
             result["picture"] = str(picture)
-    say(result, as_json)
+    print_result(result, as_json)
 
 
 @checks.command(epilog=examples("permway new exports", "permway new exports --json"))
 def new(folder: Folder, as_json: Json = False) -> None:
-    """A campaign and a model, begun from a folder.
+    """A campaign and a model, started from a folder.
 
     Looks at every export of the folder (UFF, MAT, CSV, NPZ, HDF5, TDMS, LVM, WAV) as `permway look` does, and
     writes campaign.toml and model.toml into it: every channel, unit, rate and label that was found, and what only
@@ -66,10 +66,10 @@ def new(folder: Folder, as_json: Json = False) -> None:
     """
     from permway.recordings.skeleton import write_skeleton
 
-    say(write_skeleton(folder), as_json)
+    print_result(write_skeleton(folder), as_json)
 
 
-def told(row: dict[str, Any]) -> str:
+def sentence_of(row: dict[str, Any]) -> str:
     """A blunder in one line, for people."""
     sure = "" if row["log_odds"] is None else f" [{odds(row['log_odds'])}]"
     asked = "asked: " if row["asked"] else ""

@@ -16,7 +16,7 @@ from permway.cli.challenge import challenges
 from permway.cli.check import checks
 from permway.cli.imports import imports
 from permway.cli.look import looking
-from permway.cli.output import Json, Threads, examples, progress_bar, say, tell
+from permway.cli.output import Json, Threads, examples, print_message, print_result, progress_bar
 from permway.cli.track import tracks
 from permway.errors import InputError, PermwayError
 
@@ -28,7 +28,7 @@ class _Commands(typer.core.TyperGroup):
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt:
-            tell("interrupted")
+            print_message("interrupted")
             raise typer.Exit(130) from None
 
 
@@ -36,7 +36,7 @@ EPILOG = """\b
 Exit status:
   0    done
   1    a model that cannot be solved, or cases of a sweep that failed
-  2    wrong input or usage: one line on stderr says what, where, and what to do
+  2    wrong input or usage: one line on stderr states what, where, and what to do
   130  interrupted
 
 \b
@@ -47,7 +47,7 @@ app = typer.Typer(
     name="permway",
     cls=_Commands,
     help="Predicts how a train, its track and the viaduct below vibrate, frequency by frequency, holds that "
-    "against recordings, and says what physics is missing. Begin with: permway demo",
+    "against recordings, and states what physics is missing. Begin with: permway demo",
     epilog=EPILOG,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
@@ -80,7 +80,7 @@ def solve(
 ) -> None:
     """Receptances, forces and spectra of a model.
 
-    The model file says bodies, joints and laws in SI units, and what is wanted: [[forces]] and [[sensors]] give
+    The model file states bodies, joints and laws in SI units, and what is wanted: [[forces]] and [[sensors]] give
     receptances, [train] and [irregularity] wheel-rail forces and power spectra, [passby] the train's run in time.
     """
     from permway.formats.model_file import read_model
@@ -89,7 +89,7 @@ def solve(
 
     path = output or model.with_suffix(".nc")
     described = read_model(model)
-    # Said before the sweep, not after it.
+    # Stated before the sweep, not after it.
     if not path.parent.is_dir():
         raise InputError("there is no such folder", where=str(path.parent), remedy="make it first")
     if path.resolve() == model.resolve():
@@ -105,7 +105,7 @@ def solve(
         from permway.report.response import draw_dataset
 
         result["pictures"] = [str(p) for p in draw_dataset(data, plot)]
-    say(result, as_json)
+    print_result(result, as_json)
 
 
 @app.command(
@@ -132,7 +132,7 @@ def fit_pad(
         float | None,
         typer.Option(
             help="Temperature for which the law's parameters are written, degrees Celsius; by default 20, or the "
-            "table's nearest. What the law says at any temperature does not depend on it."
+            "table's nearest. What the law states at any temperature does not depend on it."
         ),
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the genetic algorithm.")] = 0,
@@ -175,7 +175,7 @@ def fit_pad(
             shape_factor_m=shape_factor,
             progress=progress,
         )
-    say(result, as_json)
+    print_result(result, as_json)
 
 
 @app.command(epilog=examples("permway reproduce -o paper --threads 2"))
@@ -195,7 +195,7 @@ def reproduce(
 
     with progress_bar("reproducing", as_json) as progress:
         result = write_report(output, threads=threads, progress=progress)
-    say(result, as_json)
+    print_result(result, as_json)
 
 
 @app.command(
@@ -238,7 +238,7 @@ def sweep(
         )
     failed = [{"case": case, "error": error} for case, error in sorted(done.failed.items())]
     shown = {"folder": str(done.folder), "cases": done.cases, "computed": done.computed}
-    say({**shown, "already_there": done.already_there, "failed": failed}, as_json)
+    print_result({**shown, "already_there": done.already_there, "failed": failed}, as_json)
     if failed:
         raise typer.Exit(1)
 
@@ -252,7 +252,7 @@ def doctor(as_json: Json = False) -> None:
     from permway.cli.machine import account
 
     result = account()
-    say(result, as_json)
+    print_result(result, as_json)
     if result["self_test"] != "passed":
         raise typer.Exit(1)
 
@@ -275,7 +275,7 @@ def _root(
 
 
 def _leave(_signal: int, _frame: object) -> None:
-    tell("interrupted")
+    print_message("interrupted")
     os._exit(130)
 
 
@@ -283,10 +283,10 @@ def main() -> NoReturn:
     """Run the command line: 0 done, 2 bad input, 1 a model that cannot be solved, 130 interrupted."""
     # Until work begins there is nothing to unwind, and libraries may swallow the exception while they load.
     signal.signal(signal.SIGINT, _leave)
-    warnings.showwarning = lambda message, *_, **__: tell(f"note: {message}")
+    warnings.showwarning = lambda message, *_, **__: print_message(f"note: {message}")
     try:
         app(standalone_mode=True, prog_name="permway")
     except PermwayError as error:
-        tell(error)
+        print_message(error)
         sys.exit(2 if isinstance(error, InputError) else 1)
     sys.exit(0)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from permway.cli.output import Folder, Json, examples, say
+from permway.cli.output import Folder, Json, examples, print_result
 
 imports = typer.Typer(
     help="Turn a folder as others hand it over into a campaign.", no_args_is_help=True, rich_markup_mode=None
@@ -21,7 +21,7 @@ def import_sheet(folder: Folder, output: Into, copy: Copy = True, as_json: Json 
     """A measuring team's sheet.json, hammer FRFs and runs."""
     from permway.campaign.importers.sheet import import_sheet as run
 
-    say(run(folder, output, copy=copy).summary(), as_json)
+    print_result(run(folder, output, copy=copy).summary(), as_json)
 
 
 @imports.command("rubber-rig", epilog=examples("permway import rubber-rig folder -o campaigns"))
@@ -31,14 +31,16 @@ def import_rubber_rig(
     copy: Copy = False,
     law: Annotated[
         str,
-        typer.Option(help="Form of the law; constant is what a data sheet says, the DMA withheld."),
+        typer.Option(help="Form of the law; constant is what a data sheet states, the DMA withheld."),
     ] = "fractional_zener",
     as_json: Json = False,
 ) -> None:
     """DMA tables and shaker records, a campaign for each rubber."""
     from permway.campaign.importers.rubber_rig import import_rubber_rig as run
 
-    say({"campaigns": [campaign.summary() for campaign in run(folder, output, copy=copy, law=law)]}, as_json)
+    print_result(
+        {"campaigns": [campaign.summary() for campaign in run(folder, output, copy=copy, law=law)]}, as_json
+    )
 
 
 @imports.command("pad-materials", epilog=examples("permway import pad-materials folder -o campaigns"))
@@ -52,7 +54,9 @@ def import_pad_materials(
     """Moduli of rail pads over frequency, a campaign for each."""
     from permway.campaign.importers.pad_materials import import_pad_materials as run
 
-    say({"campaigns": [campaign.summary() for campaign in run(folder, output, copy=copy, law=law)]}, as_json)
+    print_result(
+        {"campaigns": [campaign.summary() for campaign in run(folder, output, copy=copy, law=law)]}, as_json
+    )
 
 
 @imports.command(
@@ -68,4 +72,4 @@ def import_track_decay(
     """Track decay rates in one-third octaves."""
     from permway.campaign.importers.track_decay import import_track_decay as run
 
-    say(run(folder, output, copy=copy, support=support).summary(), as_json)
+    print_result(run(folder, output, copy=copy, support=support).summary(), as_json)

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from permway.cli.output import Json, examples, say
+from permway.cli.output import Json, examples, print_result
 from permway.errors import InputError
 
 looking = typer.Typer(rich_markup_mode=None)
@@ -37,7 +37,9 @@ def look(
         list[str] | None, typer.Option(help="COLUMN=READ/STRUCK of a response in a table; repeatable.")
     ] = None,
     part: Annotated[str | None, typer.Option(help="Group, struct or array of several.")] = None,
-    form: Annotated[str | None, typer.Option("--format", help="Format; by default told from the file.")] = None,
+    form: Annotated[
+        str | None, typer.Option("--format", help="Format; by default determined from the file.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """What a file holds, as it is read, and a campaign of it.
@@ -61,21 +63,21 @@ def look(
         pairs=_pairs(pair or []),
     )
     result = run(file, Asked(form, part, sampling_hz, hints))
-    say(result if as_json else _shown(result), as_json)
+    print_result(result if as_json else _shown(result), as_json)
 
 
-def _units(said: list[str]) -> str | dict[str, str] | None:
-    if len(said) == 1 and "=" not in said[0]:
-        return said[0]
-    bad = next((text for text in said if "=" not in text), None)
+def _units(stated: list[str]) -> str | dict[str, str] | None:
+    if len(stated) == 1 and "=" not in stated[0]:
+        return stated[0]
+    bad = next((text for text in stated if "=" not in text), None)
     if bad is not None:
         raise InputError("one unit for all, or LABEL=UNIT each", where="--unit", value=bad)
-    return {label: unit for label, _, unit in (text.rpartition("=") for text in said)} or None
+    return {label: unit for label, _, unit in (text.rpartition("=") for text in stated)} or None
 
 
-def _pairs(said: list[str]) -> dict[str, tuple[str, str]] | None:
+def _pairs(stated: list[str]) -> dict[str, tuple[str, str]] | None:
     found: dict[str, tuple[str, str]] = {}
-    for text in said:
+    for text in stated:
         column, _, pair = text.rpartition("=")
         read, _, struck = pair.partition("/")
         if not (column and read and struck):

@@ -1,4 +1,4 @@
-"""What commands share: options, progress, and how results and faults are said."""
+"""What commands share: options, progress, and how results and faults are stated."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def examples(*lines: str) -> str:
     return "\b\n" + "\n".join(["Examples:" if len(lines) > 1 else "Example:", *(f"  {line}" for line in lines)])
 
 
-def tell(message: object) -> None:
+def print_message(message: object) -> None:
     """A line on stderr."""
     typer.echo(f"permway: {message}", err=True)
 
@@ -78,7 +78,7 @@ def stage_bar(title: str, quiet: bool) -> Iterator[Callable[[str, int, int], Non
             yield progress
 
 
-def say(result: dict[str, Any], as_json: bool) -> None:
+def print_result(result: dict[str, Any], as_json: bool) -> None:
     """JSON on one line, or a line for each key; lists of records as columns."""
     if as_json:
         typer.echo(json.dumps(result, allow_nan=False))

@@ -1,4 +1,4 @@
-"""`permway dispersion` and `permway irregularity`: what a model file says of a track without solving it."""
+"""`permway dispersion` and `permway irregularity`: what a model file states about a track without solving it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from permway.cli.output import Json, examples, say
+from permway.cli.output import Json, examples, print_result
 
 tracks = typer.Typer(rich_markup_mode=None)
 Plot = Annotated[Path | None, typer.Option(help="Folder for the picture (PNG).")]
@@ -81,7 +81,7 @@ def dispersion(
         from permway.report.track import draw_dispersion
 
         result["picture"] = str(draw_dispersion(found, plot))
-    say(result, as_json)
+    print_result(result, as_json)
 
 
 @tracks.command(
@@ -142,4 +142,4 @@ def irregularity(
         from permway.report.track import draw_irregularity
 
         result["picture"] = str(draw_irregularity(described, x, profile, plot))
-    say(result, as_json)
+    print_result(result, as_json)

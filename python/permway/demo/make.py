@@ -1,7 +1,7 @@
 """Makes the embedded campaign: `python -m permway.demo.make FOLDER`.
 
 The records come from the generator of :mod:`permway.challenge`, which shares no code with the solver: a deck of
-one short span, its pads, layers and beams off their nominal values within the owner's tolerances, smooth errors of
+one short span, its pads, layers and beams off their nominal values within the tolerances, calibration errors of
 sensors and hammer, noise, and three fasteners that hold next to nothing.
 """
 

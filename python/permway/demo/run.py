@@ -1,4 +1,4 @@
-"""Diagnoses the embedded campaign, and says what was concealed in it."""
+"""Diagnoses the embedded campaign, and states what was concealed in it."""
 
 from __future__ import annotations
 

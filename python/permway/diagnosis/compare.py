@@ -115,7 +115,7 @@ class Comparison:
 
     def summary(self) -> dict[str, Any]:
         """For people and machines."""
-        found: dict[str, Any] = {"campaign": self.campaign.said.title, "fits": self.fits()}
+        found: dict[str, Any] = {"campaign": self.campaign.stated.title, "fits": self.fits()}
         if self.fit is not None:
             table = self.parameters
             found["parameters"] = table.sizes["parameter"]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from permway.campaign.bad_channels import Spoilt, sound
+from permway.campaign.bad_channels import BadChannel, without_bad_channels
 from permway.campaign.campaign import Campaign
 from permway.campaign.load import Dataset
 from permway.campaign.predict import added_to, predict, why_not
@@ -38,7 +38,7 @@ class Readable(NamedTuple):
 
     kept: list[Dataset]
     left_out: dict[str, str]
-    spoilt: tuple[Spoilt, ...]
+    spoilt: tuple[BadChannel, ...]
 
 
 def predictable(campaign: Campaign, *, screened: bool = True) -> Readable:
@@ -55,7 +55,7 @@ def predictable(campaign: Campaign, *, screened: bool = True) -> Readable:
     InputError
         If none can be predicted, all are spoilt, or a file cannot be read.
     """
-    whole, spoilt = sound(campaign) if screened else (campaign, ())
+    whole, spoilt = without_bad_channels(campaign) if screened else (campaign, ())
     datasets = whole.load()
     reasons = {dataset.record.name: why_not(campaign, dataset) for dataset in datasets}
     left_out = {name: str(why) for name, why in reasons.items() if why is not None}
@@ -128,7 +128,7 @@ def _kind(dataset: Dataset) -> str:
 
 def first_size(campaign: Campaign, origin: str) -> float:
     """Size of an origin's smooth errors before anything is learnt, neper; the irregularity's is its owner's."""
-    known = campaign.said.irregularity
+    known = campaign.stated.irregularity
     if origin == "irregularity":
         # Two standard deviations, of a power.
         return {"known": 0.01, "unknown": 1.0}.get(known.knowledge, 0.5 * (known.within_dB or 2.0) / 4.343)

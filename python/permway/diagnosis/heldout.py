@@ -78,7 +78,7 @@ class Scored:
 
 def parts(evidence: Evidence) -> Iterator[Part]:
     """What may be left out: the campaign's own groups, or else speeds, temperatures, blows, sensors and a band."""
-    own = [Part(g.axis, g.name, _of_group(evidence, g)) for g in evidence.campaign.said.held_out]
+    own = [Part(g.axis, g.name, _of_group(evidence, g)) for g in evidence.campaign.stated.held_out]
     yield from (p for p in (own or list(_usual(evidence))) if p.rows.any() and not p.rows.all())
 
 

@@ -75,9 +75,9 @@ def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
 
 
 def _highest(campaign: Campaign, origin: str) -> float:
-    if origin == "irregularity" and campaign.said.irregularity.knowledge == "within":
+    if origin == "irregularity" and campaign.stated.irregularity.knowledge == "within":
         return TRUSTED * first_size(campaign, origin)
-    stated = {f"record {r.name}": r.within_dB for r in campaign.said.records}.get(origin)
+    stated = {f"record {r.name}": r.within_dB for r in campaign.stated.records}.get(origin)
     if stated is not None:
         # Two standard deviations, of an amplitude.
         return float(TRUSTED * 0.5 * stated / NEPER_DB)

@@ -103,7 +103,7 @@ def rivals(
     best = min(fitted, key=lambda one: one.objective)
     by_bic = min(fitted, key=lambda one: one.objective + penalty(one.quick, ring))
     missing = by_bic.objective + penalty(by_bic.quick, ring) < fit.objective
-    text = f"{seed} {campaign.said.title}".encode()
+    text = f"{seed} {campaign.stated.title}".encode()
     random = np.random.default_rng(int.from_bytes(hashlib.sha256(text).digest()[:8], "big"))
     drawn = screened[int(random.integers(len(screened)))]
     by_chance = _fitted(ring, drawn) if random.random() < CALLED else None

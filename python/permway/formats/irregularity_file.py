@@ -20,7 +20,7 @@ def irregularity_of(path: str | Path) -> AnyIrregularity:
     Raises
     ------
     InputError
-        With file and place, for a file that cannot be read, has no such table, or says there what cannot be.
+        With file and place, for a file that cannot be read, has no such table, or states there what cannot be.
     """
     path = Path(path)
     content = read_toml(path, "name a model file (TOML)")

@@ -27,7 +27,7 @@ def read_model(path: str | Path) -> Model:
     Raises
     ------
     InputError
-        With file, place in the file, value and remedy, for a file that cannot be read, is not TOML, or says
+        With file, place in the file, value and remedy, for a file that cannot be read, is not TOML, or states
         something that cannot be.
     """
     path = Path(path)
@@ -54,7 +54,7 @@ def model_from_dict(table: Mapping[str, Any], *, folder: Path | None = None) -> 
     InputError
         With the place in the table.
     """
-    # A model written as JSON says null where a file says nothing.
+    # A model written as JSON states null where a file states nothing.
     filled = {key: value for key, value in table.items() if value is not None}
     if "line" in filled:
         filled["line"] = line_of(table_at(filled["line"], "line"), folder)

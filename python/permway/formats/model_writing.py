@@ -11,7 +11,7 @@ from permway.errors import InputError
 from permway.problem.model import Model
 
 KIND = "type"
-"""The key that says which record a table is, written even where it is the default."""
+"""The key that states which record a table is, written even where it is the default."""
 
 
 def model_table(model: Model) -> dict[str, Any]:

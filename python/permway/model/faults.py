@@ -25,8 +25,8 @@ def fault(what: str, *place: str | int, value: object = None) -> ValidationError
     value : object, optional
         The value met, if `what` does not say it.
     """
-    told = PydanticCustomError("fault", "{what}", {"what": what})
-    return ValidationError.from_exception_data("fault", [{"type": told, "loc": place, "input": value}])
+    reported = PydanticCustomError("fault", "{what}", {"what": what})
+    return ValidationError.from_exception_data("fault", [{"type": reported, "loc": place, "input": value}])
 
 
 def model_error(error: ValidationError, table: Mapping[str, Any], place: str) -> InputError:

@@ -1,4 +1,4 @@
-"""What a model file says of a passage."""
+"""What a model file states about a passage."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from permway.paper.captions import CAPTIONS
 from permway.paper.conventions import CONTACT_N_PER_M, CONVENTIONS, PAPER, PAPER_FREE_GIRDER
 from permway.paper.figures.style import celsius
 from permway.paper.identify import SEED
-from permway.paper.misprints import TO_HERTZ, slips
+from permway.paper.misprints import TO_HERTZ, misprints
 from permway.paper.printed import TEMPERATURES_C
 from permway.paper.report_tables import count, number, table
 from permway.paper.reproduce import Reproduction
@@ -70,7 +70,7 @@ def render(result: Reproduction) -> str:
         bounds=result.bounds,
         trials=result.trials,
         choices=result.choices,
-        slips=slips(result),
+        misprints=misprints(result),
     )
 
 

@@ -39,9 +39,9 @@ def write_report(output: Path, *, threads: int | None = None, progress: Progress
     """
     output = Path(output)
     prepare_folder(output, (PAGE, NUMBERS))
-    begun = time.perf_counter()
+    started = time.perf_counter()
     result = reproduce(threads=threads, progress=progress)
-    return {**write_result(result, output), "seconds": round(time.perf_counter() - begun, 1)}
+    return {**write_result(result, output), "seconds": round(time.perf_counter() - started, 1)}
 
 
 def write_result(result: Reproduction, output: Path) -> dict[str, Any]:

@@ -87,7 +87,7 @@ class Frame:
             elif isinstance(block, SpectraBlock):
                 need = solved.needs[index]
                 if need is not None:
-                    campaign, answer = solved.campaign, solved.answers[need.state]
+                    campaign, answer = solved.campaign, solved.answers[need.key]
                     away = away_from_lines(campaign, block.dataset, need, answer)
                     block = block.expecting(prediction, added_to(campaign, block.dataset), away)
             elif isinstance(block, PassageBlock):

@@ -81,7 +81,7 @@ class Frequencies(FrozenModel):
             raise fault(f"{self.step_Hz:g} Hz makes more than {MOST_FREQUENCIES} frequencies", "step_Hz")
         if self.step_Hz is not None and self.step_Hz < 1e-12 * self.to_Hz:
             raise fault(
-                f"{self.step_Hz:g} Hz is below what numbers near {self.to_Hz:g} Hz can tell apart", "step_Hz"
+                f"{self.step_Hz:g} Hz is below what numbers near {self.to_Hz:g} Hz can distinguish", "step_Hz"
             )
 
     def array(self) -> Reals:
@@ -98,7 +98,7 @@ class Frequencies(FrozenModel):
 
 
 class Model(FrozenModel, Shown):
-    """All that a computation needs, as a model file says it.
+    """All that a computation needs, as a model file states it.
 
     Parameters
     ----------

@@ -153,7 +153,7 @@ def write_dataset(data: xr.Dataset, path: str | Path) -> Path:
             if hasattr(os, "posix_fallocate"):
                 os.posix_fallocate(file.fileno(), 0, data.nbytes + 2**20)
         data.to_netcdf(temporary, engine="h5netcdf", invalid_netcdf=True)
-        # mkstemp's files are for the owner alone; a dataset is as public as any other file.
+        # mkstemp's files are for the user alone; a dataset is as public as any other file.
         Path(temporary).chmod(0o666 & ~_umask())
         os.replace(temporary, path)
     except (OSError, ValueError) as error:

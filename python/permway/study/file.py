@@ -60,7 +60,7 @@ class Study:
         Raises
         ------
         InputError
-            If the case's values make no model; the place says which case.
+            If the case's values make no model; the place states which case.
         """
         try:
             table = self.table
@@ -68,7 +68,7 @@ class Study:
                 table = replaced(table, place, value)
             return model_from_dict(table, folder=self.folder)
         except InputError as error:
-            values = ", ".join(f"{k} = {_short(v)}" for k, v in self.plan.said(index).items())
+            values = ", ".join(f"{k} = {_short(v)}" for k, v in self.plan.stated(index).items())
             raise InputError(
                 error.what, where=f"case {index} ({values}): {error.where}", value=error.value, remedy=error.remedy
             ) from error

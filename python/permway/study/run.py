@@ -102,7 +102,7 @@ def run_study(
             from permway.study.cluster import solve_on_cluster
 
             answers = solve_on_cluster(study, missing, scheduler)
-        told: set[str] = set()
+        reported: set[str] = set()
         saved = time.monotonic()
         with closing(answers):  # type: ignore[type-var]
             for index, got in answers:
@@ -110,8 +110,8 @@ def run_study(
                     store.fail(index, got.error)
                 else:
                     store.put(index, got.content)
-                for note in set(got.notes) - told:
-                    told.add(note)
+                for note in set(got.notes) - reported:
+                    reported.add(note)
                     warnings.warn(note, stacklevel=2)
                 if store.failed and time.monotonic() - saved > SAVED_EVERY_S:
                     store.save()

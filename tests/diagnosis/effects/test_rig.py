@@ -61,7 +61,7 @@ def test_a_data_sheet_knows_no_frequency_and_the_dma_is_withheld(campaign: Campa
     law = campaign.model.line.laws["rubber"].complex([10.0, 500.0])
     expected = complex(0.5 * RIG.shape_factor_m * modulus(np.array(10.0)))
     assert law == pytest.approx([expected] * 2, rel=1e-9)
-    assert {record.statistic for record in campaign.said.records} == {"transmissibility"}
+    assert {record.statistic for record in campaign.stated.records} == {"transmissibility"}
     assert not (campaign.folder / "tf_015p.csv").exists()
 
 
@@ -110,7 +110,7 @@ def test_instruments_get_no_more_wrong_than_is_stated(campaign: Campaign) -> Non
     stated = 0.5 * WITHIN_DB / NEPER_DB
     known = recalibrate(gather(campaign, threads=1)).evidence.sizes
     assert max(known.values()) == pytest.approx(TRUSTED * stated)
-    records = tuple(r.model_copy(update={"within_dB": None}) for r in campaign.said.records)
-    said = campaign.said.model_copy(update={"records": records})
+    records = tuple(r.model_copy(update={"within_dB": None}) for r in campaign.stated.records)
+    said = campaign.stated.model_copy(update={"records": records})
     free = Campaign(said, campaign.model, campaign.folder, campaign.parameters)
     assert max(recalibrate(gather(free, threads=1)).evidence.sizes.values()) > 1.5 * TRUSTED * stated

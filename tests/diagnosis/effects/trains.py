@@ -140,7 +140,7 @@ def campaign_in(folder: Path) -> Campaign:
 def blank(campaign: Campaign) -> list[Dataset]:
     """Datasets of ones, of which only the coordinates count."""
     found = []
-    for record in campaign.said.records:
+    for record in campaign.stated.records:
         if record.statistic == "frf":
             names = {"sensor": list(ON_TRACK), "force": ["hit", "hit far"], "frequency": HAMMER_HZ}
             data = _ones("frf", names)

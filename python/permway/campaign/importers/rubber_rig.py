@@ -52,7 +52,7 @@ def import_rubber_rig(
     """Turn every material of the folder into a campaign in a folder of its name.
 
     The model is the rubber's law as identified from the DMA table at the lowest strain, by WLF, and one mass on it
-    that was shaken; nothing is fitted to the shaker. With the law "constant" it is what a data sheet says,
+    that was shaken; nothing is fitted to the shaker. With the law "constant" it is what a data sheet states,
     modulus and loss factor at 10 Hz and room temperature, and the campaign holds the shaker's records alone: what
     the DMA knows of frequency is withheld.
 
@@ -201,12 +201,12 @@ def _level_and_mass(path: Path) -> tuple[str, tuple[str, float]]:
     level, _, rest = path.stem.partition("_")
     key = rest.split("_")[-1]
     if not (level and rest):
-        raise InputError("says not both a level and a mass", where=str(path), value=path.stem, remedy=remedy)
+        raise InputError("states not both a level and a mass", where=str(path), value=path.stem, remedy=remedy)
     if key in MASSES_KG:
         return level, (f"mass_{key}", MASSES_KG[key])
     grams = re.fullmatch(r"(\d+(?:\.\d+)?)g", key)
     if grams is None:
-        raise InputError("says no mass", where=str(path), value=path.stem, remedy=remedy)
+        raise InputError("states no mass", where=str(path), value=path.stem, remedy=remedy)
     return level, (f"mass_{key.replace('.', '-')}", 1e-3 * float(grams[1]))
 
 

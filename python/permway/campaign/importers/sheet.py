@@ -49,7 +49,7 @@ SPEED_2SIGMA, SPEED_BOUND = 0.005, 0.01
 """How well a train's speed is usually noted, and beyond which it is wrong: wheelsets 20 m apart tell 0.05 %."""
 
 NOISE_2SIGMA = 0.4
-"""How far noise where the train is heard may be from what a quiet band tells, both of one recorder."""
+"""How far noise where the train is measured may be from what a quiet band states, both of one recorder."""
 
 _SUFFIXES = (".uff", ".unv", ".mat", ".csv", ".npz", ".h5", ".nc", ".tdms", ".wav")
 
@@ -66,7 +66,7 @@ def import_sheet(folder: Path, output: Path, *, copy: bool = True) -> Campaign:
     Raises
     ------
     InputError
-        For a sheet or a record that cannot be read, or does not hold what the sheet says.
+        For a sheet or a record that cannot be read, or does not hold what the sheet states.
     """
     check_folder(output)
     sheet = read_sheet(folder)
@@ -161,7 +161,7 @@ def _hammer_record(sheet: Sheet, name: str, source: Path) -> dict[str, Any]:
         record["averages"] = float(blows[1])
     elif file.averages is None:
         remedy = "write it as 'H1 of 8 blows'"
-        raise InputError("says no number of blows", where="sheet.json: hammer.quantity", remedy=remedy)
+        raise InputError("states no number of blows", where="sheet.json: hammer.quantity", remedy=remedy)
     return record
 
 
@@ -187,7 +187,7 @@ def _parameters(sheet: Sheet) -> list[dict[str, Any]]:
 
 
 def _paths(sheet: Sheet, group: str, key: str) -> tuple[list[str], str, float]:
-    """Where a value stands in the model, its unit, and what the sheet says that it is."""
+    """Where a value stands in the model, its unit, and what the sheet states that it is."""
     values = getattr(sheet.values, group)
     nominal = float(getattr(values, key))
     if group == "vehicle":

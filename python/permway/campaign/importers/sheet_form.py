@@ -176,8 +176,10 @@ def read_sheet(folder: Path) -> Sheet:
         refuse_coercion(table, sheet, "")
         return sheet
     except (ValidationError, InputError) as error:
-        told = error if isinstance(error, InputError) else model_error(error, table, "")
-        raise InputError(told.what, where=f"{path}: {told.where}", value=told.value, remedy=told.remedy) from error
+        reported = error if isinstance(error, InputError) else model_error(error, table, "")
+        raise InputError(
+            reported.what, where=f"{path}: {reported.where}", value=reported.value, remedy=reported.remedy
+        ) from error
 
 
 def _load(path: Path) -> Mapping[str, Any]:

@@ -60,8 +60,8 @@ class Position:
 def position(sheet: Sheet) -> Position:
     """Read where the wheelsets stand.
 
-    A sheet says it in words, or as a list of four numbers in m; one that does not has the vehicle in the middle of
-    the deck. They are rounded only where the words say so, halfway between two multiples to the even one: of 26
+    A sheet states it in words, or as a list of four numbers in m; one that does not has the vehicle in the middle
+    of the deck. They are rounded only where the words say so, halfway between two multiples to the even one: of 26
     and 6 m and multiples of 0.16 m that makes 25.92 and 6.08 m, as the records of such sheets have it.
 
     Raises
@@ -69,14 +69,14 @@ def position(sheet: Sheet) -> Position:
     InputError
         For words that are not understood to the last, and for places that do not descend.
     """
-    said = "" if sheet.runs is None else sheet.runs.position
+    stated = "" if sheet.runs is None else sheet.runs.position
     middle = 0.5 * sheet.layout.spans * sheet.layout.span_m
-    if said == "":
+    if stated == "":
         return Position(middle, tuple(round(middle + away, 6) for away in _of_vehicle(sheet)))
-    x0, places, grid = _read(said) if isinstance(said, str) else (None, [float(x) for x in said], 0.0)
+    x0, places, grid = _read(stated) if isinstance(stated, str) else (None, [float(x) for x in stated], 0.0)
     if len(places) != WHEELSETS:
         raise InputError(
-            f"has {len(places)} places of {WHEELSETS} wheelsets", where=WHERE, value=said, remedy=REMEDY
+            f"has {len(places)} places of {WHEELSETS} wheelsets", where=WHERE, value=stated, remedy=REMEDY
         )
     # Three spans of 31.4 m are 94.2 m but for a last digit, which must not decide what is halfway.
     stand = [grid * float(np.round(round(x / grid, 9))) for x in places] if grid else places
@@ -91,20 +91,20 @@ def position(sheet: Sheet) -> Position:
     return Position(middle if abs(x0 - middle) < 1e-6 else x0, wheels)
 
 
-def _read(said: str) -> tuple[float | None, list[float], float]:
+def _read(stated: str) -> tuple[float | None, list[float], float]:
     """The origin, the places as they are written, and what they are rounded to, or 0."""
-    found = _SENTENCE.fullmatch(said.strip().removesuffix(".").rstrip())
+    found = _SENTENCE.fullmatch(stated.strip().removesuffix(".").rstrip())
     if found is None:
-        raise InputError("where do the wheelsets stand? not understood", where=WHERE, value=said, remedy=REMEDY)
+        raise InputError("where do the wheelsets stand? not understood", where=WHERE, value=stated, remedy=REMEDY)
     terms = [re.sub(r"[\sm]", "", term) for term in re.findall(_TERM, found["places"], re.IGNORECASE)]
     counted = [term.lower().startswith("x0") for term in terms]
     x0 = None if found["x0"] is None else float(found["x0"])
     if (x0 is None) == any(counted):
-        what = "where do the wheelsets stand? x0 is not said" if x0 is None else "what is counted from x0?"
-        raise InputError(what, where=WHERE, value=said, remedy=REMEDY)
+        what = "where do the wheelsets stand? x0 is not stated" if x0 is None else "what is counted from x0?"
+        raise InputError(what, where=WHERE, value=stated, remedy=REMEDY)
     grid = float(found["grid"] or 0.0)
     if found["grid"] and not grid:
-        raise InputError("rounded to what? 0 m is no step", where=WHERE, value=said, remedy=REMEDY)
+        raise InputError("rounded to what? 0 m is no step", where=WHERE, value=stated, remedy=REMEDY)
     places = [
         (x0 or 0.0) + float(term[2:] or 0.0) if from_x0 else float(term)
         for term, from_x0 in zip(terms, counted, strict=True)

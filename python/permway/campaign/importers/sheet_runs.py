@@ -55,7 +55,7 @@ class Runs:
         One for each speed.
     noise : dict of channel to float
         Floor, unit squared per hertz: the least over the runs of the median in the quiet band; of a channel that
-        is noisier than `ALIKE` times the median of all that median, for so much its owner would expect.
+        is noisier than `ALIKE` times the median of all that median, for so much the user would expect.
     interpolated : list of bool
         Whether each record was computed by interpolation between `LINES_HZ`.
     """
@@ -116,7 +116,7 @@ def read_runs(sheet: Sheet, sources: list[Path]) -> Runs:
     Raises
     ------
     InputError
-        For a unit or a channel that is not known here, and for files that do not hold what the sheet says.
+        For a unit or a channel that is not known here, and for files that do not hold what the sheet states.
     """
     assert sheet.runs is not None
     if sheet.runs.unit not in UNITS:
@@ -144,7 +144,7 @@ def read_runs(sheet: Sheet, sources: list[Path]) -> Runs:
         if value > ALIKE * usual:
             warnings.warn(
                 f"{channel}: {value / usual:.3g} times the noise of the other channels, in power; the campaign "
-                "says theirs, so that a diagnosis tells the difference",
+                "states theirs, so that a diagnosis states the difference",
                 stacklevel=2,
             )
     known = np.where(known > ALIKE * usual, usual, known)

@@ -87,7 +87,7 @@ def import_track_decay(folder: Path, output: Path, *, copy: bool = False, suppor
                 "kind": "hammer",
                 "temperature_C": temperature,
                 "date": cell["messdatum"],
-                "note": f"rail {cell['rail']}; not said whether the temperature is the air's or the rail's",
+                "note": f"rail {cell['rail']}; not stated whether the temperature is the air's or the rail's",
             }
         )
         records.append(

@@ -17,14 +17,14 @@ from permway.campaign.predict import decay, hammer, material, modes, passage, ru
 from permway.campaign.predict.grid import grid_of, halved
 from permway.campaign.predict.rolling import rolling_of
 from permway.campaign.predict.sliding import worked
-from permway.campaign.predict.sweeps import Answer, Need, State, Sweep, plan, solve
+from permway.campaign.predict.sweeps import Key, Request, Result, Sweep, plan, solve
 from permway.errors import InputError
 
 __all__ = [
-    "Answer",
-    "Need",
+    "Key",
     "PassBy",
-    "State",
+    "Request",
+    "Result",
     "Sweep",
     "added_to",
     "away_from_lines",
@@ -70,19 +70,20 @@ def predict(
         If the line cannot be solved.
     """
     beside = [passby is not None and _is_beside(campaign, dataset) for dataset in datasets]
-    needs = [None if apart else need_of(campaign, d) for d, apart in zip(datasets, beside, strict=True)]
+    requests = [None if apart else request_of(campaign, d) for d, apart in zip(datasets, beside, strict=True)]
     answers = [
-        solve(sweep, campaign.model, threads=threads) for sweep in plan(need for need in needs if need is not None)
+        solve(sweep, campaign.model, threads=threads)
+        for sweep in plan(request for request in requests if request is not None)
     ]
-    by_state = {answer.sweep.state: answer for answer in answers}
+    by_key = {answer.sweep.key: answer for answer in answers}
     found = []
-    for dataset, need, apart in zip(datasets, needs, beside, strict=True):
+    for dataset, request, apart in zip(datasets, requests, beside, strict=True):
         if apart and passby is not None:
             condition = campaign.condition(dataset.condition.name)
             found.append(passby(campaign_under(campaign, condition), replace(dataset, condition=condition)))
         else:
-            answer = None if need is None else by_state[need.state]
-            found.append(predict_one(campaign, dataset, need, answer))
+            answer = None if request is None else by_key[request.key]
+            found.append(predict_one(campaign, dataset, request, answer))
             if dataset.record.statistic == "passage":
                 passage.check_seam(dataset.record.name, dataset.data, found[-1].attrs["seam"])
     return found
@@ -91,13 +92,13 @@ def predict(
 def why_not(campaign: Campaign, dataset: Dataset) -> InputError | None:
     """Why a dataset cannot be predicted without a pass-by; None if it can."""
     try:
-        need_of(campaign, dataset)
+        request_of(campaign, dataset)
     except InputError as error:
         return error
     return None
 
 
-def need_of(campaign: Campaign, dataset: Dataset) -> Need | None:
+def request_of(campaign: Campaign, dataset: Dataset) -> Request | None:
     """The receptances behind a dataset; None for a material's table, which needs none.
 
     Raises
@@ -106,36 +107,38 @@ def need_of(campaign: Campaign, dataset: Dataset) -> Need | None:
         For a statistic or a sensor that cannot be predicted.
     """
     condition = campaign.condition(dataset.condition.name)
-    need = _need(campaign_under(campaign, condition), dataset, condition)
+    request = _request(campaign_under(campaign, condition), dataset, condition)
     factors = tuple((path, factor) for path, factor in factors_of(condition) if path.startswith("line"))
-    return replace(need, factors=factors) if need is not None and factors else need
+    return replace(request, factors=factors) if request is not None and factors else request
 
 
-def _need(campaign: Campaign, dataset: Dataset, condition: Condition) -> Need | None:
+def _request(campaign: Campaign, dataset: Dataset, condition: Condition) -> Request | None:
     record, data = dataset.record, dataset.data
     temperature = hammer.temperature(campaign, condition)
     _check_directions(campaign, record.name, [*record.channels.values(), *record.responses.values()])
     match record.statistic:
         case "frf":
-            return hammer.need(
+            return hammer.request(
                 campaign, condition, dataset.names("sensor"), dataset.names("force"), dataset.frequency_Hz
             )
         case "csd" | "psd":
             _check_on_board(campaign, record.name, dataset.names("channel"))
             lines = run.solved_lines(dataset.frequency_Hz, record.segment_s, record.interpolated_Hz)
             assert campaign.model.train is not None
-            spots = tuple((campaign.model.train.body, float(x)) for x in run.wheels_of(campaign.model, condition))
-            return Need(temperature, lines, spots, spots)
+            locations = tuple(
+                (campaign.model.train.body, float(x)) for x in run.wheels_of(campaign.model, condition)
+            )
+            return Request(temperature, lines, locations, locations)
         case "transmissibility":
             sensors = [campaign.sensor(name) for name in dataset.names("channel")]
-            spots = tuple((str(sensor.body), float(sensor.x_m or 0.0)) for sensor in sensors)
-            return shaker.need(campaign.model, temperature, spots, dataset.frequency_Hz)
+            locations = tuple((str(sensor.body), float(sensor.x_m or 0.0)) for sensor in sensors)
+            return shaker.request(campaign.model, temperature, locations, dataset.frequency_Hz)
         case "decay":
-            return decay.need(campaign, record, temperature, data)
+            return decay.request(campaign, record, temperature, data)
         case "modes":
-            return modes.need(campaign, dataset.names("sensor"), temperature, data)
+            return modes.request(campaign, dataset.names("sensor"), temperature, data)
         case "passage":
-            return passage.need(campaign, condition, dataset.names("channel"), temperature, data)
+            return passage.request(campaign, condition, dataset.names("channel"), temperature, data)
         case "material":
             return None
     raise InputError(
@@ -143,14 +146,16 @@ def _need(campaign: Campaign, dataset: Dataset, condition: Condition) -> Need | 
     )
 
 
-def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer: Answer | None) -> xr.Dataset:
+def predict_one(
+    campaign: Campaign, dataset: Dataset, request: Request | None, answer: Result | None
+) -> xr.Dataset:
     """Predict one dataset from receptances that were solved for it; see :func:`predict`."""
     record, data = dataset.record, dataset.data
     condition = campaign.condition(dataset.condition.name)
     campaign = campaign_under(campaign, condition)
-    if need is None or answer is None:
+    if request is None or answer is None:
         return material.predicted(campaign, record, data)
-    values = answer.of(need)
+    values = answer.of(request)
     match record.statistic:
         case "frf":
             sensors = [campaign.sensor(name) for name in dataset.names("sensor")]
@@ -160,24 +165,28 @@ def predict_one(campaign: Campaign, dataset: Dataset, need: Need | None, answer:
             chain = np.moveaxis(read, 0, -1)
             return dataset.template.copy(data={"frf": frf, "noise_factor": noise, "chain": chain})
         case "csd" | "psd":
-            matrix = _csd(campaign, dataset, condition, need.frequency_Hz, values)
+            matrix = _csd(campaign, dataset, condition, request.frequency_Hz, values)
             power = np.einsum("fcc->cf", matrix).real
             return dataset.template.copy(data={"csd": np.moveaxis(matrix, 0, -1), "psd": power})
         case "transmissibility":
-            moved = shaker.transmissibility(campaign.model, need.temperature_C, need.frequency_Hz, values)
-            chains = [campaign.sensor(name).chain.transfer(need.frequency_Hz) for name in dataset.names("channel")]
-            return dataset.template.copy(data={"transmissibility": moved.T * np.stack(chains)})
+            shifted = shaker.transmissibility(campaign.model, request.temperature_C, request.frequency_Hz, values)
+            chains = [
+                campaign.sensor(name).chain.transfer(request.frequency_Hz) for name in dataset.names("channel")
+            ]
+            return dataset.template.copy(data={"transmissibility": shifted.T * np.stack(chains)})
         case "passage":
-            spectrum, seam = passage.predicted(campaign, condition, dataset.names("channel"), data, need, values)
+            spectrum, seam = passage.predicted(
+                campaign, condition, dataset.names("channel"), data, request, values
+            )
             return dataset.template.copy(data={"spectrum": spectrum}).assign_attrs(seam=seam)
         case "modes":
             sensors = [campaign.sensor(name) for name in dataset.names("sensor")]
-            return dataset.template.copy(data={"modes": modes.predicted(data, sensors, need, values)})
+            return dataset.template.copy(data={"modes": modes.predicted(data, sensors, request, values)})
         case _:
             return decay.predicted(record, data, values)
 
 
-def away_from_lines(campaign: Campaign, dataset: Dataset, need: Need, answer: Answer) -> Complexes:
+def away_from_lines(campaign: Campaign, dataset: Dataset, request: Request, answer: Result) -> Complexes:
     """Expected cross spectra of a run but noise and hum, every part times its distance from its line, in lines.
 
     Hann's window takes in two lines on either side. An error of a chain that grows by so much from line to line
@@ -188,8 +197,8 @@ def away_from_lines(campaign: Campaign, dataset: Dataset, need: Need, answer: An
     ndarray of complex128, shape (channels, channels, F)
     """
     condition = campaign.condition(dataset.condition.name)
-    values = answer.of(need)
-    matrix = _csd(campaign_under(campaign, condition), dataset, condition, need.frequency_Hz, values, away=True)
+    values = answer.of(request)
+    matrix = _csd(campaign_under(campaign, condition), dataset, condition, request.frequency_Hz, values, away=True)
     return np.moveaxis(matrix, 0, -1)
 
 
@@ -203,7 +212,7 @@ def _csd(
     away: bool = False,
 ) -> Complexes:
     """Of a run, (F, channels, channels); of the campaign under its condition."""
-    record, known = dataset.record, campaign.said.irregularity
+    record, known = dataset.record, campaign.stated.irregularity
     sensors = [campaign.sensor(name) for name in dataset.names("channel")]
     if record.interpolated_Hz is None:
         lines_Hz, values = halved(lines_Hz, values, record.segment_s)

@@ -8,20 +8,20 @@ import xarray as xr
 from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.parts import Record
-from permway.campaign.predict.sweeps import Need
+from permway.campaign.predict.sweeps import Request
 from permway.recordings.estimates.decay_rate import grid_positions, track_decay_rate
 
 LINES = 12
 """Lines in a one-third octave, whose powers are averaged: enough for the peak where the rail is pinned."""
 
 
-def need(campaign: Campaign, record: Record, temperature_C: float | None, data: xr.Dataset) -> Need:
+def request(campaign: Campaign, record: Record, temperature_C: float | None, data: xr.Dataset) -> Request:
     """The receptances from the blows of EN 15461's grid to the accelerometer, at the first of them."""
     sensor = campaign.sensor(next(iter(record.channels.values())))
     assert record.spacing_m is not None
     start = float(sensor.x_m or 0.0)
     blows = tuple((str(sensor.body), float(start + x)) for x in grid_positions(record.spacing_m))
-    return Need(temperature_C, lines(data), blows[:1], blows)
+    return Request(temperature_C, lines(data), blows[:1], blows)
 
 
 def lines(data: xr.Dataset) -> Reals:

@@ -74,7 +74,7 @@ def broad(model: Model, known: IrregularityKnown, condition: Condition, frequenc
 @lru_cache(maxsize=48)
 def _spectrum(irregularity: AnyIrregularity, conversion: Conversion, speed: float, fine: bytes) -> Reals:
     with warnings.catch_warnings():
-        # Said when the model is solved; a recalibration would say it a thousand times.
+        # Stated when the model is solved; a recalibration would say it a thousand times.
         warnings.simplefilter("ignore", RangeWarning)
         values = irregularity.density(np.frombuffer(fine), speed, conversion)
     values.flags.writeable = False
@@ -107,9 +107,9 @@ def push(source: Push, frequency_Hz: Reals) -> Reals:
 
 def hum(sensors: Sequence[Sensor], grid: Grid) -> Iterator[tuple[Reals, Reals]]:
     """Every line of the mains: its share of power per hertz, (N,), and root-mean-square by channel, (sensors,)."""
-    heard = [sensor.chain.mains for sensor in sensors]
-    for frequency in dict.fromkeys(mains.frequency_Hz for mains in heard if mains is not None):
-        mine = [[] if m is None or m.frequency_Hz != frequency else m.lines() for m in heard]
+    mains_of = [sensor.chain.mains for sensor in sensors]
+    for frequency in dict.fromkeys(mains.frequency_Hz for mains in mains_of if mains is not None):
+        mine = [[] if m is None or m.frequency_Hz != frequency else m.lines() for m in mains_of]
         for number in range(max(map(len, mine))):
             size = [
                 sensor.to_SI * amplitudes[number] if number < len(amplitudes) else 0.0

@@ -9,17 +9,17 @@ import numpy as np
 from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.parts import Condition
-from permway.campaign.predict.sweeps import Need
+from permway.campaign.predict.sweeps import Request
 from permway.recordings.channel import Point, Sensor, transfers
 
 
-def need(
+def request(
     campaign: Campaign, condition: Condition, sensors: list[str], points: list[str], frequency_Hz: Reals
-) -> Need:
+) -> Request:
     """The receptances behind the frequency responses from points to sensors, by name."""
     rows = [campaign.sensor(name) for name in sensors]
     columns = [campaign.point(name) for name in points]
-    return Need(
+    return Request(
         temperature(campaign, condition),
         frequency_Hz,
         tuple((str(sensor.body), float(sensor.x_m or 0.0)) for sensor in rows),

@@ -10,7 +10,7 @@ from scipy.optimize import linear_sum_assignment
 
 from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
-from permway.campaign.predict.sweeps import Need
+from permway.campaign.predict.sweeps import Request
 from permway.recordings.channel import Sensor
 from permway.response.poles import Poles, lines_for, poles_of
 
@@ -30,16 +30,18 @@ LIGHTEST = 1e-6
 """Damping ratio below which a mode of the model has none."""
 
 
-def need(campaign: Campaign, names: Sequence[str], temperature_C: float | None, data: xr.Dataset) -> Need:
+def request(campaign: Campaign, names: Sequence[str], temperature_C: float | None, data: xr.Dataset) -> Request:
     """The receptances between all sensors, over a band that holds what may be one of the modes."""
     sensors = [campaign.sensor(name) for name in names]
     # Two sensors at one place see the same.
-    spots = tuple(dict.fromkeys((str(s.body), float(s.x_m or 0.0)) for s in sensors))
+    locations = tuple(dict.fromkeys((str(s.body), float(s.x_m or 0.0)) for s in sensors))
     frequency = data["frequency"].values
-    return Need(temperature_C, lines_for(frequency.min() / FARTHEST, frequency.max() * FARTHEST), spots, spots)
+    return Request(
+        temperature_C, lines_for(frequency.min() / FARTHEST, frequency.max() * FARTHEST), locations, locations
+    )
 
 
-def predicted(data: xr.Dataset, sensors: Sequence[Sensor], need: Need, receptance: Complexes) -> Reals:
+def predicted(data: xr.Dataset, sensors: Sequence[Sensor], request: Request, receptance: Complexes) -> Reals:
     """Natural frequency and damping ratio of every listed mode, (2, modes); NaN where the model has no such mode.
 
     Raises
@@ -47,9 +49,9 @@ def predicted(data: xr.Dataset, sensors: Sequence[Sensor], need: Need, receptanc
     SolveError
         If the response is not one of modes.
     """
-    found = poles_of(need.frequency_Hz, receptance)
+    found = poles_of(request.frequency_Hz, receptance)
     values = np.full((2, data.sizes["frequency"]), np.nan)
-    cost = _costs(data, found, _mac(data, sensors, need, found))
+    cost = _costs(data, found, _mac(data, sensors, request, found))
     count, many = cost.shape
     # Each mode may be left out, for what the farthest match costs.
     missed = np.full((count, count), (np.log(FARTHEST) / USUAL) ** 2)
@@ -69,11 +71,11 @@ def _costs(data: xr.Dataset, found: Poles, mac: Reals) -> Reals:
     return np.where(np.abs(off) <= np.log(FARTHEST), cost, np.inf)
 
 
-def _mac(data: xr.Dataset, sensors: Sequence[Sensor], need: Need, found: Poles) -> Reals:
+def _mac(data: xr.Dataset, sensors: Sequence[Sensor], request: Request, found: Poles) -> Reals:
     """Modal assurance of listed and predicted shapes, (modes, poles); 1 where no shape is listed."""
     if "shape" not in data:
         return np.ones((data.sizes["frequency"], found.omega.size))
-    at = [need.rows.index((str(s.body), float(s.x_m or 0.0))) for s in sensors]
+    at = [request.rows.index((str(s.body), float(s.x_m or 0.0))) for s in sensors]
     read = np.stack([s.transfer(found.frequency_Hz) for s in sensors], axis=-1)
     # What is listed is in the sensors' units.
     shape = found.shape[:, at] * read / np.array([s.to_SI for s in sensors])

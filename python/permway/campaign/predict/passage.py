@@ -14,7 +14,7 @@ from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.parts import Condition
 from permway.campaign.passage import offset_m, path_under, points_of, spectrum_of
-from permway.campaign.predict.sweeps import Need, Spot
+from permway.campaign.predict.sweeps import Location, Request
 from permway.errors import InputError
 from permway.model.bodies import Beam
 from permway.problem.model import Model
@@ -31,9 +31,9 @@ RIGID = 5.0
 """Growth of the response from the first frequency down to its share, above which nothing holds the line."""
 
 
-def need(
+def request(
     campaign: Campaign, condition: Condition, names: list[str], temperature_C: float | None, data: xr.Dataset
-) -> Need:
+) -> Request:
     """The receptances from every place of the path to every point that is read."""
     sensors = [campaign.sensor(name) for name in names]
     for sensor in sensors:
@@ -44,11 +44,16 @@ def need(
     columns = tuple((path.body, float(x)) for x in path.nodes.ravel())
     frequency = _lines(data)
     frequency[0] = STATIC_SHARE * frequency[1]
-    return Need(temperature_C, frequency, tuple(rows), columns)
+    return Request(temperature_C, frequency, tuple(rows), columns)
 
 
 def predicted(
-    campaign: Campaign, condition: Condition, names: list[str], data: xr.Dataset, need: Need, receptance: Complexes
+    campaign: Campaign,
+    condition: Condition,
+    names: list[str],
+    data: xr.Dataset,
+    request: Request,
+    receptance: Complexes,
 ) -> tuple[Complexes, float]:
     """Spectra as :func:`permway.campaign.passage.passage` gives them, (channel, frequency).
 
@@ -67,7 +72,7 @@ def predicted(
     held = receptance.copy()
     held[0] = held[0].real
     frequency = _lines(data)
-    read = _read(campaign.model, sensors, need.rows)
+    read = _read(campaign.model, sensors, request.rows)
     spectrum = _carried(condition, path, frequency, np.einsum("sr,frp->fsp", read, held))
     share = np.arange(frequency.size) / max(frequency.size - 1, 1)
     low_pass = 0.5 * (1.0 + np.cos(np.pi * np.clip((share - FLAT) / (1.0 - FLAT), 0.0, 1.0)))
@@ -86,7 +91,7 @@ def _lines(data: xr.Dataset) -> Reals:
     return np.asarray(np.arange(count) * step, dtype=np.float64)
 
 
-def _read(model: Model, sensors: list[Sensor], rows: tuple[Spot, ...]) -> Complexes:
+def _read(model: Model, sensors: list[Sensor], rows: tuple[Location, ...]) -> Complexes:
     """What sensors read of the displacements at the points, (sensors, points), but for derivatives in time."""
     found = np.zeros((len(sensors), len(rows)), dtype=np.complex128)
     for index, sensor in enumerate(sensors):

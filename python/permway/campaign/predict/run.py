@@ -85,7 +85,7 @@ def expected_csd(
     Raises
     ------
     InputError
-        If clocks run apart and nobody says how long.
+        If clocks run apart and nobody states how long.
     """
     assert model.train is not None
     grid = grid_of(lines_Hz, estimate_Hz, segment_s)
@@ -111,9 +111,9 @@ def expected_csd(
 
     def met(part: Complexes, met_Hz: Reals, density: Reals) -> Complexes:
         """Of the profile at some frequencies, by which the vehicle moves at the grid's."""
-        moved = grid.spread(part[:, chosen], _late(met_Hz.tobytes(), lag), straight=False)
-        moved *= _ideal(reads, grid)
-        return grid.expected(read(moved), density)
+        shifted = grid.spread(part[:, chosen], _late(met_Hz.tobytes(), lag), straight=False)
+        shifted *= _ideal(reads, grid)
+        return grid.expected(read(shifted), density)
 
     power = excitation.profile(model, known, condition, grid)
     if rolls is not None:
@@ -129,8 +129,8 @@ def expected_csd(
         upper = np.asarray(np.sum(parts, axis=0))
     elif interpolated:
         mine = per_profile[:, chosen, :]
-        moved = np.einsum("fsw,fw->fs", mine, _late(lines_Hz.tobytes(), lag))
-        upper = expected(moved * _there(sensors, lines_Hz), power)
+        shifted = np.einsum("fsw,fw->fs", mine, _late(lines_Hz.tobytes(), lag))
+        upper = expected(shifted * _there(sensors, lines_Hz), power)
     else:
         upper = met(per_profile, fine_Hz, power)
     for sources, density in _sources(model, known, condition, grid, lines_Hz, per_profile):

@@ -5,17 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from permway.arrays import Complexes, Reals
-from permway.campaign.predict.sweeps import Need, Spot
+from permway.campaign.predict.sweeps import Location, Request
 from permway.errors import InputError
 from permway.problem.model import Model
 
 
-def need(model: Model, temperature_C: float | None, spots: tuple[Spot, ...], frequency_Hz: Reals) -> Need:
+def request(
+    model: Model, temperature_C: float | None, locations: tuple[Location, ...], frequency_Hz: Reals
+) -> Request:
     """The receptances from every joint that stands on the ground to every sensor."""
-    return Need(temperature_C, frequency_Hz, spots, ground_spots(model))
+    return Request(temperature_C, frequency_Hz, locations, ground_locations(model))
 
 
-def ground_spots(model: Model) -> tuple[Spot, ...]:
+def ground_locations(model: Model) -> tuple[Location, ...]:
     """Where joints stand on the ground: body above and x, each once.
 
     Raises
@@ -51,10 +53,10 @@ def transmissibility(
     """
     table = model.line.joint_table()
     segments = model.line.segments()
-    spots = {spot: i for i, spot in enumerate(ground_spots(model))}
+    locations = {location: i for i, location in enumerate(ground_locations(model))}
     laws = model.line.stiffness(frequency_Hz, temperature_C)
-    push = np.zeros((frequency_Hz.size, len(spots)), dtype=np.complex128)
+    push = np.zeros((frequency_Hz.size, len(locations)), dtype=np.complex128)
     for index in np.flatnonzero(table.lower < 0):
-        spot = spots[segments[int(table.upper[index])].name, float(table.x[index])]
-        push[:, spot] += table.scale[index] * laws[:, table.law[index]]
+        location = locations[segments[int(table.upper[index])].name, float(table.x[index])]
+        push[:, location] += table.scale[index] * laws[:, table.law[index]]
     return np.asarray(np.einsum("fsg,fg->fs", answer, push))

@@ -103,7 +103,7 @@ def retuned(model: Model, lines_Hz: Reals, track: Complexes) -> Callable[[Vehicl
     rows = [vehicle.stretches(slider.suspension) for slider in sliders_of(vehicle)]
     ties = np.concatenate(rows)
     per_force = np.swapaxes(pushed(vehicle, lines_Hz, ties, before), 1, 2)
-    give, felt = ties @ per_force, ties @ before
+    give, imposed = ties @ per_force, ties @ before
     own = np.eye(len(ties))
 
     def of(moving: Vehicle) -> Complexes:
@@ -112,7 +112,7 @@ def retuned(model: Model, lines_Hz: Reals, track: Complexes) -> Callable[[Vehicl
             for mine, now, then in zip(rows, sliders_of(moving), sliders_of(vehicle), strict=True)
         ]
         dashpots = 2j * np.pi * lines_Hz[:, None] * np.concatenate(more)
-        stretched = np.linalg.solve(own + give * dashpots[:, None, :], felt)
+        stretched = np.linalg.solve(own + give * dashpots[:, None, :], imposed)
         return np.asarray(before - per_force @ (dashpots[:, :, None] * stretched))
 
     return of

@@ -15,15 +15,15 @@ from permway.model.place import Place
 from permway.problem.model import Model
 from permway.response.receptance import between
 
-Spot = tuple[str, float]
+Location = tuple[str, float]
 """Body and x in m."""
 
-State = tuple[float | None, Factors, bytes]
+Key = tuple[float | None, Factors, bytes]
 """Temperature, factors on the model's numbers, and the frequencies as they stand in memory."""
 
 
 @dataclass(frozen=True)
-class Need:
+class Request:
     """Receptances between all of some places and all of others, at some frequencies, under one condition.
 
     Attributes
@@ -39,18 +39,18 @@ class Need:
 
     temperature_C: float | None
     frequency_Hz: Reals
-    rows: tuple[Spot, ...]
-    columns: tuple[Spot, ...]
+    rows: tuple[Location, ...]
+    columns: tuple[Location, ...]
     factors: Factors = ()
 
     @property
-    def state(self) -> State:
+    def key(self) -> Key:
         """What needs that one sweep serves have in common."""
         return self.temperature_C, self.factors, self.frequency_Hz.tobytes()
 
-    def is_like(self, other: Need) -> bool:
+    def is_like(self, other: Request) -> bool:
         """Whether another needs the same receptances."""
-        return (self.state, self.rows, self.columns) == (other.state, other.rows, other.columns)
+        return (self.key, self.rows, self.columns) == (other.key, other.rows, other.columns)
 
 
 @dataclass(frozen=True)
@@ -72,19 +72,19 @@ class Sweep:
     factors: Factors = ()
 
     @property
-    def state(self) -> State:
-        """See :attr:`Need.state`."""
+    def key(self) -> Key:
+        """See :attr:`Request.state`."""
         return self.temperature_C, self.factors, self.frequency_Hz.tobytes()
 
 
 @dataclass(frozen=True)
-class Answer:
+class Result:
     """A sweep and its receptances, m/N, shape (F, sensors, forces)."""
 
     sweep: Sweep
     receptance: Complexes
 
-    def of(self, need: Need) -> Complexes:
+    def of(self, request: Request) -> Complexes:
         """Receptances of a need, shape (F, rows, columns).
 
         Raises
@@ -92,16 +92,19 @@ class Answer:
         InputError
             For a need of another state, or a pair that the sweep does not hold.
         """
-        if need.state != self.sweep.state:
-            raise InputError("is of another temperature, factor or frequency", where="need", value=need)
+        if request.key != self.sweep.key:
+            raise InputError("is of another temperature, factor or frequency", where="need", value=request)
         held = [tuple((p.body, p.x_m) for p in places) for places in (self.sweep.sensors, self.sweep.forces)]
-        sensor, force = _picks(need.rows, need.columns, *held)
+        sensor, force = _picks(request.rows, request.columns, *held)
         return np.asarray(self.receptance[:, sensor, force])
 
 
 @lru_cache(maxsize=64)
 def _picks(
-    rows: tuple[Spot, ...], columns: tuple[Spot, ...], sensors: tuple[Spot, ...], forces: tuple[Spot, ...]
+    rows: tuple[Location, ...],
+    columns: tuple[Location, ...],
+    sensors: tuple[Location, ...],
+    forces: tuple[Location, ...],
 ) -> tuple[np.ndarray, np.ndarray]:
     """Indices of sensor and of force for each pair, each of shape (rows, columns); the line is reciprocal.
 
@@ -110,7 +113,9 @@ def _picks(
     InputError
         For a pair that is not held.
     """
-    of_sensor, of_force = ({spot: i for i, spot in enumerate(spots)} for spots in (sensors, forces))
+    of_sensor, of_force = (
+        {location: i for i, location in enumerate(locations)} for locations in (sensors, forces)
+    )
     at = np.empty((2, len(rows), len(columns)), dtype=np.int64)
     for i, row in enumerate(rows):
         for j, column in enumerate(columns):
@@ -123,21 +128,21 @@ def _picks(
     return at[0], at[1]
 
 
-def plan(needs: Iterable[Need]) -> list[Sweep]:
+def plan(requests: Iterable[Request]) -> list[Sweep]:
     """One sweep for each temperature, each set of factors and each set of frequencies, which serves all its needs.
 
     A force costs a solve at every frequency, a sensor nearly nothing: of every need the shorter side becomes
     forces, and what pushes at other frequencies is solved by itself.
     """
-    grouped: dict[State, list[Need]] = {}
-    for need in needs:
-        grouped.setdefault(need.state, []).append(need)
+    grouped: dict[Key, list[Request]] = {}
+    for request in requests:
+        grouped.setdefault(request.key, []).append(request)
     sweeps = []
     for members in grouped.values():
-        forces: dict[Spot, None] = {}
-        sensors: dict[Spot, None] = {}
-        for need in members:
-            few, many = sorted((need.rows, need.columns), key=len)
+        forces: dict[Location, None] = {}
+        sensors: dict[Location, None] = {}
+        for request in members:
+            few, many = sorted((request.rows, request.columns), key=len)
             forces.update(dict.fromkeys(few))
             sensors.update(dict.fromkeys(many))
         one = members[0]
@@ -147,7 +152,7 @@ def plan(needs: Iterable[Need]) -> list[Sweep]:
     return sweeps
 
 
-def solve(sweep: Sweep, model: Model, *, threads: int | None = None) -> Answer:
+def solve(sweep: Sweep, model: Model, *, threads: int | None = None) -> Result:
     """The receptances of a sweep, of the model under the sweep's factors.
 
     Raises
@@ -165,9 +170,9 @@ def solve(sweep: Sweep, model: Model, *, threads: int | None = None) -> Answer:
         formulation=model.formulation,
         threads=threads,
     )
-    return Answer(sweep, solved.receptance)
+    return Result(sweep, solved.receptance)
 
 
-def places_of(spots: Iterable[Spot]) -> tuple[Place, ...]:
+def places_of(locations: Iterable[Location]) -> tuple[Place, ...]:
     """Places for the solver, numbered: sensors of a campaign may share one, and have names of their own."""
-    return tuple(Place(body=body, x_m=x, name=str(i)) for i, (body, x) in enumerate(spots))
+    return tuple(Place(body=body, x_m=x, name=str(i)) for i, (body, x) in enumerate(locations))

@@ -103,11 +103,11 @@ def _noise_tells(tests: Tests) -> NoiseTells:
     count = 2 * (BLOWS - 1) * tests.frequency_Hz.size * len(tests.forces) * len(tests.temperatures_C)
     on_line = {sensor["name"] for sensor in tests.sensors}
 
-    def tells(factors: dict[str, float]) -> float:
+    def states(factors: dict[str, float]) -> float:
         known = [q for name, q in factors.items() if name in on_line]
         return float(sum(0.5 * count * (q - 1.0 - np.log(q)) for q in known))
 
-    return tells
+    return states
 
 
 def _measure(small: Small, random: np.random.Generator, folder: Path) -> None:

@@ -30,6 +30,6 @@ def repeats(length_m: float | None = None, harmonics: int | None = None) -> Amen
             decay=values["decay"],
             harmonics=harmonics,
         )
-        return with_irregularity(campaign, series=(*campaign.said.irregularity.series, added))
+        return with_irregularity(campaign, series=(*campaign.stated.irregularity.series, added))
 
     return amend

@@ -22,8 +22,8 @@ APART_OCTAVES = 0.7
 
 def vehicle_of(campaign: Campaign) -> Vehicle | None:
     """The vehicle that passes in some record, if any does."""
-    kinds = {c.name: c.kind for c in campaign.said.conditions}
-    runs = any(kinds[record.condition] == "train" for record in campaign.said.records)
+    kinds = {c.name: c.kind for c in campaign.stated.conditions}
+    runs = any(kinds[record.condition] == "train" for record in campaign.stated.records)
     return campaign.model.train.vehicle if campaign.model.train is not None and runs else None
 
 

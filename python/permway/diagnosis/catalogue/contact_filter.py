@@ -32,7 +32,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         return with_irregularity(
-            campaign, contact_patch_m=campaign.said.irregularity.contact_patch_m + values["half_length_m"]
+            campaign, contact_patch_m=campaign.stated.irregularity.contact_patch_m + values["half_length_m"]
         )
 
     yield Hypothesis(

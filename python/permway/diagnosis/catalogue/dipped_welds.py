@@ -46,7 +46,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         added = Dips(depth_m=values["depth_m"], length_m=values["length_m"], every_m=EVERY_M)
-        return with_irregularity(campaign, dips=(*campaign.said.irregularity.dips, added))
+        return with_irregularity(campaign, dips=(*campaign.stated.irregularity.dips, added))
 
     for begun in BEGUN_M:
         yield Hypothesis(

@@ -33,7 +33,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         return
 
     def tilted(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
-        known = campaign.said.irregularity
+        known = campaign.stated.irregularity
         return with_irregularity(
             campaign,
             level_dB=known.level_dB + values["level_dB"],
@@ -56,7 +56,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     for name in names[:3] if len(names) > 1 else ():
 
         def shifted(campaign: Campaign, values: Mapping[str, float], name: str = name) -> Campaign:
-            levels = campaign.said.irregularity.level_by_condition_dB
+            levels = campaign.stated.irregularity.level_by_condition_dB
             changed = {**levels, name: levels.get(name, 0.0) + values["level_dB"]}
             return with_irregularity(campaign, level_by_condition_dB=changed)
 

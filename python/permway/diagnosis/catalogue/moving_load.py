@@ -45,7 +45,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             added = TrackLines(
                 length_m=length, amplitude_m=values["factor"] * _first(campaign, body, length), decay=4.0
             )
-            return with_irregularity(campaign, series=(*campaign.said.irregularity.series, added))
+            return with_irregularity(campaign, series=(*campaign.stated.irregularity.series, added))
 
         yield Hypothesis(
             entry=ID,

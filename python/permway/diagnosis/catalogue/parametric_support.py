@@ -85,7 +85,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             law=lambda v: f"{1e6 * v['amplitude_m']:.3g} um at V over the fasteners' spacing",
             size="amplitude_m",
         )
-        if _pass(runs, spacing) and situation.campaign.said.irregularity.rolling is None:
+        if _pass(runs, spacing) and situation.campaign.stated.irregularity.rolling is None:
             yield from _rolling(situation, law, spacing)
 
 
@@ -102,12 +102,12 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
     except (InputError, SolveError):
         return
     rolls = with_irregularity(situation.campaign, rolling=Rolling(spacing_m=spacing))
-    known = dict(rolls.rolling_about(still).said.irregularity.rolling or {})
+    known = dict(rolls.rolling_about(still).stated.irregularity.rolling or {})
     shapes = {x: f"shape_{x:g}_m_dB" for x in SHAPE_M}
     sigma = float(POWER_DB) * first_size(situation.campaign, "irregularity")
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
-        own = campaign.said.irregularity
+        own = campaign.stated.irregularity
         further = IrregularityKnown(shape_dB=tuple((x, values.get(name, 0.0)) for x, name in shapes.items()))
         at_m = np.array(sorted({*shapes, *(x for x, _ in own.shape_dB)}))
         shape = zip(at_m.tolist(), (own.shape_at(at_m) + further.shape_at(at_m)).tolist(), strict=True)

@@ -42,7 +42,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         added = RoughBand(
             wavelength_m=values["wavelength_m"], octaves=values["octaves"], gain_dB=values["gain_dB"]
         )
-        return with_irregularity(campaign, bands=(*campaign.said.irregularity.bands, added))
+        return with_irregularity(campaign, bands=(*campaign.stated.irregularity.bands, added))
 
     yield Hypothesis(
         entry=ID,

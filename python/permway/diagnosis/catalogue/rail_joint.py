@@ -133,4 +133,4 @@ def _dips(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         amplitude_m=values["amplitude_m"],
         dip_m=values["dip_m"],
     )
-    return with_irregularity(campaign, series=(*campaign.said.irregularity.series, added))
+    return with_irregularity(campaign, series=(*campaign.stated.irregularity.series, added))

@@ -54,7 +54,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
 
         def amend(campaign: Campaign, values: Mapping[str, float], degree: str = degree) -> Campaign:
             added = Push(degree=degree, **values)
-            return with_irregularity(campaign, pushes=(*campaign.said.irregularity.pushes, added))
+            return with_irregularity(campaign, pushes=(*campaign.stated.irregularity.pushes, added))
 
         for width in (
             log_free("octaves", "1", 0.7, 1.7, lowest=0.05),

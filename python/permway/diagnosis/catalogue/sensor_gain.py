@@ -28,7 +28,7 @@ def _at(name: str, _: Mapping[str, float]) -> Where:
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """One for each sensor."""
-    for sensor in situation.campaign.said.sensors:
+    for sensor in situation.campaign.stated.sensors:
 
         def amend(campaign: Campaign, values: Mapping[str, float], name: str = sensor.name) -> Campaign:
             chain = campaign.sensor(name).chain

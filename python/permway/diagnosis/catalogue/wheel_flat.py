@@ -36,14 +36,14 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     runs = excesses(situation)
     if not runs:
         return
-    around = 2.0 * np.pi * situation.campaign.said.irregularity.wheel_radius_m
+    around = 2.0 * np.pi * situation.campaign.stated.irregularity.wheel_radius_m
     for wheel, channels in candidates(situation, every=False, most=4):
         (found,) = combs(runs, [1.0 / around], harmonics=None, decay=0.3, most=1, channel=channels[0])
         first = coordinate(found.amplitude_m, CENTRE_M, FACTOR)
 
         def amend(campaign: Campaign, values: Mapping[str, float], wheel: int | None = wheel) -> Campaign:
             added = WheelLines(wheel=wheel, amplitude_m=values["amplitude_m"], decay=values["decay"])
-            return with_irregularity(campaign, wheels=(*campaign.said.irregularity.wheels, added))
+            return with_irregularity(campaign, wheels=(*campaign.stated.irregularity.wheels, added))
 
         yield Hypothesis(
             entry=ID,

@@ -11,7 +11,7 @@ from plotly.subplots import make_subplots
 from permway.paper.conventions import PAPER, RIGHT
 
 TEMPERATURE = {20: "#c8431a", -20: "#0a6fb4", -30: "#1d2433"}
-"""Warm to cold; told apart with any colour vision, and by lightness in grey."""
+"""Warm to cold; distinguished with any colour vision, and by lightness in grey."""
 PART = {"wheel": "#0b8f6b", "track and bridge": "#c77800", "contact": "#8a8f98"}
 # Plotly enlarges powers of ten by a quarter.
 POWERS: dict[str, Any] = {"type": "log", "dtick": 1, "exponentformat": "power", "tickfont": {"size": 10}}

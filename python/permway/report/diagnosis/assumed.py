@@ -22,7 +22,7 @@ def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
     layers = dict.fromkeys(f"{layer.law} ({layer.between[0]} on {layer.between[1]})" for layer in line.joints)
     return {
         "model": [
-            ("Model file", campaign.said.model),
+            ("Model file", campaign.stated.model),
             ("Bodies", ", ".join(line.bodies)),
             ("Joints", f"{line.joint_table().x.size}: {', '.join(layers)}"),
             ("Parameters with tolerances", str(len(campaign.parameters.known))),
@@ -35,7 +35,7 @@ def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
         "noise": _noise(diagnosis),
         "left_out": list(comparison.left_out.items()),
         "ruled_out": list(diagnosis.verdict.ruled_out),
-        "held_out": [f"{group.name} ({group.axis})" for group in campaign.said.held_out],
+        "held_out": [f"{group.name} ({group.axis})" for group in campaign.stated.held_out],
         "versions": [
             ("permway", _core.__version__),
             ("Python", platform.python_version()),
