@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 from plotly.offline import get_plotlyjs
 
@@ -39,7 +39,7 @@ def render(result: Reproduction) -> str:
         HTML.
     """
     environment = Environment(
-        loader=PackageLoader("permway.paper"),
+        loader=ChoiceLoader([PackageLoader("permway.paper"), PackageLoader("permway.report")]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -291,6 +291,6 @@ def looked_for(diagnosis: Diagnosis) -> str:
         best = diagnosis.found[0]
         text += (
             f" A free stiffness was tried at {len(diagnosis.found)} places of track and structure; the most"
-            f" informative is {best.spot.label}, gaining of {quantity(best.gain)} for {best.degrees} free numbers."
+            f" informative is {best.spot.label}, gaining {quantity(best.gain)} for {best.degrees} free numbers."
         )
     return text.strip()
