@@ -16,11 +16,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from permway.campaign.campaign import read_campaign
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.tangent import Problem
 from permway.diagnosis.whitener import Whitener
-from permway.recordings.campaign import read_campaign
 
 REPEATS = 7
 
@@ -47,7 +47,7 @@ def main() -> None:
     assert state is not None
     parts: dict[str, Callable[[], object]] = {
         "all records predicted": lambda: evidence.predicted(campaign),
-        "smooth errors taken out": lambda: evidence.whitener.reduce(state.deviations),
+        "calibration errors taken out": lambda: evidence.whitener.reduce(state.deviations),
         "their factors": lambda: Whitener.of(evidence.columns, evidence.sizes, evidence.length),
         f"slopes by {len(free)} parameters": lambda: problem.jacobian(state),
     }

@@ -2,10 +2,10 @@
 
     python benches/fraction.py        # needs cargo, valgrind and objdump; x86-64; writes fraction.json
 
-Callgrind tells how often every instruction of the chain's AVX2 code ran (it knows no AVX-512), objdump what it is:
-operations, loads and stores of a frequency are counted, not guessed. The same sweep is then timed on the code that
-the processor really gets, and held against what small kernels reach: fused products and sums in registers, loads,
-and loads with stores. Working sets grow with the line and with how much is kept for the way back.
+Callgrind states how often every instruction of the chain's AVX2 code ran (it knows no AVX-512), objdump what it
+is: operations, loads and stores of a frequency are counted, not guessed. The same sweep is then timed on the code
+that the processor really gets, and held against what small kernels reach: fused products and sums in registers,
+loads, and loads with stores. Working sets grow with the line and with how much is kept for the way back.
 """
 
 from __future__ import annotations

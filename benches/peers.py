@@ -75,7 +75,7 @@ def environment(folder: Path, options: argparse.Namespace) -> tuple[str, dict[st
 
 
 def run(interpreter: str, script: str, *words: object, needed: bool = True) -> Any:
-    """What one side says, on one thread; None of a peer that fails."""
+    """What one side states, on one thread; None of a peer that fails."""
     names = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
     surroundings = {**os.environ, **dict.fromkeys(names, "1"), "PYTHONPATH": ""}
     command = [interpreter, str(SIDES / f"{script}_side.py"), *map(str, words)]

@@ -43,7 +43,7 @@ suppress_warnings = ["ref.python"]
 napoleon_use_rtype = False
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
-# What pydantic adds to every record says nothing of the record.
+# What pydantic adds to every record states nothing of the record.
 autodoc_default_options = {
     "members": True,
     "exclude-members": "model_config, model_fields, model_computed_fields, model_post_init",

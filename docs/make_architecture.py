@@ -11,11 +11,13 @@ from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 PATH = Path(__file__).parent / "images" / "architecture.svg"
 # Name: (x, y of the middle, width, what it is).
 BOXES = {
-    "model": (1.7, 5.0, 2.6, "bodies, joints, line,\nvehicle, irregularity;\nthe model file"),
+    "model": (1.7, 5.0, 2.6, "bodies, joints, line,\nvehicle, irregularity,\nplaces, train"),
     "laws": (1.7, 2.9, 2.6, "complex stiffness over\nfrequency, temperature;\nDMA identification"),
     "response": (5.2, 5.0, 2.6, "receptances, train,\npass-by, decay,\nderivatives"),
     "rust/core": (5.2, 2.9, 2.6, "chain and receptance\nformulations, threads;\nno Python in it"),
-    "recordings": (8.7, 5.0, 2.6, "readers, estimates,\ncampaign, prediction of\nevery sensor"),
+    "problem": (1.7, 7.1, 2.6, "a line and what is asked\nof it; formats: its file"),
+    "recordings": (8.7, 7.1, 2.6, "readers, estimates,\nscreening"),
+    "campaign": (8.7, 5.0, 2.6, "records, sensors, conditions;\nprediction of every sensor"),
     "study": (8.7, 2.9, 2.6, "many models, resumable,\non a Dask cluster"),
     "diagnosis": (12.2, 5.0, 2.6, "recalibration, catalogue,\ndecision, verdict;\nposterior: a second method"),
     "challenge": (12.2, 2.9, 2.6, "campaigns by finite\nelements of its own;\nruns and scores"),
@@ -25,16 +27,17 @@ BOXES = {
 # From, to, what goes along, where the text lies beside the middle.
 ARROWS = [
     ("laws", "model", "laws", (0.45, 0.0)),
-    ("model", "response", "Line, Train", (0.0, 0.2)),
+    ("model", "response", "", (0.0, 0.2)),
     ("response", "rust/core", "beams, joints,\nk[law, f]", (-0.75, 0.0)),
     ("rust/core", "response", "H[f, sensor,\nforce]", (0.62, 0.0)),
-    ("response", "recordings", "datasets", (0.0, 0.2)),
+    ("model", "problem", "Line, Train", (0.62, 0.0)),
+    ("recordings", "campaign", "records", (0.45, 0.0)),
+    ("response", "campaign", "datasets", (0.0, 0.2)),
     ("response", "study", "", (0.0, 0.0)),
-    ("recordings", "diagnosis", "residuals", (0.0, 0.2)),
+    ("campaign", "diagnosis", "residuals", (0.0, 0.2)),
     ("challenge", "diagnosis", "campaigns,\nas files", (0.65, 0.0)),
     ("diagnosis", "report", "verdict,\ncomparison", (0.65, 0.0)),
     ("response", "paper", "", (0.0, 0.0)),
-    ("paper", "report", "reproduction", (0.0, 0.2)),
 ]
 HEIGHT = 1.15
 

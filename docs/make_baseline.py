@@ -35,12 +35,12 @@ METHODS = {
 HEAD = """# Results on small campaigns
 
 [Small campaigns](how-to/small-campaigns.md) are random layouts, sensors, errors and effects. Half are made by
-finite elements that share no code with the solver. What each column counts is told there. Shares are hits/cases
+finite elements that share no code with the solver. What each column counts is shown there. Shares are hits/cases
 with their 90 % intervals.
 
 Both methods call nothing, or next to nothing, where nothing is missing. **The first method finds few effects**
 on layouts that it was not made on, it names pads at the point struck falsely, and its intervals are too narrow
-where errors are rough. Campaigns that state no parameter ended in an error; they count as failed, and are mended
+where errors are rough. Campaigns that state no parameter ended in an error; they count as failed, and are solved
 since. **The second method finds more and names more rightly, but its names are less sure than it says**: of those
 with 0.9 and more, a tenth is false. Half of these blame a channel's noise for the little that a model still lacks.
 It takes longer: a whole campaign with trains was not done after nine minutes of processor.

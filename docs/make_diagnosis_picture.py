@@ -14,8 +14,8 @@ import numpy as np
 import permway
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from permway.campaign.campaign import read_campaign
 from permway.demo.run import run
-from permway.recordings.campaign import read_campaign
 
 WIDTH_PX, HEIGHT_PX, DPI = 1600, 640, 160
 MEASURED, BEFORE, AFTER, PLACE = "#20242c", "#c8431a", "#0a6fb4", "#f6d5c8"

@@ -10,11 +10,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from permway.paper.conventions import PAPER_FREE_GIRDER
+from permway.paper.figures.style import TEMPERATURE, celsius
 from permway.paper.identify import BAND_HZ, FAMILIES, PAPERS_FAMILY, TWO_SPRINGPOTS, free_pad, one_law
 from permway.paper.pad_layer import PadLayer
 from permway.paper.printed import PRINTED, TEMPERATURES_C
 from permway.paper.readings import MINIMUM_BAND_HZ, Curves, extremum
-from permway.report.figures.style import TEMPERATURE, celsius
 
 IMAGES = Path(__file__).parent / "images"
 WIDTH_PX, HEIGHT_PX, DPI = 1600, 720, 160

@@ -167,8 +167,8 @@ def vehicles() -> Iterator[Case]:
 def moving() -> Iterator[Case]:
     """Forces, masses and a train that move over a beam."""
     import test_moving_loads as m
+    from permway.model.place import Place
     from permway.response.passby import Axles, MassOnSpring, couple, hslm_a, passby
-    from permway.response.receptance import Place
     from scipy.interpolate import CubicSpline
 
     def force(eta: float) -> float:

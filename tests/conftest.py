@@ -1,4 +1,6 @@
-"""Settings of all tests; having this file here lets them import `lines`."""
+"""Settings of all tests, and which of them take long; having this file here lets them import `lines`."""
+
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -15,3 +17,70 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
             for name, value in getattr(report, "user_properties", ()):
                 if name == "told" and report.when == "call":
                     terminalreporter.write_line(str(value))
+
+
+HERE = Path(__file__).parent
+LONG = {
+    "fits": """
+        cli/test_check.py docs/test_examples.py
+        posterior recordings/test_skeleton.py recordings/test_skeleton_wide.py recordings/test_spoilt.py
+        report/test_compare.py report/test_demo.py report/test_diagnosis_page.py report/test_one_source.py
+        sealed challenge/test_clipped.py challenge/test_rivals.py challenge/test_follow.py
+        first_hour checking/test_stated.py checking/test_noise_floors.py checking/test_blunders.py
+        diagnosis/effects diagnosis/test_awaited.py diagnosis/test_bases.py diagnosis/test_bent_valley.py
+        diagnosis/test_blunt.py diagnosis/test_credit.py diagnosis/test_crossed.py diagnosis/test_diagnose.py
+        diagnosis/test_elsewhere.py diagnosis/test_felt.py diagnosis/test_frf_block.py diagnosis/test_gained.py
+        diagnosis/test_grammar.py diagnosis/test_heldout.py diagnosis/test_heldout_lines.py diagnosis/test_hung.py
+        diagnosis/test_idealised.py diagnosis/test_in_detail.py diagnosis/test_journal.py diagnosis/test_kept.py
+        diagnosis/test_locate.py diagnosis/test_lost_stretch.py diagnosis/test_nearby.py diagnosis/test_noise.py
+        diagnosis/test_one_place.py diagnosis/test_passage.py diagnosis/test_ragged.py
+        diagnosis/test_recalibrate.py diagnosis/test_recovered.py diagnosis/test_refit.py
+        diagnosis/test_resonances.py diagnosis/test_restarted.py diagnosis/test_ruled_out.py
+        diagnosis/test_sampling.py diagnosis/test_separability.py diagnosis/test_side_by_side.py
+        diagnosis/test_slips.py diagnosis/test_small_sizes.py diagnosis/test_smooth.py
+        diagnosis/test_table_of_modes.py diagnosis/test_thermometers.py diagnosis/test_tolerances.py
+    """,
+    "campaigns": """
+        challenge/test_challenge_and_sliding.py challenge/test_challenge_and_solver.py
+        challenge/test_challenge_campaigns.py challenge/test_challenge_contact.py
+        challenge/test_challenge_crossing.py challenge/test_challenge_elements.py
+        challenge/test_challenge_sliders.py challenge/test_concealed_effects.py
+        challenge/test_faults_and_blows.py challenge/test_graded.py challenge/test_parameters.py
+        challenge/test_recalibrated.py challenge/test_rolling_train.py challenge/test_run.py
+        challenge/test_small_campaigns.py challenge/test_small_null.py challenge/test_small_rate.py
+        challenge/test_small_strength.py challenge/test_small_suite.py challenge/test_small_tier.py
+        challenge/test_spans_on_fasteners.py challenge/test_suite.py challenge/test_tiers.py
+        challenge/test_under_train.py challenge/test_weigh.py challenge/test_where_wheels_stand.py
+    """,
+    "programs": """
+        cli/test_cli.py cli/test_help.py cli/test_disk_full.py kill report/test_browser.py
+        response/test_processes.py study/test_cluster.py study/test_command.py study/test_interrupted.py
+        study/test_sweep.py
+    """,
+    "long": """
+        fuzz report/test_paper_page.py report/test_paper_tables.py response/test_rolling.py
+        laws/test_law_recordings.py property recordings/test_readers_fuzz.py recordings/test_readers_drawn.py
+        recordings/test_estimates_coverage.py recordings/test_import_whole.py recordings/test_inputs_shared.py
+        recordings/test_campaign_passage.py recordings/test_campaigns_shared.py docs/test_five_exports.py
+    """,
+}
+"""By marker, files and folders that `pytest` alone leaves out; the tests of all others are marked "quick"."""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Take the quick tests of all, and every test of a file or folder that is named, unless -m asks otherwise."""
+    if not config.option.markexpr:
+        by_itself = config.args_source is pytest.Config.ArgsSource.TESTPATHS
+        config.option.markexpr = "quick" if by_itself else "not injection"
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark each test by what its file does."""
+    marks = {HERE / name: mark for mark, names in LONG.items() for name in names.split()}
+    gone = [str(path) for path in marks if not path.exists()]
+    if gone:
+        raise pytest.UsageError(f"tests/conftest.py names what does not exist: {', '.join(gone)}")
+    for item in items:
+        mark = next((marks[path] for path in (item.path, *item.path.parents) if path in marks), "quick")
+        if item.get_closest_marker("injection") is None:
+            item.add_marker(mark)

@@ -137,13 +137,13 @@ def closed_form(time_s: np.ndarray, x_m: float, zeta: float, *, lags=LAGS_M, loa
         on = (since >= 0.0) & (since < leaving)
         turning = steady[:, None] * np.exp(1j * driven[:, None] * np.where(on, since, 0.0))
         found = on * np.stack([(turning * (1j * driven[:, None]) ** k).imag for k in range(3)])
-        begun = free(-steady.imag, -(1j * driven * steady).imag, since)
+        started = free(-steady.imag, -(1j * driven * steady).imag, since)
         at_end = steady * np.exp(1j * driven * leaving)
         rest = np.array([leaving])
         left = free(-steady.imag, -(1j * driven * steady).imag, rest)[:, :, 0]
         q = at_end.imag + left[0]
         u = (1j * driven * at_end).imag + left[1]
-        total += load * (found + np.where(since < leaving, begun, 0.0) + free(q, u, since - leaving))
+        total += load * (found + np.where(since < leaving, started, 0.0) + free(q, u, since - leaving))
     shape = np.sin(n * np.pi * x_m / LENGTH_M)
     w, v, a = np.einsum("n,knt->kt", shape, total)
     curvature = np.einsum("n,nt->t", shape * (n * np.pi / LENGTH_M) ** 2, total[0])

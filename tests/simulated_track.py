@@ -104,7 +104,7 @@ def _model(bodies: dict[str, Any], laws: dict[str, Any], joints: list[Any], midd
 
 
 def campaign(model: dict[str, Any]) -> dict[str, Any]:
-    """Hammer tests on all bodies along x, and what the owner does not know exactly."""
+    """Hammer tests on all bodies along x, and what the user does not know exactly."""
     line = model["line"]
     middle = model["forces"][0]["x_m"]
     places = [("rail", middle), ("rail", middle + 3.3), ("rail", 1.5)]

@@ -1,6 +1,6 @@
 """A small campaign simulated by the tool itself: hammer tests in warmth and cold, and two runs of a small train.
 
-The owner's values are the true ones but for what is put in; noise is drawn, smooth errors are not.
+The nominal values are the true ones but for what is put in; noise is drawn, calibration errors are not.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.load import Dataset
+from permway.campaign.predict import predict
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import predict
 from simulated import CAMPAIGN, MODEL
 
 BLOWS, AVERAGES, COHERENCE = 16, 60, 0.98
@@ -79,7 +79,7 @@ def written(folder: Path, campaign: dict[str, Any], model: dict[str, Any]) -> Ca
 def blank(campaign: Campaign) -> list[Dataset]:
     """Datasets of the right coordinates, and of zeros."""
     found = []
-    for record in campaign.said.records:
+    for record in campaign.stated.records:
         if record.statistic == "frf":
             names = {"sensor": list(record.responses.values()), "force": list(record.references.values())}
             shape = (*(len(v) for v in names.values()), STRUCK.size)

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign, read_campaign
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import Campaign, read_campaign
 from simulated import CAMPAIGN, FREQUENCY, MODEL, Simulated, simulate
 
 Tables = dict[str, Any]

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from permway.laws.toml import to_toml
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response.modes import poles_between
-from permway.response.receptance import Place
 
 PLACES_M = {"a": 4.0, "b": 9.0, "c": 12.0, "d": 19.0}
 SD, SD_DAMPING = 0.002, 0.1

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from folders import RECORDINGS, columns, factor, lay, one_response, responses
-from permway.model.file import model_from_dict
+from permway.formats.model_file import model_from_dict
 from permway.response.modes import modes
 from permway.response.receptance import receptance
 from scipy import optimize

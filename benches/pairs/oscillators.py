@@ -1,6 +1,6 @@
 """One mass on one joint: cmu-cart, silverbox, brake-reuss-beam.
 
-The owner's model is what a fit to the base's record gives, of one mass, spring and dashpot; of the cart its mass
+The nominal model is what a fit to the base's record gives, of one mass, spring and dashpot; of the cart its mass
 as weighed and a force constant of 1, as the rig's software has it.
 """
 
@@ -118,7 +118,7 @@ def _identified(
 ) -> tuple[float, ...]:
     """Stiffness and damping of a known mass, or mass, stiffness and damping, that fit a record's logarithm best.
 
-    With `gain` the record's level is left aside: the owner reads frequency and width of the resonance.
+    With `gain` the record's level is left aside: the user reads frequency and width of the resonance.
     """
     omega = 2.0 * np.pi * frequency_Hz
     within = (frequency_Hz >= CART_HZ[0]) & (frequency_Hz <= CART_HZ[1]) if mass_kg is not None else omega > 0.0

@@ -1,8 +1,9 @@
 """Makes campaigns of measured pairs and diagnoses each: `python benches/pairs/run.py FOLDER [NAME ...]`.
 
 Needs the recordings beside the repository. What is in FOLDER already is not made or diagnosed again; NAME takes
-those whose names begin so. Prints a line each: seconds of processor, status, what is said with its class, decibels
-of what was left out, before and after. `--first` takes the first method. At most four minutes of processor each.
+those whose names begin so. Prints a line each: seconds of processor, status, what is stated with its class,
+decibels of what was left out, before and after. `--first` takes the first method. Each has four minutes of
+processor at most.
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ import numpy as np
 from beam import beams
 from folders import RECORDINGS
 from oscillators import carts, reuss, silverbox
+from permway.campaign.importers.rubber_rig import import_rubber_rig
+from permway.campaign.importers.track_decay import import_track_decay
 from permway.diagnosis.verdict import Verdict
-from permway.recordings.importers.rubber_rig import import_rubber_rig
-from permway.recordings.importers.track_decay import import_track_decay
 from truss import passage
 
 LIMIT_S = 240

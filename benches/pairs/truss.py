@@ -1,6 +1,6 @@
 """A train of weighed axles over a railway truss: railway-truss-bridge.
 
-The owner's model is a beam of one truss, supported at its ends, with the bending stiffness that the truss of
+The nominal model is a beam of one truss, supported at its ends, with the bending stiffness that the truss of
 members has under an even load on a free roller. A chord's strain is that of a fibre so far from the axis that
 moments agree where the chord's moment centre is, panel points of the top chord. Half of each axle is on a truss.
 """

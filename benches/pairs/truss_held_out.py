@@ -11,10 +11,10 @@ import argparse
 from pathlib import Path
 
 import numpy as np
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.predict import predict
 from permway.diagnosis.verdict import Verdict
-from permway.model.file import read_model
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.predict import predict
+from permway.formats.model_file import read_model
 from scipy import optimize
 from truss import passage
 

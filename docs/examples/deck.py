@@ -1,4 +1,4 @@
-"""The deck of the tutorial: hammer blows in CSV against what its owner's model predicts."""
+"""The deck of the tutorial: hammer blows in CSV against what its nominal model predicts."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from blows_to_frf import responses
 from look import axes, show
 from make_deck import write
 from matplotlib.figure import Figure
-from permway.recordings.campaign import read_campaign
-from permway.recordings.predict import predict
+from permway.campaign.campaign import read_campaign
+from permway.campaign.predict import predict
 
 SHOWN = (("rail@6", "rail 6.0"), ("rail@6", "rail 9.3"))
 
@@ -51,7 +51,7 @@ def picture(found: dict[str, np.ndarray]) -> Figure:
     figure, pair = axes(2)
     for one, (_, force) in zip(pair, SHOWN, strict=True):
         one.loglog(found["frequency"], np.abs(found[f"measured {force}"]), label="measured", linewidth=1.0)
-        one.loglog(found["frequency"], np.abs(found[f"predicted {force}"]), label="owner's model", linewidth=1.0)
+        one.loglog(found["frequency"], np.abs(found[f"predicted {force}"]), label="nominal model", linewidth=1.0)
         one.set(title=f"rail at 6 m, struck at {force} m", xlabel="frequency, Hz", xticks=[10, 30, 100, 200])
         one.title.set_fontsize(10)
         one.xaxis.set_major_formatter(lambda x, _: f"{x:g}")

@@ -1,7 +1,7 @@
 """Stands for a measurement: `python make_deck.py FOLDER` writes what a data logger would have written.
 
 A hammer test, a CSV for each point struck, and two runs of a train, a CSV each. In truth two fasteners about
-x = 7.5 m carry 5 % of what they should, and the pads are 6 % softer than their owner believes.
+x = 7.5 m carry 5 % of what they should, and the pads are 6 % softer than the user believes.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ PULSE_S, PEAK_N, NOISE = 0.004, 8000.0, 0.004
 def truth(believed: Line) -> Line:
     """The line as it is."""
     pads, bearings = believed.joints
-    hung = pads.model_copy(update={"changes": (Change(from_m=7.1, to_m=7.9, factor=0.05),)})
+    attached = pads.model_copy(update={"changes": (Change(from_m=7.1, to_m=7.9, factor=0.05),)})
     pad = believed.laws["pad"]
     laws = {**believed.laws, "pad": pad.model_copy(update={"stiffness": 0.94 * pad.stiffness})}
-    return Line(bodies=believed.bodies, joints=(hung, bearings), laws=laws)
+    return Line(bodies=believed.bodies, joints=(attached, bearings), laws=laws)
 
 
 def blows(line: Line, random: np.random.Generator) -> dict[str, np.ndarray]:
@@ -80,7 +80,7 @@ def run(model: permway.Model, line: Line, speed: float, random: np.random.Genera
 
 
 def write(folder: Path) -> None:
-    """Model and campaign as their owner wrote them, and the records."""
+    """Model and campaign as the user wrote them, and the records."""
     folder.mkdir(parents=True, exist_ok=True)
     for name in ("model.toml", "campaign.toml"):
         shutil.copy(HERE / "deck" / name, folder / name)

@@ -1,4 +1,4 @@
-"""A viaduct of ten spans: how far a blow on the third one is felt."""
+"""A viaduct of ten spans: how far a blow on the third one reaches."""
 
 from __future__ import annotations
 

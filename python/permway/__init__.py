@@ -5,12 +5,16 @@ SI units; exp(+i omega t); displacement positive down; frequencies in Hz; densit
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib import import_module
 from typing import TYPE_CHECKING
 
 from permway._core import __version__
+from permway.notebook import draw_with
 
 if TYPE_CHECKING:
+    from permway.campaign.campaign import read_campaign
+    from permway.campaign.track_decay import track_decay_rate
     from permway.errors import InputError, PermwayError, SolveError
     from permway.laws import (
         FVMP,
@@ -41,7 +45,6 @@ if TYPE_CHECKING:
         law_to_dict,
     )
     from permway.model.bodies import Beam, Mass, Shaft
-    from permway.model.file import Model, model_from_dict, read_model
     from permway.model.joints import Ends, Joints, Spread
     from permway.model.line import Line
     from permway.model.lines_ballasted import ballasted_b91_60e1
@@ -49,22 +52,21 @@ if TYPE_CHECKING:
     from permway.model.lines_zeng2014 import zeng2014_nine_spans
     from permway.model.presets import slab_track_viaduct_32m, wj7b, wj7b_constant
     from permway.model.roll import Roll
+    from permway.model.train import Train
     from permway.model.vehicle import Vehicle
     from permway.model.vehicle_presets import crh380a, manchester_vehicle_1, zeng2014_trailer
+    from permway.problem.solve import solve, write_dataset
     from permway.public import check, compare, diagnose
-    from permway.recordings.campaign import read_campaign
     from permway.recordings.insertion_loss import insertion_loss
-    from permway.recordings.track_decay import track_decay_rate
     from permway.response.decay import decay_rate
     from permway.response.dispersion import dispersion
     from permway.response.modes import modes
     from permway.response.passby import Axles, MassOnSpring, SprungMass, couple, hslm_a, passby
     from permway.response.quantities import accelerance, mobility
     from permway.response.rails import both_rails
-    from permway.response.receptance import Place, receptance
+    from permway.response.receptance import receptance
     from permway.response.sensitivity import by_joint, change_joint, sensitivity
-    from permway.response.solve import solve, write_dataset
-    from permway.response.train import Train, train_response
+    from permway.response.train import train_response
     from permway.tables import to_frame, write_csv
 
 _HOMES = {
@@ -76,7 +78,8 @@ _HOMES = {
         *("law_from_dict", "law_to_dict"),
     ),
     "model.bodies": ("Beam", "Mass", "Shaft"),
-    "model.file": ("Model", "model_from_dict", "read_model"),
+    "campaign.campaign": ("read_campaign",),
+    "formats.model_file": ("model_from_dict", "read_model"),
     "model.joints": ("Ends", "Joints", "Spread"),
     "model.line": ("Line",),
     "model.lines_ballasted": ("ballasted_b91_60e1",),
@@ -84,6 +87,7 @@ _HOMES = {
     "model.lines_zeng2014": ("zeng2014_nine_spans",),
     "model.presets": ("slab_track_viaduct_32m", "wj7b", "wj7b_constant"),
     "model.roll": ("Roll",),
+    "model.train": ("Train",),
     "model.vehicle": ("Vehicle",),
     "model.vehicle_presets": ("crh380a", "manchester_vehicle_1", "zeng2014_trailer"),
     "public": ("check", "compare", "diagnose"),
@@ -96,12 +100,21 @@ _HOMES = {
     "response.passby": ("Axles", "MassOnSpring", "SprungMass", "couple", "hslm_a", "passby"),
     "response.rails": ("both_rails",),
     "response.quantities": ("accelerance", "mobility"),
-    "response.receptance": ("Place", "receptance"),
+    "response.receptance": ("receptance",),
     "response.sensitivity": ("by_joint", "change_joint", "sensitivity"),
     "response.solve": ("solve", "write_dataset"),
     "response.train": ("Train", "train_response"),
     "tables": ("to_frame", "write_csv"),
 }
+
+
+def _html(thing: object) -> str:
+    draw: Callable[[object], str] = import_module("permway.report.notebook").html
+    return draw(thing)
+
+
+draw_with(_html)
+
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
 __all__ = [

@@ -1,4 +1,4 @@
-"""What goes wrong, said once and clearly.
+"""What goes wrong, stated once and clearly.
 
 Every error a user can cause carries what is wrong, where, the value met and the remedy.
 """
@@ -49,7 +49,7 @@ def must_be(value: object, kinds: type | tuple[type, ...], where: str, *, remedy
     value
         The argument.
     kinds
-        Its possible types; by their names they are told.
+        Its possible types; by their names they are reported.
     where
         Its name.
     remedy
@@ -62,12 +62,12 @@ def must_be(value: object, kinds: type | tuple[type, ...], where: str, *, remedy
     """
     if isinstance(value, kinds):
         return
-    names = [_told(kind) for kind in (kinds if isinstance(kinds, tuple) else (kinds,))]
-    met = "None" if value is None else _told(type(value))
+    names = [_reported(kind) for kind in (kinds if isinstance(kinds, tuple) else (kinds,))]
+    met = "None" if value is None else _reported(type(value))
     raise InputError(f"must be {' or '.join(dict.fromkeys(names))}, not {met}", where=where, remedy=remedy)
 
 
-def _told(kind: type) -> str:
+def _reported(kind: type) -> str:
     names = {"PosixPath": "a path", "WindowsPath": "a path", "Path": "a path", "Mapping": "a dict"}
     name = kind.__name__
     return names.get(name, f"{'an' if name[0] in 'AEIOaeio' else 'a'} {name}")

@@ -1,4 +1,4 @@
-"""Writing a report's files: each whole or not at all, and faults said before the work."""
+"""Writing a report's files: each whole or not at all, and faults stated before the work."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def check_folder(folder: Path) -> None:
 
 
 def check_output(path: Path, suffixes: tuple[str, ...]) -> None:
-    """See, before the work, that a file may be written: its folder is there, and its name says a known format.
+    """See, before the work, that a file may be written: its folder is there, and its name states a known format.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def write_bytes(path: Path, content: bytes) -> Path:
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
         with os.fdopen(handle, "wb") as file:
             file.write(content)
-        # mkstemp's files are for the owner alone; a report is as public as any other file.
+        # mkstemp's files are for the user alone; a report is as public as any other file.
         Path(temporary).chmod(0o666 & ~_umask())
         os.replace(temporary, path)
     except OSError as error:

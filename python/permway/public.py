@@ -6,8 +6,8 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from permway.campaign.campaign import Campaign, read_campaign
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
 
 if TYPE_CHECKING:
     from permway.checking.check import Checked
@@ -48,7 +48,7 @@ def compare(
     ----------
     campaign : Campaign or path
     raw_only : bool
-        With the owner's values only.
+        With the nominal values only.
     threads : int, optional
     progress : callable, optional
         Called with (done, total).

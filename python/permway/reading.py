@@ -73,7 +73,7 @@ def inside(name: object, folder: Path, *, where: str, of: str, remedy: str, outs
     Parameters
     ----------
     name : str
-        As the file says it.
+        As the file states it.
     folder : Path
         Of the file that names it.
     where : str

@@ -1,4 +1,4 @@
-"""Frozen, validated records, whose faults are said with place, value and remedy."""
+"""Frozen, validated records, whose faults are stated with place, value and remedy."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class FrozenModel(BaseModel):
 
     def __init__(self, *values: object, **data: Any) -> None:
         if values:
-            said = ", ".join(
+            stated = ", ".join(
                 f"{name}={_brief(value)}" for name, value in zip(_in_order(type(self)), values, strict=False)
             )
             raise InputError(
-                "takes its values by name", where=type(self).__name__, remedy=f"{said} if that is meant"
+                "takes its values by name", where=type(self).__name__, remedy=f"{stated} if that is meant"
             )
         try:
             super().__init__(**{name: _unwarned(value) for name, value in data.items()})
@@ -84,7 +84,7 @@ def input_error(error: ValidationError, table: object, place: str, words: Words 
     place : str
         Name of the table itself; "" for the whole file.
     words : callable, optional
-        What to say of a complaint; by default what pydantic says.
+        What to say of a complaint; by default what pydantic states.
     """
     words = words or plain_words
     first, *others = error.errors(include_url=False)
@@ -92,13 +92,13 @@ def input_error(error: ValidationError, table: object, place: str, words: Words 
     remedy = ""
     if others:
         each = [f"{place_in(table, one['loc'], place)}: {words(one)[0]}" for one in others[:MOST_TOLD]]
-        told = "; ".join(dict.fromkeys(each)) + ("; ..." if len(others) > MOST_TOLD else "")
-        remedy = f"{len(others)} further fault(s) in the same table: {told}"
+        reported = "; ".join(dict.fromkeys(each)) + ("; ..." if len(others) > MOST_TOLD else "")
+        remedy = f"{len(others)} further fault(s) in the same table: {reported}"
     return InputError(what, where=place_in(table, first["loc"], place), value=value, remedy=remedy)
 
 
 def plain_words(complaint: Mapping[str, Any]) -> tuple[str, object]:
-    """What pydantic says, in shorter words where it has long ones, and the value met where it is not said."""
+    """What pydantic states, in shorter words where it has long ones, and the value met where it is not stated."""
     context = complaint.get("ctx", {})
     match complaint["type"]:
         case "missing":

@@ -21,7 +21,7 @@ class Grammar:
         self.depth = 0
 
     def read(self) -> tuple[float, Dimension]:
-        """Factor to SI and dimension, or an error that says what it may have been."""
+        """Factor to SI and dimension, or an error that states what it may have been."""
         if not self.rest:
             raise unknown(self.text, self.where, "the unit is empty")
         if len(self.rest) > 80:

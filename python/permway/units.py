@@ -154,19 +154,19 @@ def parse_unit(text: str, *, where: str = "unit", quantity: str | None = None) -
     return unit
 
 
-def check_same(found: str, said: str, *, where: str) -> None:
-    """Refuse a file's unit that means another than what was said of it.
+def check_same(found: str, stated: str, *, where: str) -> None:
+    """Refuse a file's unit that means another than what was stated about it.
 
     Raises
     ------
     InputError
         If they differ, or either is not known.
     """
-    if found == said:
+    if found == stated:
         return
-    if not parse_unit(found, where=where).same(parse_unit(said, where=where)):
+    if not parse_unit(found, where=where).same(parse_unit(stated, where=where)):
         raise InputError(
-            f"the file says {found!r}, but was said to be in {said!r}",
+            f"the file states {found!r}, but was stated to be in {stated!r}",
             where=where,
             remedy="correct whichever is wrong; nothing is converted in silence",
         )

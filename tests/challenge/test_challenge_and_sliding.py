@@ -8,6 +8,10 @@ from typing import Any, Self
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
+from permway.campaign.importers.sheet import import_sheet
+from permway.campaign.predict import predict
+from permway.campaign.predict.sliding import with_vehicle
 from permway.challenge import write
 from permway.challenge.beams import Reals
 from permway.challenge.effects import Effect
@@ -15,10 +19,6 @@ from permway.challenge.plan import Plan
 from permway.challenge.sliders import Slider as Marched
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_additions import Slider
-from permway.recordings.campaign import Campaign
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.predict import predict
-from permway.recordings.predict.sliding import with_vehicle
 from scipy.special import erf
 from short_deck import small_case
 

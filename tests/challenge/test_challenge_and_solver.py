@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
+from permway.campaign.campaign import Campaign
+from permway.campaign.importers.sheet import import_sheet
+from permway.campaign.predict import predict
+from permway.campaign.predict.run import influence
 from permway.challenge import write
 from permway.challenge.irregularity import density
-from permway.recordings.campaign import Campaign
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.predict import predict
-from permway.recordings.predict.run import influence
 from short_deck import LAYOUT, TWO_SPANS, small_case
 
 

@@ -1,4 +1,4 @@
-"""Campaigns of the challenge: files that import, noise that coherence tells, nothing shared with the solver."""
+"""Campaigns of the challenge: files that import, noise that coherence states, nothing shared with the solver."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from pathlib import Path
 import numpy as np
 import permway.challenge
 import pytest
+from permway.campaign.importers.sheet import import_sheet
 from permway.challenge import TIERS, draw, make, write, write_truth
-from permway.challenge.errors_of_measurement import NEPER_PER_DB, struck, wander
+from permway.challenge.errors_of_measurement import NEPER_PER_DB, calibration_error, struck
 from permway.challenge.irregularity import WITHIN_DB, density, deviation, profile
 from permway.challenge.layout import TOLERANCE
 from permway.challenge.run import ruled_out
 from permway.diagnosis.catalogue import entries
 from permway.errors import InputError
-from permway.recordings.importers.sheet import import_sheet
 from short_deck import TWO_SPANS, small_case
 
 PACKAGE = Path(permway.challenge.__file__).parent
@@ -93,7 +93,7 @@ def test_two_spans_and_two_temperatures_import(tmp_path: Path) -> None:
     case = replace(case, tests=replace(case.tests, temperatures_C=(20.0, -15.0)))
     write(case, tmp_path / "folder")
     campaign = import_sheet(tmp_path / "folder", tmp_path / "imported")
-    assert [c.temperature_C for c in campaign.said.conditions if c.kind == "hammer"] == [20.0, -15.0]
+    assert [c.temperature_C for c in campaign.stated.conditions if c.kind == "hammer"] == [20.0, -15.0]
 
 
 def test_truth_stays_out_of_the_folder_and_is_sealed(tmp_path: Path) -> None:
@@ -102,8 +102,8 @@ def test_truth_stays_out_of_the_folder_and_is_sealed(tmp_path: Path) -> None:
     content = (tmp_path / "truth.json").read_bytes()
     assert digest == hashlib.sha256(content).hexdigest()
     assert (tmp_path / "truth.json.sha256").read_text().split()[0] == digest
-    told = json.loads(content)
-    assert told["effects"][0]["id"] == case.effects[0].ID
+    reported = json.loads(content)
+    assert reported["effects"][0]["id"] == case.effects[0].ID
     sheet = json.dumps(case.sheet)
     assert "effects" not in sheet
     assert str(case.true["pad"]["k"]) not in sheet
@@ -162,7 +162,7 @@ def test_scatter_of_h1_is_what_its_coherence_says() -> None:
 def test_smooth_errors_have_their_size_and_length() -> None:
     random = np.random.default_rng(13)
     frequency = np.array([50.0, 100.0])
-    drawn = np.log([wander(random, frequency, size_dB=1.0) for _ in range(1500)]) / NEPER_PER_DB
+    drawn = np.log([calibration_error(random, frequency, size_dB=1.0) for _ in range(1500)]) / NEPER_PER_DB
     assert drawn.real.std() == pytest.approx(1.0, rel=0.05)
     assert np.corrcoef(drawn.real.T)[0, 1] == pytest.approx(np.exp(-0.5), abs=0.05)
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import permway
 import pytest
+from permway.campaign.importers.sheet import import_sheet
 from permway.challenge import write
 from permway.challenge.assembly import assemble
 from permway.challenge.crossing import Consist, Crossing, cross
@@ -18,8 +19,7 @@ from permway.challenge.plan import CONTACT_N_PER_M
 from permway.challenge.vehicle import wheel_load
 from permway.errors import InputError
 from permway.laws import Hysteretic, KelvinVoigt
-from permway.model.file import Model
-from permway.recordings.importers.sheet import import_sheet
+from permway.problem.model import Model
 from permway.response.passby import Axles, couple, passby
 from scipy.signal import butter, sosfiltfilt
 from short_deck import small_case

@@ -6,6 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from permway.campaign.bad_channels import BadChannel
+from permway.campaign.importers.sheet import import_sheet
 from permway.challenge import write
 from permway.challenge.case import write_truth
 from permway.challenge.effects.recorders import Clipping
@@ -13,8 +15,6 @@ from permway.challenge.score import score
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.speak_measurement import with_spoilt
 from permway.diagnosis.verdict import Verdict
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.spoilt import Spoilt
 from short_deck import small_case
 
 
@@ -37,7 +37,7 @@ def test_what_screening_names_is_scored_as_named(tmp_path: Path) -> None:
     (tmp_path / "truth").mkdir()
     write_truth(case, tmp_path / "truth" / f"{name}.json")
     verdict = with_spoilt(
-        Verdict(status="recalibrated"), [Spoilt("run", "carbody", "clipping", "4 samples flat at 3")]
+        Verdict(status="recalibrated"), [BadChannel("run", "carbody", "clipping", "4 samples flat at 3")]
     )
     (tmp_path / "verdicts" / name).mkdir(parents=True)
     verdict.write(tmp_path / "verdicts" / name / "verdict.json")

@@ -19,7 +19,7 @@ def test_a_slow_clock_lags_ever_more() -> None:
     ClockDrift("axlebox2", 6e-5).apply(plan)
     turn = 2.0 * np.pi * 300.0
     read = plan.recorders[0]("axlebox2", np.sin(turn * TIMES))
-    # Its record says t where (1 - e) t has passed.
+    # Its record states t where (1 - e) t has passed.
     np.testing.assert_allclose(read, np.sin(turn * (1.0 - 6e-5) * TIMES), atol=2e-4)
     assert np.array_equal(plan.recorders[0]("axlebox1", TIMES), TIMES)
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.challenge.case import draw, write_truth
 from permway.challenge.effects import TWINS
 from permway.challenge.follow import ADVICE, FOLLOWED, Advice, follow, measured_again, separated
@@ -15,7 +16,6 @@ from permway.challenge.sparse import FEWEST, MOST
 from permway.diagnosis.gather import predictable
 from permway.diagnosis.menu import item_of, menu
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
 from short_deck import small_case
 from simulated import simulate
 

@@ -1,4 +1,4 @@
-"""Effects that are faded until the records hardly tell of them."""
+"""Effects that are faded until the records hardly constrain them."""
 
 from __future__ import annotations
 

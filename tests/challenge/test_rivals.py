@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.challenge.rivals import answered
 from permway.challenge.score import score
 from permway.diagnosis.catalogue import hypotheses
@@ -25,7 +26,6 @@ from permway.diagnosis.locate import scanned
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.rivals import NONE, RIVALS, independent, rivals
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
 from simulated import simulate
 
 
@@ -42,7 +42,7 @@ def test_without_guards_smooth_errors_are_called_an_effect(tmp_path: Path) -> No
     assert len(parts_of) > 1
     assert all(one["db_before"] == one["db_after"] and one["gain_nats"] == 0.0 for one in parts_of.values())
     assert all(set(one["held_out"]) == set(parts_of) for one in said.values())
-    # Nothing is missing: both take the smooth errors of chains for something.
+    # Nothing is missing: both take the calibration errors of chains for something.
     for name in ("smallest residual", "BIC, independent errors"):
         assert said[name]["effects"]
     assert rivals(campaign, threads=1) == said
@@ -64,7 +64,7 @@ def test_a_gaussian_process_says_that_and_near_which_sensor_and_not_what(tmp_pat
     found = discrepancy(missing)
     assert found.gain > 100.0
     assert found.sensor.name == "rail@6"
-    # It cannot tell a chain's smooth error from what a model lacks.
+    # It cannot tell a chain's calibration error from what a model lacks.
     assert discrepancy(independent_fit(simulate(tmp_path / "smooth", 3, smooth=0.08).campaign)).gain > 100.0
 
 
@@ -78,7 +78,7 @@ def test_what_is_left_out_is_foretold_by_what_is_right(tmp_path: Path) -> None:
         assert best[name]["db_after"] < 0.5 * one["db_after"]
         assert best[name]["gain_nats"] > 10.0
         assert one["db_before"] == process[name]["db_before"]
-    # What a discrepancy is in one pair of sensor and point says nothing of another.
+    # What a discrepancy is in one pair of sensor and point states nothing of another.
     band, place = (next(name for name in process if name.startswith(kind)) for kind in ("band", "place"))
     assert process[band]["db_after"] < 0.9 * process[band]["db_before"]
     assert process[place]["db_after"] > 2.0 * best[place]["db_after"]
@@ -141,7 +141,7 @@ def test_a_classifier_knows_again_what_it_was_trained_on(tmp_path: Path) -> None
     drawn = ["", *trained.known] * 3
     right = [trained.says(trained.simulate(name, random)) == name for name in drawn]
     assert len(trained.known) > 15
-    # Half of the sizes are too small to be seen beside smooth errors.
+    # Half of the sizes are too small to be seen beside calibration errors.
     assert np.mean(right) > 5.0 / len(set(drawn))
     answer = trained.answer(trained.simulate("fastener_loss", random))
     assert answer is None or answer in screened

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.importers.sheet import import_sheet
 from permway.challenge import rolling
 from permway.challenge.assembly import assemble
 from permway.challenge.case import Case, draw, write
@@ -20,7 +21,6 @@ from permway.challenge.ring import Ring
 from permway.challenge.running import with_dashpots
 from permway.errors import InputError
 from permway.laws import KelvinVoigt
-from permway.recordings.importers.sheet import import_sheet
 from scipy.sparse.linalg import splu
 from short_deck import small_case
 
@@ -121,7 +121,7 @@ def test_layers_of_dashpots_are_imported_as_such(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "sheet" / "sheet.json").read_text())["values"]["pad"]["viscous_at_Hz"] == 80.0
     campaign = import_sheet(tmp_path / "sheet", tmp_path / "imported")
     # Sheets of all tiers have the irregularity move, also where the truth is a train that rolls.
-    assert campaign.said.irregularity.rolling is False
+    assert campaign.stated.irregularity.rolling is False
     pad = case.nominal["pad"]
     law = campaign.model.line.laws["pad"]
     assert isinstance(law, KelvinVoigt)

@@ -91,12 +91,12 @@ def test_what_is_right_wrong_and_kept_back(tmp_path: Path) -> None:
 
 
 def test_places_are_read_as_the_generator_writes_them(tmp_path: Path) -> None:
-    """An attachment of the generator, said to be where it is, and ten metres off."""
+    """An attachment of the generator, stated to be where it is, and ten metres off."""
     random = np.random.default_rng(5)
     layout = draw_layout(random)
-    hung = DeckAttachment.draw(random, "strong", Site(layout, draw_tests(random, layout, temperatures=1)))
-    true = json.loads(json.dumps({"effects": [hung.truth()]}))
-    near, far = ((hung.x_m + d - 0.2, hung.x_m + d + 0.2) for d in (0.0, 10.0))
+    attached = DeckAttachment.draw(random, "strong", Site(layout, draw_tests(random, layout, temperatures=1)))
+    true = json.loads(json.dumps({"effects": [attached.truth()]}))
+    near, far = ((attached.x_m + d - 0.2, attached.x_m + d + 0.2) for d in (0.0, 10.0))
     cases = {
         f"single-{i}": (true, verdict("named", effect("deck_attachment", "deck_attachment", x=x)))
         for i, x in enumerate((near, far))
@@ -134,7 +134,7 @@ def test_of_several_effects_each_is_looked_for_and_the_strongest_counts(tmp_path
         (False, True, "fastener_loss"),
         # By what each does alone, the gain is the stronger one, and it was not found.
         (False, False, "sensor_gain"),
-        # Of the gain alone the records do not tell.
+        # Of the gain alone the records do not decide.
         (None, True, "fastener_loss"),
     ]
 
@@ -222,7 +222,7 @@ def test_rivals_are_told_beside_the_diagnosis_on_the_campaigns_that_they_answere
     assert str(rows["classifier", "null"]["alone_quiet"]).startswith("1/1")
     assert "alone_placed" not in rows["classifier", "something concealed"]
     assert "alone_quiet" not in rows["BIC, independent errors", "null"]
-    # Where it says nothing, it foretells nothing that the base does not.
+    # Where it states nothing, it foretells nothing that the base does not.
     assert "outdone" not in rows["classifier", "null"]
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import read_campaign
 from permway.challenge.small import places
 from permway.challenge.small.by_elements import ByElements
 from permway.challenge.small.by_model import ByModel
@@ -18,7 +19,6 @@ from permway.challenge.small.make import draw_small, make_small, true_values
 from permway.challenge.small.write import write_tables
 from permway.diagnosis.gather import gather
 from permway.errors import InputError
-from permway.recordings.campaign import read_campaign
 
 LAYOUTS = ("deck", "ballast", "slab", "beam", "rig")
 

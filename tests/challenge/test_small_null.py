@@ -12,7 +12,7 @@ from short_deck import scored
 def test_a_new_seed_with_nothing_concealed_comes_to_a_verdict(
     tmp_path: Path, record_property: Callable[[str, object], None]
 ) -> None:
-    """An alarm in forty is what is allowed, so that a verdict is asked for, and which one is told, not judged."""
+    """An alarm in forty is what is allowed, so that a verdict is asked for, and which one is shown, not judged."""
     seed = secrets.randbelow(10**9)
     one = scored(tmp_path, seed, "null")
     record_property("told", f"null {seed}, not used before: {one.status} {', '.join(one.said)}")

@@ -102,7 +102,7 @@ def test_of_a_run_a_gain_within_its_tolerance_costs_next_to_nothing() -> None:
     changed = gain @ base @ gain
     loose, tight = (Ride(base, 40.0, functions, size) for size in (0.1, 1e-6))
     one, other = (Scale([ride], [], STEP).deviance([changed]) for ride in (loose, tight))
-    # Without smooth errors twice the divergence of Wishart's distribution is its second order.
+    # Without calibration errors twice the divergence of Wishart's distribution is its second order.
     ratio = np.linalg.eigvals(np.linalg.solve(base, changed)).real
     divergence = 2.0 * 40.0 * float((ratio - 1.0 - np.log(ratio)).sum())
     assert other == pytest.approx(divergence, rel=0.05)
@@ -127,6 +127,6 @@ def test_noise_of_a_sensor_shows_beside_four_others_at_least() -> None:
     factors = {"s1": 20.0}
     assert noise_deviance(base, factors) == pytest.approx(np.log(20.0) ** 2 / 0.7**2)
     assert noise_deviance(base[:, :4], factors) == 0.0
-    # Where sensors differ by far more anyway, it tells less.
+    # Where sensors differ by far more anyway, it states less.
     uneven = base * np.array([1.0, 10.0, 100.0, 1.0, 10.0, 100.0])[None, :, None, None]
     assert noise_deviance(uneven, factors) < 1.0

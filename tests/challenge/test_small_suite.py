@@ -48,7 +48,7 @@ def diagnose(campaign, threads):
 
 @pytest.fixture
 def stub(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """Another installation, whose diagnosis does what a campaign's folder says."""
+    """Another installation, whose diagnosis does what a campaign's folder states."""
     package = tmp_path / "stub" / "permway"
     for name in ("", "diagnosis", "recordings"):
         (package / name).mkdir(parents=True)
@@ -64,11 +64,11 @@ def test_each_campaign_ends_in_a_verdict_or_a_failure_and_none_is_diagnosed_twic
 ) -> None:
     names = ["slow", "fails", "dies", "one", "other"]
     jobs = [(tmp_path / name / "campaign.toml", tmp_path / "out" / name) for name in names]
-    told: list[tuple[int, int]] = []
+    reported: list[tuple[int, int]] = []
     for _ in range(2):
-        diagnose_all(jobs, method=stub, workers=2, limit_s=0.3, progress=lambda *at: told.append(at))
+        diagnose_all(jobs, method=stub, workers=2, limit_s=0.3, progress=lambda *at: reported.append(at))
     assert sorted((tmp_path / "log").read_text().split()) == sorted(names)
-    assert told == [(done, 5) for done in range(1, 6)]
+    assert reported == [(done, 5) for done in range(1, 6)]
     texts = {path.parent.name: path.read_text() for path in (tmp_path / "out").glob("*/failed.txt")}
     assert texts["slow"].startswith("TimeUp: no verdict after 0.3 s of processor")
     assert texts["fails"].startswith("ValueError: no such thing")

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.importers.sheet import import_sheet
+from permway.campaign.predict import predict
 from permway.challenge import plan as planning
 from permway.challenge import write
 from permway.challenge.assembly import assemble
 from permway.challenge.layout import Layout, Values
 from permway.challenge.track import Track
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.predict import predict
 from short_deck import small_case
 
 MEETING = Layout(spans=2, bays=40, spacing_m=0.64, approach_bays=14)

@@ -29,9 +29,9 @@ def test_every_beginning_has_of_each_tier_its_share() -> None:
     assert len({one.name for one in everything}) == sum(CASES.values())
     assert len({one.seed for one in everything}) == sum(CASES.values())
     for count in (12, 35, 100):
-        begun = Counter(one.tier for one in everything[:count])
+        started = Counter(one.tier for one in everything[:count])
         for tier, whole in CASES.items():
-            assert abs(begun[tier] - count * whole / sum(CASES.values())) <= 1.0
+            assert abs(started[tier] - count * whole / sum(CASES.values())) <= 1.0
 
 
 def always(_: Path) -> Callable[[Path], float]:
@@ -74,7 +74,7 @@ def test_a_folder_of_another_suite_is_refused(tmp_path: Path) -> None:
 
 
 def interrupted(jobs: list[Future[None]]) -> None:
-    """Hand out hours of work, and stop once the first has begun."""
+    """Hand out hours of work, and stop once the first has started."""
     with processes(1) as pool:
         jobs += [pool.submit(time.sleep, 3600.0) for _ in range(5)]
         while not jobs[0].running():

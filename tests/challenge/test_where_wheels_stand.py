@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from permway.campaign.importers.sheet_form import Sheet
+from permway.campaign.importers.sheet_position import position
 from permway.challenge.layout import NOMINAL, Layout, draw_layout, draw_nominal, draw_tests
 from permway.challenge.sheet import sheet
-from permway.recordings.importers.sheet_form import Sheet
-from permway.recordings.importers.sheet_position import position
 
 
 def imported(layout: Layout, seed: int = 0) -> list[float]:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from permway.arrays import Complexes, Reals
+from permway.campaign.campaign import Campaign, read_campaign
 from permway.challenge.small import places
 from permway.challenge.small.by_elements import ByElements
 from permway.challenge.small.draws import generator
@@ -15,7 +16,6 @@ from permway.challenge.small.errors import Errors, blow_noise, root, smooth, str
 from permway.challenge.small.layouts import draw_layout
 from permway.challenge.small.make import true_values
 from permway.challenge.small.write import write_arrays, write_tables
-from permway.recordings.campaign import Campaign, read_campaign
 
 ERRORS = Errors(size_dB=0.4, length_octaves=1.0, noise=0.02)
 """As of careful measurements."""

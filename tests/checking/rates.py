@@ -1,4 +1,4 @@
-"""How often `permway check` tells what is there, and what is not: python tests/checking/rates.py FOLDER [COUNT].
+"""How often `permway check` states what is there, and what is not: python tests/checking/rates.py FOLDER [COUNT].
 
 Small campaigns of a fresh seed, as `permway challenge make --tier small` makes them, as they are, and every
 second with each blunder put into its first record. Writes `docs/check.json`; two minutes of one processor.
@@ -16,16 +16,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from permway.arrays import Complexes, Reals
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.load import Dataset, load_record
+from permway.campaign.predict import predict
 from permway.challenge.small.make import make_small
 from permway.checking.change import Change
 from permway.checking.check import check, common
 from permway.checking.compared import compared
-from permway.checking.search import Told, told
+from permway.checking.search import Reported, reported
 from permway.files import write_text
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import Dataset, load_record
 from permway.recordings.channel import Sensor
-from permway.recordings.predict import predict
 
 SEED, COUNT, EVERY = 8803, 100, 2
 """Blunders are put into every second campaign."""
@@ -127,30 +127,30 @@ def measure(folder: Path, count: int) -> dict[str, Any]:
 
 
 def _injected(campaign: Campaign, random: np.random.Generator, faulty: bool) -> Iterator[tuple[str, bool, bool]]:
-    """By blunder of the first record: whether it is told, and whether something else is told instead of it."""
-    record = campaign.said.records[0]
+    """By blunder of the first record: whether it is reported, and whether something else is, instead."""
+    record = campaign.stated.records[0]
     dataset = load_record(campaign, record)
     (predicted,) = predict(campaign, [dataset], threads=1)
     sensors = [campaign.sensor(name) for name in dataset.names("sensor")]
     forces = [campaign.point(name).unit for name in dataset.names("force")]
     for name, read, stated, right in cases(random, dataset.data["frf"].values, dataset.frequency_Hz, sensors):
-        found = _told(campaign, dataset, predicted, read, stated, forces)
+        found = _reported(campaign, dataset, predicted, read, stated, forces)
         hit = any(right(one.change) for one in found)
         yield name, hit, bool(found) and not hit and not faulty
 
 
-def _told(
+def _reported(
     campaign: Campaign,
     dataset: Dataset,
     predicted: xr.Dataset,
     read: Complexes,
     stated: list[Sensor],
     forces: list[str],
-) -> list[Told]:
+) -> list[Reported]:
     data = dataset.data.copy()
     data["frf"] = (data["frf"].dims, read)
     given = compared(replace(dataset, data=data), predicted, common(campaign, dataset))
-    return told(given, stated, forces)[0]
+    return reported(given, stated, forces)[0]
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Blunders are told from records of finite elements, each with what to write; honest campaigns are not doubted."""
+"""Blunders are found in records of finite elements, each with what to write; honest campaigns are not doubted."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ LAYOUTS = ("deck", "ballast", "slab", "beam", "rig")
 READ = Callable[[Complexes, Reals], Complexes]
 
 
-def told(folder: Path, seed: int, **more: Any) -> tuple[Blunder, ...]:
+def reported(folder: Path, seed: int, **more: Any) -> tuple[Blunder, ...]:
     return check(campaign_by_elements(folder, seed, **more), threads=1).blunders
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_honest_campaigns_are_not_doubted(tmp_path: Path, layout: str, seed: int) -> None:
-    assert told(tmp_path, seed, layout=layout) == ()
+    assert reported(tmp_path, seed, layout=layout) == ()
 
 
 @pytest.mark.parametrize("concealed", ["fastener_loss", "deck_attachment", "layer_damping"])
 def test_missing_physics_is_no_blunder(tmp_path: Path, concealed: str) -> None:
     for seed in SEEDS:
-        assert told(tmp_path / str(seed), seed, concealed=concealed) == ()
+        assert reported(tmp_path / str(seed), seed, concealed=concealed) == ()
 
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_pads_softer_than_stated_are_no_blunder(tmp_path: Path, seed: int) -> None:
-    assert told(tmp_path, seed, scaled=0.7) == ()
+    assert reported(tmp_path, seed, scaled=0.7) == ()
 
 
 def omega(frequency: Reals) -> Complexes:
@@ -67,7 +67,7 @@ WHOLE: list[tuple[str, READ, str, str]] = [
 @pytest.mark.parametrize(("read", "kind", "remedy"), [row[1:] for row in WHOLE], ids=[row[0] for row in WHOLE])
 def test_what_was_done_to_a_whole_record_is_told(tmp_path: Path, read: READ, kind: str, remedy: str) -> None:
     for seed in SEEDS:
-        first, *others = told(tmp_path / str(seed), seed, layout="slab", read=read)
+        first, *others = reported(tmp_path / str(seed), seed, layout="slab", read=read)
         assert (first.kind, others) == (kind, [])
         assert remedy in first.remedy
         assert first.log_odds is not None
@@ -79,7 +79,7 @@ def test_a_unit_that_is_stated_wrongly_is_told_with_the_right_one(tmp_path: Path
         for sensor in table["sensors"]:
             sensor["unit"] = "g"
 
-    (found,) = told(tmp_path, 1, stated=in_g)
+    (found,) = reported(tmp_path, 1, stated=in_g)
     assert "+19.8 dB" in found.what
     assert found.remedy.endswith('unit = "m/s2", not "g"')
 
@@ -95,7 +95,7 @@ def one_sensor(of: int, factor: complex) -> READ:
 
 @pytest.mark.parametrize(("factor", "kind"), [(-1.0, "sign"), (1.0 / 9.80665, "factor")])
 def test_one_sensor_is_told_from_the_others(tmp_path: Path, factor: complex, kind: str) -> None:
-    found = told(tmp_path, 3, layout="slab", read=one_sensor(1, factor))
+    found = reported(tmp_path, 3, layout="slab", read=one_sensor(1, factor))
     assert [(one.kind, one.where) for one in found] == [(kind, "records.blows1: s2")]
 
 
@@ -103,7 +103,7 @@ def test_exchanged_labels_are_told(tmp_path: Path) -> None:
     def exchanged(values: Complexes, _frequency_Hz: Reals) -> Complexes:
         return values[[1, 0, *range(2, values.shape[0])]]
 
-    (found,) = told(tmp_path, 3, layout="slab", read=exchanged)
+    (found,) = reported(tmp_path, 3, layout="slab", read=exchanged)
     assert (found.kind, found.where) == ("labels", "records.blows1: s1, s2")
 
 
@@ -112,7 +112,7 @@ def test_tolerances_in_percent_are_asked_back(tmp_path: Path) -> None:
         table["parameters"][0]["tolerance_2sigma"] = 5
         table["parameters"][1]["tolerance_2sigma"] = 0.9
 
-    first = next(one for one in told(tmp_path, 1, stated=in_percent) if one.kind == "tolerance")
+    first = next(one for one in reported(tmp_path, 1, stated=in_percent) if one.kind == "tolerance")
     assert first.asked
     assert "500 %" in first.what
     assert first.remedy == "for 5 % write tolerance_2sigma = 0.05"

@@ -1,4 +1,4 @@
-"""Noise floors that nobody stated are estimated from what channels do not share, and said as such."""
+"""Noise floors that nobody stated are estimated from what channels do not share, and stated as such."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import read_campaign
 from permway.challenge.small.make import make_small
 from permway.checking.check import check
 from permway.checking.noise import unshared
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import read_campaign
 
 NOISE = np.array([1e-3, 4e-2, 2.0])
 """Density of each channel's own noise."""

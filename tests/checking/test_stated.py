@@ -1,4 +1,4 @@
-"""Slips of the pen: places off the track, phases whose header is wrong."""
+"""Misprints of the pen: places off the track, phases whose header is wrong."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import read_campaign
 from permway.checking.check import check
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import read_campaign
 from simulated import CAMPAIGN, FREQUENCY, MODEL, simulate
 
 

@@ -8,7 +8,7 @@ import sys
 import time
 
 import pytest
-from permway.cli_output import stage_bar
+from permway.cli.output import stage_bar
 
 
 class Terminal(io.StringIO):

@@ -1,4 +1,4 @@
-"""The command line as a user runs it: exit status, what is said where, what is left behind."""
+"""The command line as a user runs it: exit status, what is stated where, what is left behind."""
 
 import json
 import os
@@ -11,20 +11,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from permway.formats.model_file import model_from_dict, read_model
 from permway.laws import AnyLaw, Measured
 from permway.model.bodies import Beam, BeamChange, Mass, Shaft
 from permway.model.contact import GivenContact, HertzContact
-from permway.model.file import Frequencies, model_from_dict, read_model
 from permway.model.irregularity import AnyIrregularity
 from permway.model.joints import Ends, Joints, Spread
+from permway.model.place import Place
 from permway.model.presets import LAWS, LINES, SlabTrackViaduct
 from permway.model.roll import Lever, Roll, Rolling, Twisting
 from permway.model.shafts import ShaftChange
+from permway.model.train import Train
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_presets import VEHICLES
-from permway.response.receptance import Place
-from permway.response.solve import solve
-from permway.response.train import Train
+from permway.problem.model import Frequencies
+from permway.problem.solve import solve
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.toml"))
@@ -94,10 +95,10 @@ def test_example_is_solved(model, tmp_path):
     output = tmp_path / "answer.nc"
     done = run("solve", model, "-o", output, "--threads", 1)
     assert (done.returncode, done.stderr) == (0, "")
-    said = dict(line.split(maxsplit=1) for line in done.stdout.splitlines() if not line.startswith(" "))
-    assert said["dataset"] == str(output)
+    stated = dict(line.split(maxsplit=1) for line in done.stdout.splitlines() if not line.startswith(" "))
+    assert stated["dataset"] == str(output)
     with xr.open_dataset(output, engine="h5netcdf") as data:
-        assert int(said["frequencies"]) == data.sizes["frequency"]
+        assert int(stated["frequencies"]) == data.sizes["frequency"]
         assert all(np.isfinite(values.values).all() for values in data.data_vars.values())
         assert data.attrs["title"] == read_model(model).title != ""
 
@@ -105,8 +106,8 @@ def test_example_is_solved(model, tmp_path):
 def test_json_is_all_that_is_said(small):
     done = run("solve", small, "--json")
     assert (done.returncode, done.stderr) == (0, "")
-    said = json.loads(done.stdout)
-    assert said == {"dataset": str(small.with_suffix(".nc")), "frequencies": 2, "variables": ["receptance"]}
+    stated = json.loads(done.stdout)
+    assert stated == {"dataset": str(small.with_suffix(".nc")), "frequencies": 2, "variables": ["receptance"]}
     assert small.with_suffix(".nc").exists()
 
 
@@ -166,7 +167,7 @@ def test_the_model_is_not_overwritten(small):
 
 
 def test_a_warning_is_one_line_beside_the_answer(small):
-    """Beyond the spectrum's wavelengths: said, and computed all the same."""
+    """Beyond the spectrum's wavelengths: stated, and computed all the same."""
     train = '[train]\ncentre_m = 16.0\nspeed_km_per_h = 300\nvehicle = { preset = "crh380a", share = 0.5 }\n'
     small.write_text(SMALL + train + '[irregularity]\ntype = "german_low"\n', encoding="utf-8")
     done = run("solve", small)
@@ -200,12 +201,12 @@ def test_version():
 
 
 def test_doctor():
-    said = json.loads(run("doctor", "--json").stdout)
-    assert said["permway"] == run("--version").stdout.strip()
-    assert said["python"] == ".".join(map(str, sys.version_info[:3]))
-    assert said["processors"] == os.cpu_count()
-    assert {"numpy", "scipy", "xarray", "machine"} <= said.keys()
-    assert len(run("doctor").stdout.splitlines()) == len(said)
+    stated = json.loads(run("doctor", "--json").stdout)
+    assert stated["permway"] == run("--version").stdout.strip()
+    assert stated["python"] == ".".join(map(str, sys.version_info[:3]))
+    assert stated["processors"] == os.cpu_count()
+    assert {"numpy", "scipy", "xarray", "machine"} <= stated.keys()
+    assert len(run("doctor").stdout.splitlines()) == len(stated)
 
 
 INTERRUPTED = """

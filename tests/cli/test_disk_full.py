@@ -37,7 +37,7 @@ x_m = 0.0
 
 
 def limited(size: int, *arguments: object, folder: Path) -> str:
-    """What a command says that may write files of so many bytes at most."""
+    """What a command states that may write files of so many bytes at most."""
     command = [sys.executable, "-c", LIMITED.format(bytes=size), *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, cwd=folder)
     assert (done.returncode, done.stdout) == (2, ""), done.stderr
@@ -55,8 +55,8 @@ def test_solve(tmp_path: Path) -> None:
     (tmp_path / "model.toml").write_text(MODEL.replace("POINTS", "4000"))
     (tmp_path / "older.nc").write_bytes(b"older")
     for name in ("answer.nc", "older.nc"):
-        said = limited(50_000, "solve", "model.toml", "-o", name, folder=tmp_path)
-        assert f"{name}: cannot be written" in said
+        stated = limited(50_000, "solve", "model.toml", "-o", name, folder=tmp_path)
+        assert f"{name}: cannot be written" in stated
     assert (tmp_path / "older.nc").read_bytes() == b"older"
     assert all_files(tmp_path) == {"model.toml", "older.nc"}
 
@@ -65,8 +65,8 @@ def test_sweep_goes_on_when_there_is_room_again(tmp_path: Path) -> None:
     (tmp_path / "model.toml").write_text(MODEL.replace("POINTS", "500"))
     axis = '[axes.loss]\npath = "line.laws.spring.loss_factor"\nvalues = [0.1, 0.2, 0.3]\n'
     (tmp_path / "study.toml").write_text('model = "model.toml"\n' + axis)
-    said = limited(8_000, "sweep", "study.toml", "-o", "out", folder=tmp_path)
-    assert "cannot be written" in said
+    stated = limited(8_000, "sweep", "study.toml", "-o", "out", folder=tmp_path)
+    assert "cannot be written" in stated
     assert all_files(tmp_path / "out") == {".lock", "study.json"}
     done = run_study(read_study(tmp_path / "study.toml"), tmp_path / "out", threads=1)
     assert (done.computed, done.failed) == (3, {})
@@ -74,6 +74,6 @@ def test_sweep_goes_on_when_there_is_room_again(tmp_path: Path) -> None:
 
 def test_demo(tmp_path: Path) -> None:
     assert len(campaign_files()["hammer_+12C.mat"]) > 10_000
-    said = limited(10_000, "demo", "-o", "demo", "--no-open", folder=tmp_path)
-    assert "hammer_+12C.mat: cannot be written" in said
+    stated = limited(10_000, "demo", "-o", "demo", "--no-open", folder=tmp_path)
+    assert "hammer_+12C.mat: cannot be written" in stated
     assert not any(name.endswith(".part") for name in all_files(tmp_path))

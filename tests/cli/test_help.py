@@ -1,4 +1,4 @@
-"""What the command line says of itself: help with examples, JSON everywhere, completion, silence when piped."""
+"""What the command line shows of itself: help with examples, JSON everywhere, completion, silence when piped."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 import typer.main
-from permway import cli_machine
 from permway.cli import app
+from permway.cli import machine as cli_machine
 
 
 def _walk(command: object, path: tuple[str, ...] = ()) -> list[tuple[tuple[str, ...], object]]:
@@ -87,11 +87,11 @@ def test_completion(words: str, found: set[str]) -> None:
 def test_doctor_says_machine_threads_and_vectors() -> None:
     done = run("doctor", "--json")
     assert (done.returncode, done.stderr) == (0, "")
-    said = json.loads(done.stdout)
-    assert said["threads"] == os.cpu_count()
-    assert said["vectors"] in ("AVX-512, 512 bits", "AVX2, 256 bits", "portable")
-    assert said["self_test"] == "passed"
-    assert all(re.match(r"\d+\.\d+", said[name]) for name in (*cli_machine.PACKAGES[:-1], "hdf5"))
+    stated = json.loads(done.stdout)
+    assert stated["threads"] == os.cpu_count()
+    assert stated["vectors"] in ("AVX-512, 512 bits", "AVX2, 256 bits", "portable")
+    assert stated["self_test"] == "passed"
+    assert all(re.match(r"\d+\.\d+", stated[name]) for name in (*cli_machine.PACKAGES[:-1], "hdf5"))
 
 
 def test_doctor_ends_with_1_where_the_core_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:

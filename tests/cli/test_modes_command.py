@@ -53,24 +53,24 @@ def run(*arguments: object) -> dict:
 
 
 def test_it_lists_the_model_s_band(model: Path) -> None:
-    said = run(model)
-    assert said["band_Hz"] == [2.0, 60.0]
-    found = [one["frequency_Hz"] for one in said["modes"]]
+    stated = run(model)
+    assert stated["band_Hz"] == [2.0, 60.0]
+    found = [one["frequency_Hz"] for one in stated["modes"]]
     assert found == pytest.approx(FIRST_HZ * np.array([1.0, 4.0, 9.0]), rel=1e-7)
-    first = said["modes"][0]
+    first = stated["modes"][0]
     assert (first["moves_most"], first["damping_ratio"]) == ("deck@12", pytest.approx(0.02, rel=1e-3))
     assert first["modal_mass_kg"] == pytest.approx(0.5 * 24.0 * 1.0e4, rel=1e-5)
-    assert said["notes"] == []
+    assert stated["notes"] == []
 
 
 def test_it_writes_and_draws(model: Path, tmp_path: Path) -> None:
-    said = run(model, "--to", 25, "-o", tmp_path / "modes.csv", "--plot", tmp_path / "pictures")
-    table = pd.read_csv(said["table"])
+    stated = run(model, "--to", 25, "-o", tmp_path / "modes.csv", "--plot", tmp_path / "pictures")
+    table = pd.read_csv(stated["table"])
     assert table["natural_frequency [Hz]"].to_numpy() == pytest.approx(FIRST_HZ * np.array([1.0, 4.0]), rel=1e-7)
-    (picture,) = said["pictures"]
+    (picture,) = stated["pictures"]
     assert Path(picture).read_bytes().startswith(b"\x89PNG")
-    said = run(model, "--to", 25, "-o", tmp_path / "modes.nc")
-    with xr.open_dataset(said["dataset"], engine="h5netcdf") as data:
+    stated = run(model, "--to", 25, "-o", tmp_path / "modes.nc")
+    with xr.open_dataset(stated["dataset"], engine="h5netcdf") as data:
         assert data["shape"].dtype == np.complex128
 
 

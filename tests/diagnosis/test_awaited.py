@@ -11,6 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.predict import predict
 from permway.diagnosis.catalogue._change import hung_mass, with_joints
 from permway.diagnosis.catalogue._pads import factors, with_factors
 from permway.diagnosis.diagnose import diagnose
@@ -19,8 +21,6 @@ from permway.diagnosis.recalibrate import UNFIT, recalibrate
 from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.laws.toml import to_toml
 from permway.model.joints import GROUND, Joints
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.predict import predict
 from simulated import CAMPAIGN, MODEL, simulate
 from small_sizes import mass_on_a_spring
 

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_fields
 from permway.diagnosis.fit import Fit, free_parameters
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import log_free
 from permway.diagnosis.recalibrate import recalibrate
 from permway.model.bodies import Beam
-from permway.recordings.campaign import Campaign
 from simulated import simulate
 
 MORE = log_free("more", "kg/m", 300.0, 2.0)

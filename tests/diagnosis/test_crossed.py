@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis import describe
 from permway.diagnosis.catalogue._change import with_law
 from permway.diagnosis.catalogue._interval import stations_of, weakened
@@ -17,7 +18,6 @@ from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Where
 from permway.laws import Tabulated
-from permway.recordings.campaign import Campaign
 from simulated import simulate
 
 

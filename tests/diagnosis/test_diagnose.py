@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
 from permway.diagnosis import decide
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._interval import weakened
@@ -17,8 +18,7 @@ from permway.diagnosis.speak_effect import of_another_form
 from permway.diagnosis.verdict_parts import Domain, Effect, Mechanics, Place
 from permway.diagnosis.verdict_words import sentence
 from permway.errors import InputError
-from permway.model.file import read_model
-from permway.recordings.campaign import Campaign, read_campaign
+from permway.formats.model_file import read_model
 from permway.report.diagnosis import write_diagnosis
 from simulated import simulate
 

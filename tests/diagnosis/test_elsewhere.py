@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_factors
 from permway.diagnosis.diagnose import diagnose
-from permway.recordings.campaign import Campaign
 from simulated import simulate
 
 

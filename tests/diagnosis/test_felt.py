@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue import pad_frequency
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._relaxing import relaxing
@@ -16,7 +17,6 @@ from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.search import search
-from permway.recordings.campaign import Campaign
 from simulated import simulate
 
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.gather import gather
-from permway.recordings.campaign import Campaign
 from permway.recordings.channel import Chain
 from simulated import simulate
 

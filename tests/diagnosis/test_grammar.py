@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis import describe
 from permway.diagnosis.bases import bases
 from permway.diagnosis.catalogue._change import fixed_mass, hung_mass, with_joints, with_law
@@ -26,7 +27,6 @@ from permway.diagnosis.spot import Found, Spot
 from permway.laws import Hysteretic
 from permway.model.joints import Joints
 from permway.model.presets import slab_track_viaduct_32m
-from permway.recordings.campaign import Campaign
 from simulated import simulate
 
 ROD = next(e for e in ELEMENTS if e.name == "rod")

@@ -9,6 +9,8 @@ from typing import cast
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
+from permway.campaign.parts import HeldOut
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.blocks_tabular import TableBlock
@@ -23,8 +25,6 @@ from permway.diagnosis.gather import gather
 from permway.diagnosis.heldout import Rest, at_fault, gains, parts
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_parts import HeldOut
 from simulated import simulate
 
 
@@ -36,7 +36,7 @@ def evidence(tmp_path_factory: pytest.TempPathFactory) -> Evidence:
 
 def with_groups(evidence: Evidence, *groups: HeldOut) -> Evidence:
     campaign = evidence.campaign
-    said = campaign.said.model_copy(update={"held_out": groups})
+    said = campaign.stated.model_copy(update={"held_out": groups})
     changed = Campaign(said, campaign.model, campaign.folder, campaign.parameters)
     return Evidence(changed, evidence.blocks, evidence.sizes, 1)
 

@@ -6,20 +6,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
+from permway.campaign.excitation import WheelLines
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.catalogue._excite import with_irregularity
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.heldout import Rest, between_lines, gains
 from permway.diagnosis.recalibrate import recalibrate
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import WheelLines
 from simulated_train import measured, tables, written
 
 
 def flat(campaign: Campaign, amplitude_m: float = 1.5e-5) -> Campaign:
     lines = WheelLines(wheel=2, amplitude_m=amplitude_m, decay=0.3)
-    return with_irregularity(campaign, wheels=(*campaign.said.irregularity.wheels, lines))
+    return with_irregularity(campaign, wheels=(*campaign.stated.irregularity.wheels, lines))
 
 
 @pytest.fixture(scope="module")

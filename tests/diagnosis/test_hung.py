@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.bases import bases
 from permway.diagnosis.catalogue import girder_local_modes
 from permway.diagnosis.catalogue._change import hung_mass, with_joints
@@ -16,7 +17,6 @@ from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import scanned
 from permway.diagnosis.search import Finalist, Round, search
 from permway.model.joints import GROUND, Joints
-from permway.recordings.campaign import Campaign
 from simulated import simulate
 
 

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.idealised import APART, OFF, STEP, _hump, _parts, idealised
 from permway.diagnosis.nearby import Nearby
 from permway.diagnosis.recalibrate import recalibrate
-from permway.recordings.campaign import Campaign
 from simulated import FREQUENCY, simulate
 
 DRAWS = 12

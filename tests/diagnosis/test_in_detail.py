@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.bases import bases
 from permway.diagnosis.catalogue import support_scatter
 from permway.diagnosis.catalogue._change import with_factors
@@ -16,7 +17,6 @@ from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.in_detail import NEARLY
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.search import Finalist, search
-from permway.recordings.campaign import Campaign
 from simulated import simulate
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
 from permway.demo.run import campaign_files
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.journal import Journal, keeping, key_of
-from permway.recordings.campaign import Campaign, read_campaign
 
 
 class StoppedError(Exception):
@@ -61,7 +61,7 @@ def test_another_record_or_seed_is_another_diagnosis(campaign: Campaign, tmp_pat
         (copy / path.name).write_bytes(path.read_bytes())
     other = read_campaign(copy / "campaign.toml")
     assert key_of(other, 0) == key
-    record = other.path(other.said.records[0])
+    record = other.path(other.stated.records[0])
     record.write_bytes(record.read_bytes() + b" ")
     assert key_of(other, 0) != key
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.blocks import Basis
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._interval import weakened
@@ -20,7 +21,6 @@ from permway.diagnosis.locate import scan
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.spot import Found
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
 from simulated import Simulated, simulate
 
 LOST = {"centre_m": 7.5, "length_m": 0.6, "factor": 0.05}

@@ -7,6 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from effects.trains import campaign_in, drawn
+from permway.campaign.campaign import Campaign
+from permway.campaign.parameters import Parameter
+from permway.campaign.values import ParameterSet
 from permway.diagnosis.blocks import Basis
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import free_parameters
@@ -14,9 +17,6 @@ from permway.diagnosis.gather import gather
 from permway.diagnosis.nearby import Nearby
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.tangent import STEP, Problem
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_values import ParameterSet
-from permway.recordings.parameters import Parameter
 from simulated import simulate
 
 
@@ -82,7 +82,7 @@ def test_a_speed_noted_wrongly_is_found(tmp_path: Path) -> None:
         acts="scales",
         tolerance_2sigma=0.005,
     )
-    said = owner.said.model_copy(update={"parameters": (*owner.said.parameters, speed)})
+    said = owner.stated.model_copy(update={"parameters": (*owner.stated.parameters, speed)})
     parameters = ParameterSet(said.parameters, owner.model, {}, said, owner.folder)
     owner = Campaign(said, owner.model, owner.folder, parameters)
     noted = owner.condition("fast").speed_m_per_s

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.predict import predict
 from permway.challenge.errors_of_measurement import struck
 from permway.diagnosis.blocks_noise import FEWEST, NoiseBlock
 from permway.diagnosis.catalogue import noise_floor
@@ -20,8 +22,6 @@ from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.learning import learnt
 from permway.diagnosis.recalibrate import recalibrate
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.predict import predict
 from scipy import stats
 from simulated import BLOWS, CAMPAIGN, FREQUENCY, MODEL
 

@@ -8,14 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.predict import predict
 from permway.diagnosis.compare import compare
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.separability import separability
 from permway.errors import InputError
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.predict import predict
-from permway.response.receptance import Place, receptance
+from permway.model.place import Place
+from permway.response.receptance import receptance
 from simulated import BLOWS, CAMPAIGN, FREQUENCY, MODEL
 
 SENSORS = (("left", "rail", 6.45), ("right", "rail", 6.45), ("deck", "deck", 3.0))

@@ -9,6 +9,9 @@ import numpy as np
 import passages
 import pytest
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.load import Dataset
+from permway.campaign.predict import predict
 from permway.diagnosis.blocks_passage import ABOUT, FLOOR, PassageBlock
 from permway.diagnosis.compare import compare
 from permway.diagnosis.fit import free_parameters
@@ -18,9 +21,6 @@ from permway.diagnosis.tangent import Problem
 from permway.posterior.covariance import Frame
 from permway.posterior.estimate import estimated
 from permway.posterior.fit import Fit, Fitter, Model
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import predict
 from permway.report.compare import write_comparison
 from scipy.ndimage import uniform_filter1d
 

@@ -9,6 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
+from permway.campaign.importers.sheet import import_sheet
+from permway.campaign.load import Dataset
 from permway.diagnosis.compare import CLEAN, RAW, RECALIBRATED, Comparison, assemble
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
@@ -16,9 +19,6 @@ from permway.diagnosis.gather import gather
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.residuals import channel_rms, lag_correlation
 from permway.laws import FractionalKelvinVoigt
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.importers.sheet import import_sheet
 from scipy import stats
 from simulated import Simulated, simulate
 

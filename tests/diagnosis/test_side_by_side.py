@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis import journal
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.catalogue._relaxing import relaxing
@@ -27,7 +28,6 @@ from permway.diagnosis.several_fits import relearnt_all
 from permway.diagnosis.side_by_side import each, one_thread_of_blas
 from permway.diagnosis.tangent import Problem
 from permway.errors import InputError, SolveError
-from permway.recordings.campaign import Campaign
 from simulated import simulate
 from threadpoolctl import threadpool_info, threadpool_limits
 

@@ -16,6 +16,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from permway.campaign.campaign import Campaign
+from permway.campaign.parameters import Known
 from permway.cli import app
 from permway.diagnosis.bounded import bounded_step
 from permway.diagnosis.catalogue._change import with_chain, with_factors
@@ -24,8 +26,6 @@ from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.journal import keeping
 from permway.diagnosis.separability import separability
 from permway.diagnosis.verdict import UNPROVED, Verdict
-from permway.recordings.campaign import Campaign
-from permway.recordings.parameters import Known
 from permway.report.compare import write_comparison
 from permway.report.diagnosis import write_diagnosis
 from simulated import CAMPAIGN, FREQUENCY, MODEL, simulate
@@ -51,7 +51,7 @@ def finishes(campaign: Campaign, folder: Path) -> Verdict:
     """All three commands, with what they write, and the verdict as its file has it."""
     comparison = compare(campaign, threads=1)
     write_comparison(comparison, folder / "comparison", dpi=COARSE_DPI)
-    names = [p.name for p in campaign.said.parameters]
+    names = [p.name for p in campaign.stated.parameters]
     assert comparison.parameters["parameter"].values.tolist() == names
     assert all(np.isfinite(values).all() for values in comparison.parameters.data_vars.values())
     found = separability(campaign, threads=1)
@@ -79,7 +79,7 @@ def test_every_command_finishes_for_one_of_everything(size: str, tmp_path: Path)
 def test_nothing_is_called_missing_of_one_of_everything(size: str, tmp_path: Path) -> None:
     case = SIZES[size].made(tmp_path / "c")
     verdict = diagnose(case.campaign, threads=1).verdict
-    assert list(verdict.recalibrated.before) == [p.name for p in case.campaign.said.parameters]
+    assert list(verdict.recalibrated.before) == [p.name for p in case.campaign.stated.parameters]
     # The pads' true stiffness is 2.04 standard deviations from the stated one.
     beyond = [z for z in (known.z(case.truth[name]) for name, known in _known(case.campaign)) if abs(z) > 2.0]
     assert verdict.status in (UNPROVED if beyond else ("recalibrated", "insufficient"))

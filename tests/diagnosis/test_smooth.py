@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from permway.campaign.excitation import Dips
 from permway.diagnosis.blocks_spectra import LEVEL
 from permway.diagnosis.gather import gather
 from permway.diagnosis.learning import learnt
 from permway.diagnosis.smooth import Origin, PairColumns, PlainColumns, Smooth
 from permway.diagnosis.wander import LENGTHS, SHORTEST, Wander
 from permway.diagnosis.whitener import AllColumns, Whitener
-from permway.recordings.campaign_excitation import Dips
 from simulated import simulate
 
 Reals = np.ndarray

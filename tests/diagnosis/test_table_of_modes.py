@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import tables_of_modes as tables
+from permway.campaign.campaign import read_campaign
 from permway.diagnosis.compare import compare
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather
@@ -15,7 +16,6 @@ from permway.diagnosis.tangent import Problem
 from permway.errors import InputError
 from permway.posterior.covariance import Frame
 from permway.posterior.fit import Fitter, Model
-from permway.recordings.campaign import read_campaign
 
 
 def stiffer(model: dict) -> None:

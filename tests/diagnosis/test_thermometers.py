@@ -10,6 +10,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue import pad_temperature
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.gather import gather
@@ -17,7 +18,6 @@ from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.thermometers import OFF_K, misread
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
 from simulated_train import measured, tables, written
 
 TRUE = {"softening_per_K": 0.006, "reference_factor": 1.0, "loss_ratio": 1.0}
@@ -28,9 +28,9 @@ def _read_off(campaign: Campaign, off_K: float) -> Campaign:
     """The test in the cold was so much warmer than was read."""
     conditions = tuple(
         c.model_copy(update={"temperature_C": (c.temperature_C or 0.0) + off_K}) if c.name == "cold" else c
-        for c in campaign.said.conditions
+        for c in campaign.stated.conditions
     )
-    said = campaign.said.model_copy(update={"conditions": conditions})
+    said = campaign.stated.model_copy(update={"conditions": conditions})
     return Campaign(said, campaign.model, campaign.folder, campaign.parameters)
 
 
@@ -42,7 +42,7 @@ def test_what_is_told_by_two_temperatures_is_as_sure_as_their_thermometers(tmp_p
 
     def ending(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         """As of a law that is known up to the warmest temperature that was read, and no further."""
-        warmest = max(c.temperature_C or 0.0 for c in campaign.said.conditions)
+        warmest = max(c.temperature_C or 0.0 for c in campaign.stated.conditions)
         if warmest > 12.0:
             raise InputError("is known up to 12 degC", where="law", value=warmest)
         return hypothesis.amend(campaign, values)

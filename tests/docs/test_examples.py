@@ -59,8 +59,8 @@ def test_an_example_computes_what_its_pages_quote(name: str) -> None:
 def test_the_tutorial_s_diagnosis_says_what_its_page_says(tmp_path: Path) -> None:
     """Half a minute: the two fasteners that carry 5 %, in folders made as the tutorial makes them."""
     import numpy as np
+    from permway.campaign.campaign import read_campaign
     from permway.diagnosis.diagnose import diagnose
-    from permway.recordings.campaign import read_campaign
 
     import_module("make_deck").write(tmp_path)
     np.savez(tmp_path / "blows.npz", **import_module("blows_to_frf").responses(tmp_path))
@@ -91,7 +91,7 @@ def survey(folder: Path) -> Path:
 
 
 def test_the_survey_is_read_from_csv_as_its_page_says(tmp_path: Path) -> None:
-    from permway.recordings.campaign import read_campaign
+    from permway.campaign.campaign import read_campaign
 
     (dataset,) = read_campaign(survey(tmp_path)).load()
     assert dict(dataset.data.sizes) == {"sensor": 6, "force": 7, "frequency": 100}
@@ -104,8 +104,8 @@ def test_the_survey_is_read_from_csv_as_its_page_says(tmp_path: Path) -> None:
 @pytest.mark.injection
 def test_the_survey_s_diagnosis_says_what_its_page_says(tmp_path: Path) -> None:
     """Most of a minute: the four fasteners that keep 6 %."""
+    from permway.campaign.campaign import read_campaign
     from permway.diagnosis.diagnose import diagnose
-    from permway.recordings.campaign import read_campaign
 
     verdict = diagnose(read_campaign(survey(tmp_path)), threads=1).verdict
     page = (DOCS / "tutorials" / "survey.md").read_text("utf-8")

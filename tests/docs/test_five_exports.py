@@ -18,7 +18,7 @@ FILES = {
         r"^\| `(\S+)` \| .* \| (\d+) \| ([\d.]+) \| ([\d.]+) \|$", PAGE, re.MULTILINE
     )
 }
-"""Of each file: channels, and what its comparison says, as printed."""
+"""Of each file: channels, and what its comparison states, as printed."""
 PLACES = {
     "rail": ("rail", 6.0), "deck": ("deck", 3.0), "106:-Z": ("rail", 6.0), "203:-Z": ("deck", 3.0),
     "hit rail 6.0": ("rail", 6.0), "hit rail 9.3": ("rail", 9.3), "hit deck 4.5": ("deck", 4.5),
@@ -41,7 +41,7 @@ def command(*words: str) -> str:
 
 
 def completed(part: str, run: bool) -> str:
-    """The part of a campaign file with what the page's table says filled in."""
+    """The part of a campaign file with what the page's table states filled in."""
     lines, name = [], ""
     for line in part.splitlines():
         key = line.partition(" ")[0]

@@ -129,7 +129,7 @@ def hammer(random: np.random.Generator, pads: float, lost: tuple[float, ...]) ->
 
 
 def tables(*, floors: bool = True, rides: bool = True) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Campaign and model as their owner writes them; without floors he says nothing of noise on board."""
+    """Campaign and model as the user writes them; without floors he states nothing of noise on board."""
     damping = PAD_N_PER_M * PAD_LOSS / (2.0 * np.pi * VISCOUS_AT_HZ)
     rail = {"type": "beam", "youngs_modulus_Pa": 2.1e11, "second_moment_m4": 3.05e-5, "loss_factor": 0.02}
     rail |= {"density_kg_per_m3": 7850.0, "area_m2": 7.67e-3, "intervals_m": [[-BEYOND_M, LAP_M + BEYOND_M]]}
@@ -217,7 +217,7 @@ def ridden(
     ----------
     folder : Path
     seed : int
-        Of the pads' true stiffness within its tolerance, the profile, smooth errors and noise.
+        Of the pads' true stiffness within its tolerance, the profile, calibration errors and noise.
     lost : tuple of float
         Places of fasteners that carry nothing where the track was struck, m.
     floors : bool
@@ -225,7 +225,7 @@ def ridden(
     rides : callable, optional
         Makes the ride; without it there is none.
     stated : callable
-        Changes what the campaign file says.
+        Changes what the campaign file states.
     """
     random = np.random.default_rng([seed, 470])
     pads = float(np.exp(0.5 * np.log1p(0.25) * random.standard_normal()))

@@ -46,7 +46,7 @@ def struck_deck(
     ----------
     folder : Path
     seed : int
-        Of true values within their tolerances, of smooth errors and of noise.
+        Of true values within their tolerances, of calibration errors and of noise.
     pads : float
         True stiffness of all pads over the stated one; these alone are not drawn.
     there : callable

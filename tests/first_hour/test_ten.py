@@ -1,4 +1,4 @@
-"""The first hour: ten campaigns that differ from their model in one thing each, and what is said of them.
+"""The first hour: ten campaigns that differ from their model in one thing each, and what is stated about them.
 
 Made by finite elements that share no code with the solver. What a user runs is `permway check`, then
 `permway diagnose --posterior`; the diagnoses take half a minute of processor each, and are marked.
@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 import pytest
 from permway.arrays import Complexes, Reals
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.predict import predict
 from permway.challenge.small.elements_line import Line, scaled
 from permway.checking.check import Checked, check
 from permway.diagnosis.doubts import doubted
 from permway.diagnosis.verdict import Verdict
 from permway.posterior.diagnose import diagnose
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.predict import predict
 from ridden import NOISE, PAD_N_PER_M, SPACING_M, SPEED_M_PER_S, ridden, run
 from struck import struck_deck, tolerance
 
@@ -147,8 +147,8 @@ def test_a_train_that_rolls_is_foretold(path: Callable[[str], Path]) -> None:
 
 
 def _standing(campaign: Campaign) -> Campaign:
-    known = campaign.said.irregularity.model_copy(update={"rolling": False})
-    return replace(campaign, said=campaign.said.model_copy(update={"irregularity": known}))
+    known = campaign.stated.irregularity.model_copy(update={"rolling": False})
+    return replace(campaign, stated=campaign.stated.model_copy(update={"irregularity": known}))
 
 
 @pytest.mark.injection

@@ -11,8 +11,9 @@ from permway.laws import Hysteretic
 from permway.model.bodies import Beam, Mass
 from permway.model.joints import Joints
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response import core as caller
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from permway.response.sensitivity import sensitivity
 
 SPECIAL = [0.0, -0.0, -1.0, 1e-300, 1e300, -1e300, 5e-324, np.nan, np.inf, -np.inf, 1e9, 1e-9, 1.0, 0.6, 1e15]

@@ -1,7 +1,7 @@
 """Fuzzing guided by coverage, with atheris: `python tests/fuzz/guided.py --target readers --inputs 10000`.
 
 The same targets and the same law as :mod:`run`, from the same seeds; stops at the first input that breaks the law.
-The file's name, which tells its format, follows from the input's first byte.
+The file's name, which states its format, follows from the input's first byte.
 """
 
 from __future__ import annotations
@@ -49,9 +49,9 @@ def main() -> None:
         def one(data: bytes) -> None:
             if not data:
                 return
-            outcome, said = attempt(given.target, names[data[0] % len(names)], data[1:], Path(place))
+            outcome, stated = attempt(given.target, names[data[0] % len(names)], data[1:], Path(place))
             if outcome == "broken":
-                raise AssertionError(said)
+                raise AssertionError(stated)
 
         limits = [f"-runs={given.inputs}", "-timeout=30", "-rss_limit_mb=3000", "-max_len=20000"]
         atheris.Setup([sys.argv[0], *limits, str(corpus)], one)

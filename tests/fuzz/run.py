@@ -5,7 +5,7 @@
 The law for every input: a result, or an `InputError` (of the command line: exit status 2); no other exception, at
 most 5 s of processor time, at most 1 GB more memory, no crash. A worker process does the work and is replaced
 where it dies or hangs; what broke the law is written to the folder of findings, from where a file goes into
-`tests/fuzz/corpus` once it is mended.
+`tests/fuzz/corpus` once it is corrected.
 """
 
 from __future__ import annotations
@@ -55,21 +55,21 @@ def attempt(target: str, name: str, content: bytes, folder: Path) -> tuple[Outco
     begin = processor_s()
     try:
         outcome = TARGETS[target].run(name, content, folder)
-        said = ""
+        stated = ""
     except BrokenLawError as error:
-        outcome, said = "broken", str(error)
+        outcome, stated = "broken", str(error)
     except Exception as error:  # noqa: BLE001 - what any exception would mean is the question
         frames = traceback.extract_tb(error.__traceback__)
         own = [f for f in frames if "permway" in f.filename] or list(frames)
         at = f"{Path(own[-1].filename).name}:{own[-1].lineno}"
-        outcome, said = "broken", f"{type(error).__name__} at {at}: {str(error)[:200]}"
+        outcome, stated = "broken", f"{type(error).__name__} at {at}: {str(error)[:200]}"
     if processor_s() - begin > MOST_S:
-        outcome, said = "broken", f"slow: {processor_s() - begin:.1f} s {said}"
-    return outcome, said
+        outcome, stated = "broken", f"slow: {processor_s() - begin:.1f} s {stated}"
+    return outcome, stated
 
 
 def work(target: str, begin: int, inputs: int, random: int, pipe: Connection) -> None:
-    """Try inputs, telling each before and after."""
+    """Try inputs, informative each before and after."""
     warnings.simplefilter("ignore")
     base = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     with tempfile.TemporaryDirectory(prefix="permway-fuzz-") as place:
@@ -89,36 +89,36 @@ def work(target: str, begin: int, inputs: int, random: int, pipe: Connection) ->
             nonlocal base
             name, content = made
             pipe.send(("begin", name, content))
-            outcome, said = attempt(target, name, content, folder)
+            outcome, stated = attempt(target, name, content, folder)
             taken = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
             if taken > base + MOST_KB:
-                outcome, said = "broken", f"memory: {(taken - base) / 1e6:.2f} GB {said}"
+                outcome, stated = "broken", f"memory: {(taken - base) / 1e6:.2f} GB {stated}"
                 base = taken
-            pipe.send(("end", outcome, said))
+            pipe.send(("end", outcome, stated))
 
         every()
     pipe.send(("done", "", ""))
 
 
-def keep(found: Path, target: str, name: str, content: bytes, said: str) -> None:
+def keep(found: Path, target: str, name: str, content: bytes, stated: str) -> None:
     """Write a finding and what is wrong with it."""
     found.mkdir(parents=True, exist_ok=True)
     path = found / f"{target}-{hashlib.sha256(content).hexdigest()[:12]}-{name}"
     path.write_bytes(content)
-    path.with_name(path.name + ".said").write_text(said + "\n")
+    path.with_name(path.name + ".said").write_text(stated + "\n")
 
 
 def _heard(pipe: Connection, worker: int) -> tuple[str, Any, Any]:
-    """The next that a worker says; or that it died, or hangs."""
+    """The next that a worker states; or that it died, or hangs."""
     begin, spent = time.monotonic(), _spent_s(worker)
     try:
         while not pipe.poll(1.0):
             if _spent_s(worker) - spent > PATIENCE_S or time.monotonic() - begin > LOST_S:
                 return "hang", "", ""
-        said: tuple[str, Any, Any] = pipe.recv()
+        stated: tuple[str, Any, Any] = pipe.recv()
     except EOFError:
         return "died", "", ""
-    return said
+    return stated
 
 
 def _spent_s(process: int) -> float:
@@ -150,15 +150,17 @@ def fuzz(target: str, inputs: int, random: int, found: Path, seconds: float) -> 
                 continue
             if what == "done":
                 break
-            outcome, said = (first, second) if what == "end" else ("broken", f"{what}: exit {worker.exitcode}")
+            outcome, stated = (first, second) if what == "end" else ("broken", f"{what}: exit {worker.exitcode}")
             done += 1
             counts[outcome] += 1
             if outcome == "broken":
-                kind = said.partition(":")[0] if not said.startswith(("slow", "memory")) else said[:6] + now[0]
+                kind = (
+                    stated.partition(":")[0] if not stated.startswith(("slow", "memory")) else stated[:6] + now[0]
+                )
                 kinds[kind] += 1
                 if kinds[kind] <= KEPT_OF_A_KIND:
-                    keep(found, target, *now, said)
-                    print(f"{target}: {now[0]}: {said}", file=sys.stderr, flush=True)
+                    keep(found, target, *now, stated)
+                    print(f"{target}: {now[0]}: {stated}", file=sys.stderr, flush=True)
             late = time.monotonic() - begin > seconds
             if time.monotonic() - last > TOLD_EVERY_S:
                 last = time.monotonic()

@@ -22,18 +22,19 @@ import written
 from campaigns import tables
 from damage import damaged_bytes, damaged_table, toml
 from hypothesis import strategies as st
+from permway.campaign.campaign import read_campaign
+from permway.campaign.importers.sheet import import_sheet
 from permway.cli import app
 from permway.errors import InputError, PermwayError
+from permway.formats.model_file import read_model
 from permway.laws.dma import read_dma
 from permway.laws.lawfile import load_law
 from permway.laws.measured import read_measured
 from permway.laws.transmissibility import read_shaker
-from permway.model.file import Frequencies, read_model
-from permway.recordings.campaign import read_campaign
-from permway.recordings.importers.sheet import import_sheet
+from permway.problem.model import Frequencies
+from permway.problem.solve import solve
 from permway.recordings.readers import read_frf, read_table, read_time
 from permway.recordings.record import FrfRecord, TableRecord, TimeRecord
-from permway.response.solve import solve
 from permway.study.file import read_study
 from scipy import io as matlab
 
@@ -178,7 +179,7 @@ def _inside_mat(draw: st.DrawFn, content: bytes) -> bytes:
 def _inside_text(draw: st.DrawFn, content: bytes) -> bytes:
     """Cells and fields replaced, lines dropped, doubled and moved."""
     lines = content.decode("latin-1").split("\n")
-    said = [
+    stated = [
         "0",
         "-1",
         "7",
@@ -200,10 +201,10 @@ def _inside_text(draw: st.DrawFn, content: bytes) -> bytes:
         kind = draw(st.sampled_from(["field", "field", "cell", "drop", "double", "swap"]))
         if kind == "field":
             width, field = draw(st.integers(1, 14)), draw(st.integers(0, 70))
-            lines[at] = lines[at][:field] + draw(st.sampled_from(said)).rjust(width) + lines[at][field + width :]
+            lines[at] = lines[at][:field] + draw(st.sampled_from(stated)).rjust(width) + lines[at][field + width :]
         elif kind == "cell":
             cells = lines[at].split(",")
-            cells[draw(st.integers(0, len(cells) - 1))] = draw(st.sampled_from(said) | st.text(max_size=6))
+            cells[draw(st.integers(0, len(cells) - 1))] = draw(st.sampled_from(stated) | st.text(max_size=6))
             lines[at] = ",".join(cells)
         elif kind == "drop" and len(lines) > 1:
             del lines[at]
@@ -231,7 +232,7 @@ class Readers(Target):
             try:
                 record = read(path, max_bytes=MOST)
             except InputError as error:
-                _told(error)
+                _reported(error)
                 continue
             outcome = "read"
             if not isinstance(record, FrfRecord | TableRecord | TimeRecord):
@@ -280,7 +281,7 @@ class Tables(Target):
                 read(path)
                 outcome = "read"
             except InputError as error:
-                _told(error)
+                _reported(error)
         return outcome
 
 
@@ -310,7 +311,7 @@ class Models(Target):
         try:
             model = read_model(path)
         except InputError as error:
-            _told(error)
+            _reported(error)
             _command("solve", path, content)
             return "refused"
         if content[-1] % 8 == 0 and model.line.joint_table().x.size < 500 and model.passby is None:
@@ -357,7 +358,7 @@ class Campaigns(Target):
         try:
             read_campaign(path).load()
         except InputError as error:
-            _told(error)
+            _reported(error)
             if name == "campaign.toml":
                 _command("separability", path, content)
             return "refused"
@@ -405,7 +406,7 @@ class Studies(Target):
             study.plan.file_name(study.plan.cases - 1)
             study.model(0)
         except InputError as error:
-            _told(error)
+            _reported(error)
             return "refused"
         return "read"
 
@@ -423,7 +424,7 @@ class Sheets(Target):
         try:
             import_sheet(folder, folder / "out")
         except InputError as error:
-            _told(error)
+            _reported(error)
             return "refused"
         return "read"
 
@@ -435,13 +436,13 @@ class Core(Target):
         return st.integers(0, 2**63).map(lambda number: ("core.txt", str(number).encode()))
 
     def run(self, name: str, content: bytes, folder: Path) -> Outcome:
-        said = core.attempt(int(content))
-        if said.startswith("broken"):
-            raise BrokenLawError(said)
-        return "read" if said == "solved" else "refused"
+        stated = core.attempt(int(content))
+        if stated.startswith("broken"):
+            raise BrokenLawError(stated)
+        return "read" if stated == "solved" else "refused"
 
 
-def _told(error: InputError) -> None:
+def _reported(error: InputError) -> None:
     """An error must say what and where, on one line of the terminal."""
     if not error.what or not error.where:
         raise BrokenLawError(f"an InputError without what or where: {error!r}")

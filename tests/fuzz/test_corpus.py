@@ -18,8 +18,8 @@ CORPUS = sorted((Path(__file__).parent / "corpus").iterdir())
 @pytest.mark.parametrize("path", CORPUS, ids=lambda path: path.name)
 def test_what_once_broke_the_law_keeps_it(path: Path, tmp_path: Path) -> None:
     target, _, name = path.name.split("-", 2)
-    outcome, said = attempt(target, name, path.read_bytes(), tmp_path)
-    assert outcome in ("read", "refused"), said
+    outcome, stated = attempt(target, name, path.read_bytes(), tmp_path)
+    assert outcome in ("read", "refused"), stated
 
 
 def test_every_target_reads_its_own_undamaged_seed(tmp_path: Path) -> None:
@@ -40,6 +40,6 @@ def test_every_target_reads_its_own_undamaged_seed(tmp_path: Path) -> None:
         place = tmp_path / target
         place.mkdir()
         expected = ("read", "refused") if target == "core" else ("read",)
-        outcome, said = attempt(target, name, content, place)
-        assert outcome in expected, f"{target}: {said}"
+        outcome, stated = attempt(target, name, content, place)
+        assert outcome in expected, f"{target}: {stated}"
     (tmp_path / "law.toml").write_bytes(LAW)

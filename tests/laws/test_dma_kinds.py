@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from permway.cli import app
 from permway.errors import InputError
+from permway.formats.model_file import model_from_dict
 from permway.laws import FractionalZener, law_to_dict
 from permway.laws.dma import DmaTable, read_dma
 from permway.laws.fitting import fit_table
 from permway.laws.identify import identify
 from permway.laws.lawfile import load_law, save_law
-from permway.model.file import model_from_dict
 
 # The same two rows in all tables: 1 and 10 Hz at 20 degC, 2 + 0.3i and 3 + 0.5i MPa.
 MODULUS = np.array([2e6 + 3e5j, 3e6 + 5e5j])
@@ -82,7 +82,7 @@ def test_the_same_table(tmp_path: Path, text: str, encoding: str) -> None:
         ("f [Hz],T [°C],E' [MPa],E'' [MPa]\nrad/s,°C,MPa,MPa\n1,20,2,0.3\n", ["row of units", "'rad/s'"]),
         ("f [Hz],T [°C],E' [MPa],E'' [MPa]\n1,20,2,0.3\nmean,of,all,rows\n", ["line 3", "neither units nor"]),
         ("f [Hz],T [°C],E' [MPa],E'' [MPa]\n1_0,20,2,0.3\n", ["line 2", "not a number"]),
-        ("f [-],T [°C],E' [MPa],E'' [MPa]\n1,20,2,0.3\n", ["'f [-]' says that it has no unit"]),
+        ("f [-],T [°C],E' [MPa],E'' [MPa]\n1,20,2,0.3\n", ["'f [-]' states that it has no unit"]),
         ("f [Hz],T [?],E' [MPa],E'' [MPa]\n1,20,2,0.3\n", ["temperature", "'T [?]'"]),
         ("T [°C],f [Hz],E' [MPa],E'' [MPa]\n20,1,2,0.3\n#REF!,2,2,0.3\n", ["line 3", "#REF!"]),
         ("PK\x03\x04 zipped", ["Excel"]),
@@ -205,9 +205,9 @@ def test_the_command_takes_what_the_file_does_not_say(tmp_path: Path, capsys: py
     with pytest.raises(SystemExit) as end:
         app(["fit-pad", str(path), *options, "--frequency", "2", "--shape-factor", "2.6", "--decimal", ","])
     assert end.value.code == 0
-    said = json.loads(capsys.readouterr().out)
-    assert said["quantity"] == "modulus, Pa"
-    assert said["reference_temperature_C"] == 20.0
+    stated = json.loads(capsys.readouterr().out)
+    assert stated["quantity"] == "modulus, Pa"
+    assert stated["reference_temperature_C"] == 20.0
     stiffness = load_law(law).storage(2.0, 20.0) * 2.6
     assert stiffness == pytest.approx(13.125e3, rel=0.5)
     warm = write(tmp_path, "f_Hz,T_C,E_storage_MPa,tan_delta\n1,40,3,0.1\n5,40,4,0.2\n1,60,2,0.1\n5,60,3,0.1\n")
@@ -221,7 +221,7 @@ def test_the_command_takes_what_the_file_does_not_say(tmp_path: Path, capsys: py
 @pytest.mark.parametrize("name", ["omega", "ω", "Angular frequency", "Kreisfrequenz", "circular frequency"])
 @pytest.mark.parametrize("unit", ["", " [rad/s]", " [1/s]"])
 def test_angular_frequency_is_in_rad_per_s(name: str, unit: str, tmp_path: Path) -> None:
-    """Its name says what it is; without a unit a note says what was assumed."""
+    """Its name states what it is; without a unit a note states what was assumed."""
     path = tmp_path / "a.csv"
     path.write_text(f"{name}{unit},T_degC,E' [MPa],tan delta\n{2 * np.pi},20,5,0.1\n{20 * np.pi},20,6,0.2\n")
     table = read_dma(path)

@@ -148,9 +148,9 @@ def one(seed: int, folder: Path) -> str:
 
 
 def test_what_programs_write_is_read_or_refused(tmp_path: Path) -> None:
-    said = [one(seed, tmp_path) for seed in range(FILES)]
+    stated = [one(seed, tmp_path) for seed in range(FILES)]
     # Refusals are for what can be read two ways; most files have to be read.
-    assert said.count("read") > 0.98 * FILES
+    assert stated.count("read") > 0.98 * FILES
 
 
 @pytest.mark.parametrize("seed", range(40))

@@ -137,7 +137,7 @@ def test_a_temperature_sweep_at_one_frequency_is_enough_for_law_and_shift() -> N
     )
     result = identify(table, shift="wlf", reference_temperature_C=20.0)
     assert result.rms_log10_modulus < 1e-3
-    # Time and slope of the shift cannot be told apart from the frequency axis alone; the order can.
+    # Time and slope of the shift cannot be distinguished from the frequency axis alone; the order can.
     order = next(p for p in result.parameters if p.name == "order")
     assert order.value == pytest.approx(0.45, abs=0.01)
 
@@ -158,17 +158,17 @@ def test_what_the_data_do_not_tell_is_said() -> None:
 
 
 def test_a_seed_repeats_and_progress_is_told(found: Identification) -> None:
-    told: list[tuple[int, int]] = []
+    reported: list[tuple[int, int]] = []
     again = identify(
         found.table,
         shift="wlf",
         reference_temperature_C=20.0,
-        progress=lambda *step: told.append(step),
+        progress=lambda *step: reported.append(step),
     )
     assert again.law == found.law
-    assert told == sorted(told)
-    assert len(told) > 60
-    assert told[-1] == (100, 100)
+    assert reported == sorted(reported)
+    assert len(reported) > 60
+    assert reported[-1] == (100, 100)
 
 
 def test_candidates_are_sorted_and_the_true_family_wins(found: Identification) -> None:

@@ -122,7 +122,7 @@ def test_shifts_and_the_vertical_factor_on_rubber(recordings: Path, comparisons:
     wlf = {material: comparisons[material].row("fvmp").bic for material in ("material_a", "epdm_70")}
     assert wlf["material_a"] < other("material_a", shift="free") < other("material_a", shift="arrhenius")
     assert other("epdm_70", shift="free") < wlf["epdm_70"] < other("epdm_70", shift="arrhenius")
-    # The paper's factor rho T / (rho_s T_s) makes material_a clearly worse; epdm_70 hardly tells.
+    # The paper's factor rho T / (rho_s T_s) makes material_a clearly worse; epdm_70 hardly states.
     assert other("material_a", shift="wlf", vertical="paper") > wlf["material_a"] + 50.0
     assert other("epdm_70", shift="wlf", vertical="paper") > wlf["epdm_70"]
 
@@ -187,7 +187,7 @@ def test_material_a_with_one_common_stiffness_factor(
     for found, expected, bar in (
         (comparisons["material_a"].row("fractional_zener"), 0.774, 0.32),
         (free, 0.902, 0.31),
-        # Just above the 0.35 dB asked for, and said so: 0.356 dB at 253 g, 0.220 dB at 573 g.
+        # Just above the 0.35 dB asked for, and stated so: 0.356 dB at 253 g, 0.220 dB at 573 g.
         (comparisons["material_a"].row("fvmp"), 0.878, 0.36),
     ):
         cases = [(stiffness(found, record), mass + RIG.moving_mass_kg, record) for mass, record in pair_a]
@@ -206,7 +206,7 @@ def test_discs_move_with_the_mass(
     comparisons: dict[str, Comparison], pair_a: list[tuple[float, ShakerRecord]]
 ) -> None:
     # Mass and stiffness enter by their ratio only, so leaving the discs out is as good with a free factor; but one
-    # factor for both masses tells: with the discs the two agree better.
+    # factor for both masses states: with the discs the two agree better.
     found = comparisons["material_a"].row("fractional_zener")
     apart = []
     for extra in (0.0, RIG.moving_mass_kg):

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from permway.errors import InputError
+from permway.formats.model_file import model_from_dict
 from permway.laws import Waves, law_from_dict, law_to_dict
-from permway.model.file import Model, model_from_dict
+from permway.problem.model import Model
 from simulated import MODEL
 
 

@@ -15,8 +15,9 @@ from permway.laws import Hysteretic, KelvinVoigt
 from permway.model.bodies import Beam, Mass
 from permway.model.joints import GROUND, Joints, Spread
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response.decay import decay_rate
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from scipy.optimize import brentq
 
 pytestmark = pytest.mark.parametrize("formulation", ["chain", "receptance"])

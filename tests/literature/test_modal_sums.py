@@ -5,7 +5,8 @@ import pytest
 from permway.errors import InputError
 from permway.model.bodies import Beam
 from permway.model.line import Line
-from permway.response.receptance import Place, receptance
+from permway.model.place import Place
+from permway.response.receptance import receptance
 
 
 def alone(ends, modes):

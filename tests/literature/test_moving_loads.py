@@ -20,11 +20,11 @@ import pytest
 from lines import hysteretic, supported, uic60
 from permway.model.bodies import Beam
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response.passby import Axles, MassOnSpring, couple, hslm_a, passby
 from permway.response.passby.carry import arrivals, carried, harmonic_moments
 from permway.response.passby.path import path_of
 from permway.response.passby.transfer import transfer
-from permway.response.receptance import Place
 from scipy.interpolate import CubicSpline
 from scipy.signal import cont2discrete, lfilter
 

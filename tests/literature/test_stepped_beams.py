@@ -13,8 +13,9 @@ from permway.laws import Hysteretic
 from permway.model.bodies import Beam, BeamChange
 from permway.model.joints import GROUND, Joints
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.shafts import Shaft, ShaftChange
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from scipy.optimize import brentq
 
 pytestmark = pytest.mark.parametrize("formulation", ["chain", "receptance"])

@@ -23,8 +23,9 @@ import numpy as np
 import pytest
 from lines import hysteretic, supported, uic60
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response.decay import decay_rate
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from scipy.optimize import brentq
 
 FORMULATIONS = ("chain", "receptance")

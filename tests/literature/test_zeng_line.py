@@ -13,8 +13,9 @@ would have to be known; they are not in the table.
 import numpy as np
 import pytest
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.presets import LINES
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from scipy.optimize import brentq
 
 SPAN_M = 32.5

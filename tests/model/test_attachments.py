@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from lines import hysteretic, uic60
 from permway.errors import InputError
+from permway.formats.model_file import model_from_dict, read_model
 from permway.laws import Given, Hysteretic, KelvinVoigt, Measured
 from permway.model.bodies import Beam, Mass, Shaft
-from permway.model.file import model_from_dict, read_model
 from permway.model.joints import GROUND, Ends, Joints, Spread
 from permway.model.line import Line
-from permway.response.receptance import Place, receptance
-from permway.response.solve import solve
+from permway.model.place import Place
+from permway.problem.solve import solve
+from permway.response.receptance import receptance
 
 FREQUENCY_HZ = np.array([4.0, 60.0, 330.0, 1100.0])
 OMEGA = 2 * np.pi * FREQUENCY_HZ
@@ -101,12 +102,12 @@ def test_anything_hangs_on_any_body(body, formulation):
     places = [Place(body=body, x_m=x, name="here"), other]
     before = respond(bare(), places, formulation)
     inertia = -(OMEGA**2) * KG
-    hung = Mass(mass_kg=KG)
+    attached = Mass(mass_kg=KG)
     cases = {
         "resonator": (
             with_it(
                 Joints(between=(body, "block"), law="spring", at=(x,)),
-                bodies={"block": hung},
+                bodies={"block": attached},
                 spring=hysteretic(SPRING),
             ),
             SPRING * inertia / (SPRING + inertia),
@@ -115,7 +116,7 @@ def test_anything_hangs_on_any_body(body, formulation):
         "mass": (
             with_it(
                 Joints(between=(body, "block"), law="rigid", at=(x,)),
-                bodies={"block": hung},
+                bodies={"block": attached},
                 rigid=hysteretic(2e12 + 0j),
             ),
             2e12 * inertia / (2e12 + inertia),

@@ -11,9 +11,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from permway.errors import InputError, SolveError
-from permway.model.file import Frequencies, Model, model_from_dict, read_model
+from permway.formats.model_file import model_from_dict, read_model
 from permway.model.irregularity import RangeWarning
-from permway.response.solve import solve
+from permway.problem.model import Frequencies, Model
+from permway.problem.solve import solve
 
 LAYOUT = """\
 [line.bodies.slab]

@@ -15,11 +15,11 @@ from permway.laws import Hysteretic
 from permway.model.bodies import Beam, BeamChange, Mass, Shaft
 from permway.model.joints import GROUND, Ends, Joints
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.presets import LINES
 from permway.model.roll import Lever, Roll, Rolling, Twisting, antisymmetric
 from permway.model.shafts import ShaftChange
 from permway.response.rails import both_rails
-from permway.response.receptance import Place
 
 FREQUENCY_HZ = np.array([3.0, 25.0, 90.0, 310.0])
 GAUGE_M = 1.5

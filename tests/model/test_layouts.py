@@ -11,7 +11,8 @@ from permway.model.bodies import Beam, Mass
 from permway.model.changes import Change, Scatter
 from permway.model.joints import GROUND, Ends, Joints, Spread
 from permway.model.line import Line
-from permway.response.receptance import Place, receptance
+from permway.model.place import Place
+from permway.response.receptance import receptance
 
 PAD = hysteretic(3e8 * (1 + 0.25j))
 BALLAST = hysteretic(5e7 * (1 + 1j))

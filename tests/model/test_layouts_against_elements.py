@@ -15,8 +15,9 @@ from permway.model.bodies import Beam, BeamChange, Mass
 from permway.model.changes import Change, Scatter
 from permway.model.joints import Joints
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.stations import Ends, Spread
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 
 FREQUENCY_HZ = np.array([4.0, 31.0, 140.0, 420.0])
 BAY_M = 0.6

@@ -10,8 +10,9 @@ from permway.model.bodies import Mass
 from permway.model.lines_ballasted import BallastedTrack
 from permway.model.lines_crts import CrtsII, CrtsIII
 from permway.model.lines_zeng2014 import ZengLine
+from permway.model.place import Place
 from permway.model.presets import LINES, SlabTrackViaduct
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 
 SHORT = {
     "ballasted_b91_60e1": [{"sleepers": 41}, {"sleepers": 41, "model": "full"}],

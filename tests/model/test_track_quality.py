@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from permway.cli import app
 from permway.errors import InputError
+from permway.formats.irregularity_file import irregularity_of
 from permway.model.irregularity import CycleTable, DensityTable, En13848, Fra, GermanHigh, GermanLow, Iso3095
-from permway.model.irregularity_file import irregularity_of
 from permway.model.track_quality import BANDS_M, band_deviations, density_per_cycle, draw_profile
 
 A, C, R = 4.032e-7, 0.8246, 0.0206
@@ -157,15 +157,15 @@ def test_the_command_reads_only_the_irregularity(tmp_path: Path, capsys: pytest.
             ]
         )
     assert end.value.code == 0
-    said = json.loads(capsys.readouterr().out)
-    assert said["bands"][0]["deviation_mm"] == pytest.approx(
+    stated = json.loads(capsys.readouterr().out)
+    assert stated["bands"][0]["deviation_mm"] == pytest.approx(
         1e3 * (band_deviations(GermanLow())[0].deviation_m or 0)
     )
-    assert said["bands"][2]["note"] == "only 70 to 100 m"
+    assert stated["bands"][2]["note"] == "only 70 to 100 m"
     x, level = np.loadtxt(table, delimiter=",", skiprows=1).T
     assert (x[-1], len(x)) == (500.0, 2001)
-    assert 1e-3 * level.std() == pytest.approx(1e-3 * said["profile_deviation_mm"], rel=1e-4)
-    assert Path(said["picture"]).stat().st_size > 3000
+    assert 1e-3 * level.std() == pytest.approx(1e-3 * stated["profile_deviation_mm"], rel=1e-4)
+    assert Path(stated["picture"]).stat().st_size > 3000
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from permway.errors import InputError
+from permway.formats.model_file import model_from_dict, read_model
 from permway.laws.toml import to_toml
-from permway.model.file import model_from_dict, read_model
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_additions import AirSpring, DamperSeries, FlexibleMode, Resonator
 from permway.model.vehicle_presets import crh380a
@@ -74,8 +74,8 @@ def test_nothing_added_is_the_rigid_car() -> None:
 
 
 def test_a_resonator_is_a_mass_on_a_spring() -> None:
-    hung = Resonator(on="wheelset2", mass_kg=80.0, frequency_Hz=50.0, loss_factor=0.1)
-    more = added(hung).dynamic_stiffness(BAND) - crh380a().dynamic_stiffness(BAND)
+    attached = Resonator(on="wheelset2", mass_kg=80.0, frequency_Hz=50.0, loss_factor=0.1)
+    more = added(attached).dynamic_stiffness(BAND) - crh380a().dynamic_stiffness(BAND)
     omega = 2.0 * np.pi * BAND
     spring = 80.0 * (2.0 * np.pi * 50.0) ** 2 * (1.0 + 0.1j)
     inertia = -80.0 * omega**2
@@ -83,7 +83,7 @@ def test_a_resonator_is_a_mass_on_a_spring() -> None:
     expected[:, 7, 7] = spring * inertia / (spring + inertia)
     scale = np.abs(crh380a().dynamic_stiffness(BAND)).max(axis=(1, 2))
     assert (np.abs(more - expected).max(axis=(1, 2)) <= 1e-12 * scale).all()
-    assert added(hung).static_wheel_load_N == pytest.approx(crh380a().static_wheel_load_N + 10.0 * 9.80665)
+    assert added(attached).static_wheel_load_N == pytest.approx(crh380a().static_wheel_load_N + 10.0 * 9.80665)
 
 
 def test_a_bending_wheelset_is_two_masses_and_a_spring() -> None:

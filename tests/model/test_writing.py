@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 from permway.errors import InputError
+from permway.formats.model_file import model_from_dict, read_model
+from permway.formats.model_writing import model_table
 from permway.laws import Given
 from permway.laws.toml import to_toml
-from permway.model.file import Model, model_from_dict, read_model
-from permway.model.writing import model_table
+from permway.problem.model import Model
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 MODELS = sorted(p for p in EXAMPLES.glob("*.toml") if not p.name.startswith("study"))

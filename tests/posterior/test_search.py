@@ -6,13 +6,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_chain, with_joints
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.verdict import NOVEL, UNPROVED
 from permway.laws import Springpot
 from permway.model.joints import GROUND, Joints
 from permway.posterior.diagnose import diagnose
-from permway.recordings.campaign import Campaign
 from simulated import CAMPAIGN, simulate
 
 Amend = Callable[[Campaign], Campaign]

@@ -24,9 +24,10 @@ from permway.laws import FractionalKelvinVoigt, FractionalZener, Hysteretic, Kel
 from permway.model.bodies import Beam, BeamChange, Mass, Shaft
 from permway.model.joints import GROUND, Joints
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.presets import slab_track_viaduct_32m
 from permway.model.shafts import ShaftChange
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 
 REACH_M = 30.0
 # The paper's pad at 20 and at -30 degC, as constants.

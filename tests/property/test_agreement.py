@@ -9,7 +9,7 @@ and cannot be better conditioned than they are. Entry by entry 1e-9 holds at abo
 import numpy as np
 import pytest
 from hypothesis import given, settings
-from permway.response.receptance import Place
+from permway.model.place import Place
 from strategies import both, magnitude, paper_line, respond, solvable
 
 TOLERANCE = 1e-9

@@ -23,8 +23,9 @@ from permway.model.bodies import BeamChange, Mass, Shaft
 from permway.model.changes import Change, Scatter
 from permway.model.joints import GROUND, Ends, Joints
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.shafts import ShaftChange
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from scipy.optimize import brentq
 from strategies import beams, between, decades, laws, shafts
 

@@ -11,7 +11,8 @@ from permway.laws import Hysteretic
 from permway.model.bodies import Beam, Mass
 from permway.model.joints import Joints
 from permway.model.line import Line
-from permway.response.receptance import Place, receptance
+from permway.model.place import Place
+from permway.response.receptance import receptance
 from strategies import (
     SOFT_PAD,
     STIFF_PAD,

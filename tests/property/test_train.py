@@ -7,10 +7,12 @@ from hypothesis import strategies as st
 from permway.model.contact import GivenContact
 from permway.model.irregularity import DensityTable
 from permway.model.line import Line
+from permway.model.place import Place
+from permway.model.train import Train
 from permway.model.vehicle_presets import VEHICLES
 from permway.response.pseudo import pseudo_excitation
-from permway.response.receptance import Place, receptance
-from permway.response.train import Train, train_response
+from permway.response.receptance import receptance
+from permway.response.train import train_response
 from strategies import decades, frequencies, paper_line
 
 FORMULATIONS = st.sampled_from(["chain", "receptance"])

@@ -6,8 +6,8 @@ import copy
 from pathlib import Path
 from typing import Any
 
+from permway.campaign.campaign import Campaign, read_campaign
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import Campaign, read_campaign
 
 MODEL: dict[str, Any] = {
     "format": 1,

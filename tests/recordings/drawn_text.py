@@ -56,11 +56,11 @@ def times(random: np.random.Generator, folder: Path) -> tuple[Path, Meaning]:
     kind = pick(random, "none", "remark", "seconds", "unit", "epoch", "clock")
     if kind == "remark":
         template, scale = list(_REMARKS.items())[int(random.integers(len(_REMARKS)))]
-        said = f"{rate * scale:.10g}"
-        said = said.replace(".", ",") if chance(random, 0.3) else said
+        expected = f"{rate * scale:.10g}"
+        expected = expected.replace(".", ",") if chance(random, 0.3) else expected
         if chance(random, 0.1) and rate >= 1000.0 and scale == 1.0:
-            said = f"{rate:,.0f}" if rate == round(rate) else said
-        remark = pick(random, "# ", "% ", "// ") + template.format(said)
+            expected = f"{rate:,.0f}" if rate == round(rate) else expected
+        remark = pick(random, "# ", "% ", "// ") + template.format(expected)
     elif kind != "none":
         column, label, unit, precision = _time_column(random, kind, rate, samples, comma)
         columns, head, below = [column, *columns], [label, *head], [unit, *below]
@@ -124,9 +124,14 @@ def _time_column(
     digits = int(random.integers(3, 10))
     cells = [_number(s / _TIME_UNITS[unit], f".{digits}f", comma) for s in t]
     worth = 10.0**-digits * _TIME_UNITS[unit]
-    said = "" if kind == "seconds" and chance(random, 0.5) else unit
+    expected = "" if kind == "seconds" and chance(random, 0.5) else unit
     # Even steps in few digits are taken as they stand; how far that may be off is what their last digit is worth.
-    return cells, pick(random, "time", "Time", "t", "Zeit"), said, max(1e-4, 1.1 * worth * rate / (samples - 1))
+    return (
+        cells,
+        pick(random, "time", "Time", "t", "Zeit"),
+        expected,
+        max(1e-4, 1.1 * worth * rate / (samples - 1)),
+    )
 
 
 def _written(lines: list[list[str]], separator: str, quoted: bool) -> str:
@@ -218,8 +223,8 @@ def frf_wide(random: np.random.Generator, folder: Path) -> tuple[Path, Meaning]:
         columns[0] = [cell.replace(".", ",") for cell in columns[0]]
     if not unit_row:
         at = 0 if not two_lines or form == "complex" else 1
-        for head, said in zip(heads[1:], units[1:], strict=True):
-            head[at] += f" [{said}]" if said else ""
+        for head, expected in zip(heads[1:], units[1:], strict=True):
+            head[at] += f" [{expected}]" if expected else ""
         heads[0][0] += f" [{hz}]" if hz else ""
     lines = [[" ".join(part for part in head if part) for head in heads]]
     if two_lines and form != "complex":

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from permway.recordings.importers.rubber_rig import MASSES_KG, RIG
+from permway.campaign.importers.rubber_rig import MASSES_KG, RIG
 
 MODULUS_PA = 5.0e6
 SHARE = 0.15

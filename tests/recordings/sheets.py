@@ -15,9 +15,10 @@ from permway.model.bodies import Beam
 from permway.model.irregularity import GermanSato
 from permway.model.joints import Joints
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.vehicle import Vehicle
 from permway.response.pseudo import pseudo_excitation, wheel_rail_forces
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from scipy import io
 
 SPACING = 0.64
@@ -128,11 +129,11 @@ def _line() -> Line:
 def _hammer(path: Path, line: Line, random: np.random.Generator) -> None:
     first, last, step = SHEET["hammer"]["lines_Hz"]
     frequency = np.arange(first, last + 1e-9, step)
-    spots = {
+    locations = {
         key: [Place(body=b, x_m=x, name=f"{b}@{x}") for b, x in SHEET["hammer"][key]]
         for key in ("sensors", "points")
     }
-    h = receptance(line, frequency, forces=spots["points"], sensors=spots["sensors"], threads=1)[
+    h = receptance(line, frequency, forces=locations["points"], sensors=locations["sensors"], threads=1)[
         "receptance"
     ].values
     accelerance = -((2.0 * np.pi * frequency)[:, None, None] ** 2) * h
@@ -144,8 +145,8 @@ def _hammer(path: Path, line: Line, random: np.random.Generator) -> None:
             "f": frequency,
             "frf": accelerance * np.exp(noise[0] + 1j * noise[1]),
             "coh": np.full(h.shape, COHERENCE),
-            "sensor": np.array([place.label for place in spots["sensors"]]),
-            "hammer": np.array([place.label for place in spots["points"]]),
+            "sensor": np.array([place.label for place in locations["sensors"]]),
+            "hammer": np.array([place.label for place in locations["points"]]),
         },
     )
 

@@ -10,10 +10,10 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from permway.recordings.campaign import Said
-from permway.recordings.campaign_parts import Condition, HeldOut, IrregularityKnown, Record
+from permway.campaign.campaign import CampaignFile
+from permway.campaign.parameters import Parameter
+from permway.campaign.parts import Condition, HeldOut, IrregularityKnown, Record
 from permway.recordings.channel import Chain, Point, Sensor
-from permway.recordings.parameters import Parameter
 from sheets import make_folder
 
 REFERENCE = (Path(__file__).resolve().parents[2] / "docs" / "campaign-file.md").read_text(encoding="utf-8")
@@ -28,9 +28,9 @@ def test_import_sheet(tmp_path: Path) -> None:
     make_folder(tmp_path / "team")
     done = permway("import", "sheet", "team", "-o", "out", "--json", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    said = json.loads(done.stdout)
-    assert said["records"] == 3
-    assert (tmp_path / said["campaign"]).is_file()
+    stated = json.loads(done.stdout)
+    assert stated["records"] == 3
+    assert (tmp_path / stated["campaign"]).is_file()
 
 
 def test_a_folder_without_a_sheet_ends_in_one_line(tmp_path: Path) -> None:
@@ -43,13 +43,13 @@ def test_a_folder_without_a_sheet_ends_in_one_line(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("block", BLOCKS, ids=range(len(BLOCKS)))
 def test_the_references_file_is_one(block: str) -> None:
-    assert Said.model_validate(tomllib.loads(block)).records
+    assert CampaignFile.model_validate(tomllib.loads(block)).records
 
 
 @pytest.mark.parametrize(
-    "record", [Said, Parameter, Sensor, Point, Chain, Condition, IrregularityKnown, Record, HeldOut]
+    "record", [CampaignFile, Parameter, Sensor, Point, Chain, Condition, IrregularityKnown, Record, HeldOut]
 )
-def test_the_reference_names_every_key(record: type[Said]) -> None:
+def test_the_reference_names_every_key(record: type[CampaignFile]) -> None:
     missing = [
         name for name in record.model_fields if f"`{name}`" not in REFERENCE and f"[{name}]" not in REFERENCE
     ]

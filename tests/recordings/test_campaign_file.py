@@ -1,4 +1,4 @@
-"""The campaign file: what it says, and that everything wrong in it ends in one sentence with its place."""
+"""The campaign file: what it states, and that everything wrong in it ends in one sentence with its place."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from typing import Any
 import numpy as np
 import pytest
 from campaigns import small, tables, write
+from permway.campaign.campaign import read_campaign
+from permway.campaign.load import Dataset
+from permway.campaign.paths import parse_path, written
 from permway.errors import InputError
-from permway.recordings.campaign import read_campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.campaign_paths import parse_path, written
 
 Table = dict[str, Any]
 
 
 def test_reads_what_it_says(tmp_path: Path) -> None:
     campaign = small(tmp_path)
-    assert [sensor.name for sensor in campaign.said.sensors] == ["rail@12", "deck@6", "axle", "floor"]
+    assert [sensor.name for sensor in campaign.stated.sensors] == ["rail@12", "deck@6", "axle", "floor"]
     assert campaign.condition("fast").speed_m_per_s == pytest.approx(50.0)
     assert campaign.sensor("deck@6").to_SI == 1e-3
     assert campaign.sensor("axle").noise_density == 1e-6
     assert campaign.parameters.names == ["pad.k", "pad.eta", "deck.E", "wheelset", "level", "gain"]
     assert campaign.parameters.nominal()["pad.k"] == 6.0e7
-    # The owner speaks of half a wheelset, the model file of a whole one.
+    # The user speaks of half a wheelset, the model file of a whole one.
     assert campaign.parameters.nominal()["wheelset"] == 890.0
 
 
@@ -221,20 +221,20 @@ def leading_out(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize("said", [False, True])
+@pytest.mark.parametrize("stated", [False, True])
 def test_a_path_leads_outside_only_where_the_reader_allows_it(
-    leading_out: Path, tmp_path: Path, said: bool
+    leading_out: Path, tmp_path: Path, stated: bool
 ) -> None:
     """What the file itself allows counts for nothing: it may be another's."""
     campaign, _ = tables()
     for name in ("../run.csv", "../inner/../run.csv", str(tmp_path / "run.csv")):
         campaign["records"][1]["file"] = name
-        write(leading_out.parent, {"allow_outside": said, **campaign})
+        write(leading_out.parent, {"allow_outside": stated, **campaign})
         (leading_out.parent / "run.csv").unlink()
         with pytest.raises(InputError, match=r"records\[1\].file: lies outside the campaign's folder.*allow"):
             read_campaign(leading_out)
         read = read_campaign(leading_out, allow_outside=True)
-        assert read.path(read.said.records[1]).samefile(tmp_path / "run.csv")
+        assert read.path(read.stated.records[1]).samefile(tmp_path / "run.csv")
 
 
 def test_a_link_out_of_the_folder_is_refused(leading_out: Path, tmp_path: Path) -> None:
@@ -297,12 +297,12 @@ def test_models_with_other_values(tmp_path: Path) -> None:
     assert campaign.model.train is not None
     # 890 kg stood for the file's 1780.
     assert model.train.vehicle.wheelset_mass_kg == pytest.approx(1780.0 * 1000.0 / 890.0)
-    # What was not named, and the owner's model, stay as they are.
+    # What was not named, and the nominal model, stay as they are.
     assert model.line.laws["bearing"] is campaign.model.line.laws["bearing"]
     assert campaign.model.line.laws["pad"].complex(10.0) == pytest.approx(6.0e7 * (1 + 0.15j))
     changed = campaign.with_values({"gain": 1.1, "level": -3.0})
     assert changed.sensor("rail@12").chain.gain == pytest.approx(1.1)
-    assert changed.said.irregularity.level_dB == -3.0
+    assert changed.stated.irregularity.level_dB == -3.0
     assert changed.sensor("deck@6").chain.gain == 1.0
 
 
@@ -358,13 +358,13 @@ def test_a_summary_names_the_file_that_was_read(tmp_path: Path) -> None:
     path = write(tmp_path).rename(tmp_path / "line 7, may.toml")
     campaign = read_campaign(path)
     changed = campaign.with_values({"pad.k": 5.0e7, "gain": 1.1})
-    others = changed.with_model(campaign.model), changed.with_records(campaign.said.records[:1])
+    others = changed.with_model(campaign.model), changed.with_records(campaign.stated.records[:1])
     for one in (campaign, changed, *others):
         assert one.summary()["campaign"] == str(path)
 
 
 def test_priors() -> None:
-    from permway.recordings.parameters import Known, Parameter
+    from permway.campaign.parameters import Known, Parameter
 
     plain = Parameter(name="k", paths="a.b", tolerance_2sigma=0.5)
     known = Known(plain, 2.0, True, 0.5 * math.atanh(0.5))
@@ -402,16 +402,16 @@ def test_an_amended_model_keeps_the_parameters_it_can(tmp_path: Path) -> None:
 
 
 def held(campaign: Any, name: str, dataset: Dataset) -> Any:
-    from permway.recordings.campaign_groups import held_out
+    from permway.campaign.groups import held_out
 
-    return held_out(campaign, next(g for g in campaign.said.held_out if g.name == name), dataset)
+    return held_out(campaign, next(g for g in campaign.stated.held_out if g.name == name), dataset)
 
 
 def test_held_out_groups_mark_what_they_hold(tmp_path: Path) -> None:
     import xarray as xr
 
     campaign = small(tmp_path)
-    blows, run = campaign.said.records
+    blows, run = campaign.stated.records
     frequency = np.arange(50.0, 201.0, 50.0)
     frf = Dataset(
         blows,

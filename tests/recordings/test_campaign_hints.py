@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 from campaigns import tables, write
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.load import load_record
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import load_record
 
 RATE = 512.0
 SAMPLES = np.random.default_rng(3).normal(size=(2, 3000))
@@ -29,7 +29,7 @@ def campaign_of(folder: Path, content: str | bytes, **record: Any) -> Campaign:
 
 
 def psd(campaign: Campaign) -> np.ndarray:
-    return np.asarray(load_record(campaign, campaign.said.records[1]).data["psd"].values)
+    return np.asarray(load_record(campaign, campaign.stated.records[1]).data["psd"].values)
 
 
 @pytest.fixture
@@ -69,7 +69,7 @@ def test_what_the_record_states_wins(
 
 
 @pytest.mark.parametrize(
-    ("keys", "said"),
+    ("keys", "expected"),
     [
         ({"header_row": -1}, "header_row"),
         ({"decimal": "x"}, "decimal"),
@@ -78,13 +78,13 @@ def test_what_the_record_states_wins(
         ({"axes": ["frequency", "response", "reference"]}, "axes.*goes with statistic 'frf'"),
     ],
 )
-def test_keys_that_cannot_be(keys: dict[str, Any], said: str, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=said):
+def test_keys_that_cannot_be(keys: dict[str, Any], expected: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=expected):
         campaign_of(tmp_path, "a\n1\n", **keys)
 
 
 @pytest.mark.parametrize(
-    ("unit", "stated", "said"),
+    ("unit", "stated", "expected"),
     [
         ("(mm/s2)/N", None, r"r / a.*\(got '\(mm/s2\)/N'\).*unit = \"\(m/s2\)/N\""),
         ("m/s2", None, "the sensor and the force point make it '\\(m/s2\\)/N'"),
@@ -95,7 +95,7 @@ def test_keys_that_cannot_be(keys: dict[str, Any], said: str, tmp_path: Path) ->
     ],
 )
 def test_responses_are_in_the_unit_of_sensor_over_force(
-    unit: str, stated: str | None, said: str, tmp_path: Path
+    unit: str, stated: str | None, expected: str, tmp_path: Path
 ) -> None:
     campaign, model = tables()
     campaign["records"][0] |= {"file": "frf.npz", "responses": {"r": "rail@12"}, "references": {"a": "hit"}}
@@ -108,9 +108,9 @@ def test_responses_are_in_the_unit_of_sensor_over_force(
         sensor=np.array(["r"]), hammer=np.array(["a"]), unit=unit,
     )  # fmt: skip
     read = read_campaign(path)
-    if said:
-        with pytest.raises(InputError, match=said):
-            load_record(read, read.said.records[0])
+    if expected:
+        with pytest.raises(InputError, match=expected):
+            load_record(read, read.stated.records[0])
     else:
-        data = load_record(read, read.said.records[0]).data
+        data = load_record(read, read.stated.records[0]).data
         np.testing.assert_array_equal(data["frf"].values.ravel(), np.full(4, 1j))

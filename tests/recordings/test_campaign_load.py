@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import xarray as xr
 from campaigns import tables, write
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.load import Dataset, load_record
+from permway.campaign.predict import predict, why_not
+from permway.campaign.welch import cross_spectra_of
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import Dataset, load_record
-from permway.recordings.campaign_welch import cross_spectra_of
 from permway.recordings.estimates.welch import cross_spectra
-from permway.recordings.predict import predict, why_not
 from permway.recordings.record import TimeRecord
 
 RATE = 512.0
@@ -46,7 +46,7 @@ def campaign(tmp_path: Path) -> Campaign:
 
 
 def test_frequency_responses_by_name_and_in_SI(campaign: Campaign) -> None:
-    data = load_record(campaign, campaign.said.records[0]).data
+    data = load_record(campaign, campaign.stated.records[0]).data
     assert data["frf"].dims == ("sensor", "force", "frequency")
     assert data["sensor"].values.tolist() == ["rail@12", "deck@6"]
     assert data["force"].values.tolist() == ["hit", "hit far"]
@@ -64,7 +64,7 @@ def test_frequency_responses_by_name_and_in_SI(campaign: Campaign) -> None:
 
 
 def test_runs_are_welchs_estimates_in_SI(campaign: Campaign) -> None:
-    data = load_record(campaign, campaign.said.records[1]).data
+    data = load_record(campaign, campaign.stated.records[1]).data
     plain = cross_spectra(SAMPLES, sampling_Hz=RATE, segment_s=1.0)
     lines = plain["frequency"].values
     kept = (lines > 0.0) & plain["usable"].values
@@ -127,7 +127,7 @@ def test_a_run_without_a_rate_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_pair_that_was_not_measured_stays_empty(tmp_path: Path) -> None:
-    import permway.recordings.campaign_load as module
+    import permway.campaign.load as module
     from permway.recordings.record import FrfRecord
 
     (tmp_path / "frf.npz").write_bytes(b"later")
@@ -142,7 +142,7 @@ def test_a_pair_that_was_not_measured_stays_empty(tmp_path: Path) -> None:
     )
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "read_frf", lambda *_, **__: three)
-        data = load_record(campaign, campaign.said.records[0]).data
+        data = load_record(campaign, campaign.stated.records[0]).data
     assert np.isnan(data["frf"].sel(sensor="deck@6", force="hit").values).all()
     assert np.isfinite(data["frf"].sel(sensor="deck@6", force="hit far").values).all()
     assert np.isnan(data["log_variance"].sel(sensor="deck@6", force="hit").values).all()
@@ -153,7 +153,7 @@ def test_responses_without_coherence_or_averages_are_refused_for_nothing_says_ho
     tmp_path: Path,
 ) -> None:
     campaign = campaign_with(tmp_path)
-    record = campaign.said.records[0]
+    record = campaign.stated.records[0]
     with np.load(tmp_path / "frf.npz") as file:
         arrays = dict(file)
     bare = {name: array for name, array in arrays.items() if name != "coh"}
@@ -202,7 +202,7 @@ def test_one_row_of_a_table_in_bands(tmp_path: Path) -> None:
     ("record", "what"),
     [
         ({"select": {"rail": "left"}}, "2 rows say this"),
-        ({"select": {"test": 9}}, "no row says this"),
+        ({"select": {"test": 9}}, "no row states this"),
         ({"select": {"tester": 1}}, "select.tester: the table has no such column"),
         ({"select": {"test": 3}}, "not a number"),
         ({"select": {"test": 3}, "band_Hz": [90.0, 130.0]}, "above 0 dB/m"),

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import tables_of_modes as tables
+from permway.campaign.campaign import read_campaign
+from permway.campaign.groups import held_out
+from permway.campaign.parts import HeldOut
+from permway.campaign.predict import predict
 from permway.errors import InputError
-from permway.recordings.campaign import read_campaign
-from permway.recordings.campaign_groups import held_out
-from permway.recordings.campaign_parts import HeldOut
-from permway.recordings.predict import predict
 
 
 def loaded(path: Path):

@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 import passages
 import pytest
+from permway.campaign.campaign import read_campaign
+from permway.campaign.passage import spectrum_of
+from permway.campaign.predict import predict
 from permway.errors import InputError
 from permway.model.line import Line
-from permway.recordings.campaign import read_campaign
-from permway.recordings.campaign_passage import spectrum_of
-from permway.recordings.predict import predict
+from permway.model.place import Place
 from permway.response.passby import Axles, passby
-from permway.response.receptance import Place
 from scipy.interpolate import CubicSpline
 
 LEFT = {"w": 3e-4, "v": 2e-3, "a": 3e-3, "e": 1.5e-3, "M": 1.5e-3}
@@ -159,15 +159,15 @@ def test_noise_is_that_of_the_time_before_the_train(tmp_path: Path) -> None:
     values = passages.history("w", time, 0.02) + sd * np.random.default_rng(5).standard_normal(time.size)
     campaign = read_campaign(passages.write(tmp_path / "a", {"w": values}))
     (dataset,) = campaign.load()
-    told = dataset.data["noise_sd"].values[0, 0]
+    reported = dataset.data["noise_sd"].values[0, 0]
     # So much does white noise of this size scatter the real part of a line.
     lines = spectrum_of(1e-3 * sd * np.random.default_rng(6).standard_normal((400, time.size)), passages.RATE_HZ)
-    assert told == pytest.approx(lines[:, 40].real.std(), rel=0.15)
+    assert reported == pytest.approx(lines[:, 40].real.std(), rel=0.15)
     table = passages.campaign("w")
     table["sensors"][0]["chain"] = {"noise_floor": 2.0 * sd**2 / passages.RATE_HZ}
     stated = read_campaign(passages.write(tmp_path / "b", {"w": values}, table=table))
     (other,) = stated.load()
-    assert other.data["noise_sd"].values[0, 0] == pytest.approx(told, rel=0.15)
+    assert other.data["noise_sd"].values[0, 0] == pytest.approx(reported, rel=0.15)
 
 
 def late_entry(table: dict) -> None:
@@ -238,7 +238,7 @@ def strain_of_spectra(table: dict) -> None:
 @pytest.mark.parametrize(
     ("amend", "words"),
     [
-        (late_entry, "nothing tells the noise"),
+        (late_entry, "nothing states the noise"),
         (no_band, "predicted up to the end of its band"),
         (high_band, "reaches beyond 80 Hz"),
         (short_window, "is shorter than record and passage"),

@@ -9,16 +9,15 @@ import numpy as np
 import pytest
 import xarray as xr
 from campaigns import small, tables, write
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.load import Dataset, log_variance
+from permway.campaign.predict import plan, predict, request_of
+from permway.campaign.predict.run import solved_lines
+from permway.campaign.predict.sweeps import Request, Result
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import Dataset, log_variance
-from permway.recordings.campaign_tables import table_derivatives
-from permway.recordings.campaign_tables import tables as compiled
+from permway.model.place import Place
 from permway.recordings.estimates.decay_rate import grid_positions, track_decay_rate
-from permway.recordings.predict import need_of, plan, predict
-from permway.recordings.predict.run import solved_lines
-from permway.recordings.predict.sweeps import Answer, Need
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from permway.response.train import train_response
 
 FREQUENCY = np.arange(10.0, 121.0, 2.0)
@@ -26,7 +25,7 @@ FREQUENCY = np.arange(10.0, 121.0, 2.0)
 
 def blank(campaign: Campaign, name: str, variable: str, **coordinates: Any) -> Dataset:
     """A dataset of zeros with the coordinates of a record."""
-    record = next(r for r in campaign.said.records if r.name == name)
+    record = next(r for r in campaign.stated.records if r.name == name)
     shape = [len(c) for c in coordinates.values()]
     data = xr.Dataset({variable: (list(coordinates), np.zeros(shape, dtype=complex))}, coords=coordinates)
     return Dataset(record, campaign.condition(record.condition), data)
@@ -68,21 +67,21 @@ def test_a_hammer_test_is_receptance_through_the_chains(tmp_path: Path) -> None:
 
 def test_records_of_one_temperature_and_of_the_same_lines_share_one_solve(tmp_path: Path) -> None:
     campaign = small(tmp_path)
-    hammer, train = (need_of(campaign, d) for d in (blows(campaign), run(campaign)))
+    hammer, train = (request_of(campaign, d) for d in (blows(campaign), run(campaign)))
     assert hammer is not None
     assert train is not None
-    mine = Need(hammer.temperature_C, hammer.frequency_Hz.copy(), (("rail", 1.0),), (("rail", 2.0),))
+    mine = Request(hammer.temperature_C, hammer.frequency_Hz.copy(), (("rail", 1.0),), (("rail", 2.0),))
     shared, wheels = plan([hammer, mine, train])
     # Two sensors, and one place of another record; four wheels push at lines of their own.
     assert len(shared.forces) == 3
     assert len(wheels.forces) == 4
-    cold = Need(-10.0, hammer.frequency_Hz, (("rail", 1.0),), (("rail", 2.0),))
+    cold = Request(-10.0, hammer.frequency_Hz, (("rail", 1.0),), (("rail", 2.0),))
     assert len(plan([cold, hammer, mine])) == 2
-    answer = Answer(shared, np.zeros((shared.frequency_Hz.size, len(shared.sensors), 3), dtype=complex))
+    answer = Result(shared, np.zeros((shared.frequency_Hz.size, len(shared.sensors), 3), dtype=complex))
     with pytest.raises(InputError, match="pair is not in the sweep"):
-        answer.of(Need(12.0, FREQUENCY, (("deck", 1.0),), (("rail", 2.0),)))
+        answer.of(Request(12.0, FREQUENCY, (("deck", 1.0),), (("rail", 2.0),)))
     with pytest.raises(InputError, match="of another temperature, factor or frequency"):
-        answer.of(Need(12.0, np.array([0.123]), (("rail", 12.0),), (("rail", 12.0),)))
+        answer.of(Request(12.0, np.array([0.123]), (("rail", 12.0),), (("rail", 12.0),)))
 
 
 def test_a_run_is_the_trains_response(tmp_path: Path) -> None:
@@ -198,7 +197,7 @@ def test_masses_on_a_shaken_ground(tmp_path: Path) -> None:
 
 def test_a_materials_table_is_its_law(tmp_path: Path) -> None:
     campaign = rig(tmp_path)
-    record = campaign.said.records[1]
+    record = campaign.stated.records[1]
     data = xr.Dataset(
         {"modulus": ("point", np.zeros(3, dtype=complex))}, coords={"frequency": ("point", [1.0, 10.0, 5.0])}
     )
@@ -251,41 +250,6 @@ def test_what_cannot_be_predicted_is_said(tmp_path: Path, change: dict[str, Any]
     read = read_campaign(write(tmp_path, campaign, model))
     with pytest.raises(InputError, match=what):
         predict(read, [run(read)])
-
-
-def test_tables_follow_the_parameters(tmp_path: Path) -> None:
-    campaign = small(tmp_path)
-    values = {"pad.k": 7.0e7, "wheelset": 950.0}
-    frequency = np.array([10.0, 50.0])
-    found = table_derivatives(campaign, values, frequency, 12.0)
-    model = campaign.model_with(values)
-    at = compiled(model, frequency, 12.0)
-    sigma = {name: known.sigma for name, known in campaign.parameters.known.items()}
-    # Of ln k: dk/dz = sigma k.
-    assert found["pad.k"].laws[:, 0] == pytest.approx(sigma["pad.k"] * at.laws[:, 0], rel=1e-6)
-    assert not found["pad.k"].laws[:, 1].any()
-    assert found["pad.eta"].laws[:, 0] == pytest.approx(1j * sigma["pad.eta"] * at.laws[:, 0].imag, rel=1e-6)
-    assert found["deck.E"].bending == pytest.approx([0.0, sigma["deck.E"] * at.bending[1]], rel=1e-6)
-    assert not found["deck.E"].mass.any()
-    # Half of a wheelset of 1780 * 950/890 kg.
-    mass = 0.5 * 1780.0 * 950.0 / 890.0
-    wheel = -((2.0 * np.pi * frequency) ** 2) * mass * sigma["wheelset"]
-    assert found["wheelset"].vehicle[:, 6, 6] == pytest.approx(wheel, rel=1e-6)
-    assert not found["wheelset"].vehicle[:, 0, 0].any()
-    for name in ("level", "gain"):
-        assert not any(np.any(getattr(found[name], f)) for f in ("laws", "bending", "vehicle", "scale", "masses"))
-    assert list(table_derivatives(campaign, {}, frequency, names=["deck.E"])) == ["deck.E"]
-    with pytest.raises(InputError, match="no such parameter"):
-        table_derivatives(campaign, {}, frequency, names=["pod"])
-
-
-def test_tables_are_what_the_core_is_given(tmp_path: Path) -> None:
-    model = small(tmp_path).model
-    at = compiled(model, [20.0])
-    assert at.scale == pytest.approx(model.line.joint_table().scale)
-    assert at.laws == pytest.approx(model.line.stiffness([20.0], 12.0))
-    assert at.contact == pytest.approx([1.0 / 1.3e9])
-    assert at.masses.size == 0
 
 
 def test_variance_of_an_estimated_frequency_response() -> None:

@@ -12,19 +12,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.importers.pad_materials import import_pad_materials
+from permway.campaign.importers.rubber_rig import import_rubber_rig
+from permway.campaign.importers.sheet import import_sheet
+from permway.campaign.importers.track_decay import import_track_decay
+from permway.campaign.load import Dataset
+from permway.campaign.predict import predict
 from permway.diagnosis.diagnose import diagnose
 from permway.laws import TFDV, FractionalKelvinVoigt, FractionalZener, Hysteretic, Pad
 from permway.model.bodies import Mass
 from permway.model.changes import Change
-from permway.model.file import Model
 from permway.model.joints import Joints
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.importers.pad_materials import import_pad_materials
-from permway.recordings.importers.rubber_rig import import_rubber_rig
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.importers.track_decay import import_track_decay
-from permway.recordings.predict import predict
+from permway.problem.model import Model
 from scipy import optimize
 
 SHARED = Path(__file__).resolve().parents[3] / "shared"
@@ -44,24 +44,24 @@ MESH_NEPER = 0.02
 @pytest.mark.parametrize("name", SEALED)
 def test_sealed_campaigns_import(name: str, tmp_path: Path) -> None:
     campaign = import_sheet(SHARED / "campaigns" / name, tmp_path / name)
-    hammers = [r for r in campaign.said.records if r.statistic == "frf"]
-    runs = [r for r in campaign.said.records if r.statistic == "csd"]
+    hammers = [r for r in campaign.stated.records if r.statistic == "frf"]
+    runs = [r for r in campaign.stated.records if r.statistic == "csd"]
     assert len(hammers) == len(
         json.loads((SHARED / "campaigns" / name / "sheet.json").read_text())["temperature_C"]
     )
     assert len(runs) == 2
     assert all(record.interpolated_Hz is not None for record in runs)
-    assert read_campaign(tmp_path / name / "campaign.toml").said == campaign.said
+    assert read_campaign(tmp_path / name / "campaign.toml").stated == campaign.stated
 
 
 def with_truth(campaign: Campaign, truth: dict[str, Any]) -> Campaign:
     """The campaign with its true parameters and, by hand, its true effect."""
     values = {f"{group}.{key}": v for group, table in truth["parameters"].items() for key, v in table.items()}
-    told = campaign.with_values(values)
-    model = told.model
+    reported = campaign.with_values(values)
+    model = reported.model
     for effect in truth["fx"]:
         model = _amended(model, effect, truth["parameters"])
-    return told.with_model(model)
+    return reported.with_model(model)
 
 
 def _amended(model: Model, effect: dict[str, Any], parameters: dict[str, Any]) -> Model:
@@ -90,9 +90,9 @@ def _amended(model: Model, effect: dict[str, Any], parameters: dict[str, Any]) -
 def test_with_the_truth_put_in_only_noise_is_left(name: str, tmp_path: Path) -> None:
     campaign = import_sheet(SHARED / "campaigns" / name, tmp_path / name)
     truth = json.loads((SHARED / "campaigns" / name / "truth.json").read_text())
-    told = with_truth(campaign, truth)
+    reported = with_truth(campaign, truth)
     datasets = campaign.load()
-    blows, *runs = zip(datasets, predict(told, datasets, threads=1), strict=True)
+    blows, *runs = zip(datasets, predict(reported, datasets, threads=1), strict=True)
     _check_blows(*blows)
     for run, predicted in runs:
         _check_run(run, predicted)
@@ -213,19 +213,19 @@ def test_track_decay_at_13_to_15_degrees(tmp_path: Path, support: str, both: flo
     average["decay_rate"] = (warm[0].data["decay_rate"] + warm[1].data["decay_rate"]) / 2.0
     target = Dataset(warm[0].record, warm[0].condition, average)
 
-    def told(z: np.ndarray) -> Campaign:
+    def reported(z: np.ndarray) -> Campaign:
         return campaign.with_values(
             {name: known[name].value(value) for name, value in zip(FITTED, z, strict=True)}
         )
 
     def deviation(z: np.ndarray) -> np.ndarray:
-        predicted = predict(told(z), [target], threads=1)[0]
+        predicted = predict(reported(z), [target], threads=1)[0]
         return np.concatenate([deviation_dB(target, predicted), 0.05 * z])
 
     found = optimize.least_squares(
         deviation, np.zeros(len(FITTED)), bounds=(-6.0, 6.0), diff_step=1e-2, max_nfev=40
     )
-    predicted = predict(told(found.x), warm, threads=1)
+    predicted = predict(reported(found.x), warm, threads=1)
     rails = np.concatenate([deviation_dB(d, p) for d, p in zip(warm, predicted, strict=True)])
     assert np.sqrt(np.mean(rails**2)) < both
     assert np.sqrt(np.mean(deviation_dB(target, predicted[0]) ** 2)) < mean

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from campaigns import tables, write
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.factors import campaign_under
+from permway.campaign.predict import plan, predict, request_of
 from permway.diagnosis.evidence import Evidence
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_factors import campaign_under
-from permway.recordings.predict import need_of, plan, predict
 from test_campaign_predict import FREQUENCY, blows, run
 
 PAD, MASS = "line.laws.pad.stiffness", "train.vehicle.wheelset_mass_kg"
@@ -46,7 +46,7 @@ def test_a_factor_acts_under_its_condition_only(tmp_path: Path) -> None:
 def test_only_factors_on_the_line_ask_for_a_solve_of_their_own(tmp_path: Path) -> None:
     for factors, count in (({}, 1), ({PAD: 1.0}, 1), ({MASS: 0.9}, 1), ({PAD: 1.2}, 2)):
         campaign = with_factors(tmp_path / "c", fast=factors)
-        needs = [need_of(campaign, dataset) for dataset in (blows(campaign), run(campaign))]
+        needs = [request_of(campaign, dataset) for dataset in (blows(campaign), run(campaign))]
         # At other lines a run is solved by itself.
         alike = [replace(need, frequency_Hz=FREQUENCY) for need in needs if need is not None]
         assert len(plan(alike)) == count
@@ -76,7 +76,7 @@ def test_what_was_solved_is_used_again_where_nothing_changed(
 
     monkeypatch.setattr(module, "solve", counted)
     changed = with_factors(tmp_path / "b", fast={PAD: 1.5})
-    again = evidence.predicted(replace(plain, said=changed.said), solved)
+    again = evidence.predicted(replace(plain, stated=changed.stated), solved)
     assert len(calls) == 1
     fresh = evidence.predicted(changed)
     for mine, other in zip(again.datasets, fresh.datasets, strict=True):

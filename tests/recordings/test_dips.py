@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from permway.recordings.campaign_excitation import Dips
+from permway.campaign.excitation import Dips
 from scipy.signal import welch
 
 WELDS = Dips(depth_m=6e-4, length_m=0.5, every_m=18.0)

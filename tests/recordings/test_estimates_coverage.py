@@ -4,7 +4,7 @@ Covered means: the truth at the line itself, not smeared by the window. So what 
 against the interval, and the resolution is chosen as a user would choose it, by `segment_for_peak`.
 
 The seed, 4, was not chosen among others; docs/estimates.md lists what others give.
-Lines that detrending touches are left out, as the dataset says (`usable`).
+Lines that detrending touches are left out, as the dataset states (`usable`).
 """
 
 import numpy as np

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lines import hysteretic, supported, uic60
 from permway.errors import InputError
+from permway.model.place import Place
 from permway.recordings.estimates.decay_rate import (
     TruncationWarning,
     band_response,
@@ -19,7 +20,7 @@ from permway.recordings.estimates.decay_rate import (
     grid_positions,
     track_decay_rate,
 )
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 
 NEPER_DB = 20.0 * np.log10(np.e)
 
@@ -162,7 +163,7 @@ def test_intervals_cover(rate):
 
 
 def test_noise_bias_is_said():
-    """Noise at half the response's size at the far places lowers the rate as read, by what the dataset says."""
+    """Noise at half the response's size at the far places lowers the rate as read, by what the dataset states."""
     rng = np.random.default_rng(3)
     position = grid_positions(0.6)
     exact = exponential(2.0, position)
@@ -174,9 +175,9 @@ def test_noise_bias_is_said():
     found = track_decay_rate(estimate, position, variance=np.broadcast_to(variance, shape), warn=False)
     truth = float(track_decay_rate(exact, position, warn=False)["decay_rate"][0])
     met = -10.0 * np.log10(np.mean(truth / found["decay_rate"].values))
-    said = -10.0 * np.log10(np.mean(10.0 ** (-found["noise_bias_dB"].values / 10.0)))
-    assert said < -0.3
-    assert met == pytest.approx(said, rel=0.1)
+    stated = -10.0 * np.log10(np.mean(10.0 ** (-found["noise_bias_dB"].values / 10.0)))
+    assert stated < -0.3
+    assert met == pytest.approx(stated, rel=0.1)
 
 
 def test_bands_of_noisy_lines():

@@ -80,7 +80,7 @@ def test_neighbouring_lines_of_a_hann_window():
 
 
 def test_variance_and_covariance_of_white_noise():
-    """The variance of a line's power is 1/K of its square, at the ends 2/K; neighbours covary as said."""
+    """The variance of a line's power is 1/K of its square, at the ends 2/K; neighbours covary as stated."""
     record = noise((3000, 64 * 6), seed=2)
     layout = segments(64 * 6, sampling_Hz=1.0, segment_s=64.0)
     cut = np.lib.stride_tricks.sliding_window_view(record, 64, axis=1)[:, :: layout.step]
@@ -165,7 +165,7 @@ def test_through_a_window():
 
 
 def test_welch_gives_in_the_mean_what_the_window_shows():
-    """Over 400 records a peak four lines wide is biased, and by as much as said."""
+    """Over 400 records a peak four lines wide is biased, and by as much as stated."""
     rng, length, period = np.random.default_rng(6), 128, 2048
     frequency = np.fft.rfftfreq(period, 1.0 / RATE)
     density = 1.0 / (1.0 + (2.0 * (frequency - 250.0) / 30.0) ** 2) + 1e-3

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from folders import make_rig, make_shaken
+from permway.campaign.importers.rubber_rig import import_rubber_rig
+from permway.campaign.predict import predict
 from permway.errors import InputError
-from permway.recordings.importers.rubber_rig import import_rubber_rig
-from permway.recordings.predict import predict
 
 BOTH = ("01g_253g", "1g_253g", "1g_573g")
 
@@ -24,15 +24,15 @@ def test_both_levels_are_read(tmp_path: Path, law: str) -> None:
         "1g_573g": "shaker_1g",
     }
     # One mass on one pair of rings, whatever it was shaken at.
-    assert [sensor.name for sensor in campaign.said.sensors] == ["mass_253g", "mass_573g"]
+    assert [sensor.name for sensor in campaign.stated.sensors] == ["mass_253g", "mass_573g"]
     assert [d.names("channel") for d in shaken] == [["mass_253g"], ["mass_253g"], ["mass_573g"]]
-    groups = {group.name: group.members for group in campaign.said.held_out}
+    groups = {group.name: group.members for group in campaign.stated.held_out}
     assert groups["level 01g"] == ("01g_253g",)
     assert groups["level 1g"] == ("1g_253g", "1g_573g")
 
 
 def test_each_level_is_predicted_for_its_mass(tmp_path: Path) -> None:
-    """By the law that the DMA table tells, which is the one that the records were made of, and a softer one."""
+    """By the law that the DMA table states, which is the one that the records were made of, and a softer one."""
     folder = make_rig(tmp_path / "rig", BOTH)
     for name in ("1g_253g", "1g_573g"):
         make_shaken(folder / "rubber" / "shaker" / f"{name}.csv", softer=0.8)
@@ -48,7 +48,7 @@ def test_each_level_is_predicted_for_its_mass(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "what"), [("253g", "says not both a level and a mass"), ("1g_heavy", "says no mass")]
+    ("name", "what"), [("253g", "states not both a level and a mass"), ("1g_heavy", "states no mass")]
 )
 def test_a_record_that_does_not_say_level_and_mass_is_refused(tmp_path: Path, name: str, what: str) -> None:
     folder = make_rig(tmp_path / "rig", BOTH)

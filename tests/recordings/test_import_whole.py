@@ -15,14 +15,14 @@ import numpy as np
 import permway
 import pytest
 from folders import make_decay, make_pads, make_rig
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.importers import writing
+from permway.campaign.importers.pad_materials import import_pad_materials
+from permway.campaign.importers.rubber_rig import import_rubber_rig
+from permway.campaign.importers.sheet import import_sheet
+from permway.campaign.importers.track_decay import import_track_decay
 from permway.errors import InputError
 from permway.files import LEFT_BEHIND_S
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.importers import writing
-from permway.recordings.importers.pad_materials import import_pad_materials
-from permway.recordings.importers.rubber_rig import import_rubber_rig
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.importers.track_decay import import_track_decay
 from sheets import make_folder
 
 Run = Callable[[Path, Path], Any]
@@ -72,7 +72,7 @@ def before(which: str, given: dict[str, Path], folder: Path, older: bool) -> Pat
         IMPORTERS[which](given[which], out)
         for path in [*out.rglob("*.toml")]:
             path.write_text(path.read_text() + "# older\n")
-        (out / "notes.txt").write_text("of the owner\n")
+        (out / "notes.txt").write_text("of the user\n")
     return out
 
 
@@ -116,7 +116,7 @@ def test_whatever_call_fails(which: str, older: bool, given: dict[str, Path], tm
     for number in np.unique(np.linspace(1, count.seen, STEPS).round()).astype(int):
         with pytest.raises((BrokenError, InputError)) as failed:
             profiled(lambda: IMPORTERS[which](given[which], out), FailsAt(int(number)))
-        # Whatever fails while a file is read, its reader says that the file cannot be read, and why.
+        # Whatever fails while a file is read, its reader states that the file cannot be read, and why.
         assert isinstance(failed.value, BrokenError) or "BrokenError" in str(failed.value)
         assert tree(tmp_path) == was, f"after call {number} of {count.seen}"
 
@@ -157,8 +157,8 @@ def test_whatever_the_disk_refuses(
                 IMPORTERS[which](given[which], out)
                 break
             except InputError as error:
-                said = str(error)
-        assert "No space left on device" in said
+                stated = str(error)
+        assert "No space left on device" in stated
         assert tree(tmp_path) == was, f"after call {refused} of {name}"
         refused += 1
     assert refused >= 1
@@ -198,7 +198,7 @@ def test_stages_that_killed_imports_left_are_taken_away_after_a_while(
     for path in left.values():
         (path / "new").mkdir(parents=True)
         (path / "replaced").mkdir()
-    (left["keeps"] / "replaced" / "0").write_text("of the owner\n")
+    (left["keeps"] / "replaced" / "0").write_text("of the user\n")
     long_ago = time.time() - LEFT_BEHIND_S - 1.0
     for name in ("old", "keeps"):
         os.utime(left[name], (long_ago, long_ago))
@@ -224,7 +224,7 @@ def test_a_record_that_cannot_be_read(which: str, given: dict[str, Path], tmp_pa
 def test_what_is_beside_stays(which: str, given: dict[str, Path], tmp_path: Path) -> None:
     out = before(which, given, tmp_path, older=True)
     IMPORTERS[which](given[which], out)
-    assert (out / "notes.txt").read_text() == "of the owner\n"
+    assert (out / "notes.txt").read_text() == "of the user\n"
     assert all("# older" not in path.read_text() for path in out.rglob("*.toml"))
     assert not [path for path in tmp_path.rglob("*") if path.name.endswith(".part")]
 

@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 import pytest
 from folders import make_pads
+from permway.campaign.campaign import Campaign
+from permway.campaign.importers.pad_materials import import_pad_materials
+from permway.campaign.importers.rubber_rig import import_rubber_rig
+from permway.campaign.importers.sheet import import_sheet
+from permway.campaign.importers.sheet_form import read_sheet
+from permway.campaign.importers.track_decay import import_track_decay
+from permway.campaign.predict import predict
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
-from permway.recordings.importers.pad_materials import import_pad_materials
-from permway.recordings.importers.rubber_rig import import_rubber_rig
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.importers.sheet_form import read_sheet
-from permway.recordings.importers.track_decay import import_track_decay
-from permway.recordings.predict import predict
 from sheets import NOISE, RATE_HZ, SHEET, make_folder
 
 
@@ -41,7 +41,7 @@ def test_the_campaigns_folder_is_complete_in_itself(campaign: Campaign) -> None:
         "run_180kmh.npz",
         "run_252kmh.npz",
     ]
-    assert "/" not in "".join(record.file for record in campaign.said.records)
+    assert "/" not in "".join(record.file for record in campaign.stated.records)
 
 
 def test_what_the_sheet_says_is_in_the_campaign(campaign: Campaign) -> None:
@@ -61,9 +61,9 @@ def test_what_the_sheet_says_is_in_the_campaign(campaign: Campaign) -> None:
     assert mortar[0] == pytest.approx(0.5 * mortar[1])
     floor = campaign.sensor("carbody").chain.noise_floor
     assert floor == pytest.approx(2.0 * NOISE**2 / RATE_HZ, rel=0.2)
-    assert all(record.interpolated_Hz is None for record in campaign.said.records)
+    assert all(record.interpolated_Hz is None for record in campaign.stated.records)
     # The sheet has the irregularity move.
-    assert campaign.said.irregularity.rolling is False
+    assert campaign.stated.irregularity.rolling is False
 
 
 def test_records_are_predicted_within_their_noise(campaign: Campaign) -> None:
@@ -89,7 +89,7 @@ def test_records_are_predicted_within_their_noise(campaign: Campaign) -> None:
 
 def test_runs_that_were_interpolated_are_recognised(tmp_path: Path) -> None:
     campaign = import_sheet(make_folder(tmp_path / "team", interpolated=True), tmp_path / "out")
-    runs = campaign.said.records[1:]
+    runs = campaign.stated.records[1:]
     assert [record.interpolated_Hz for record in runs] == [((0.0, 0.5), (30.0, 1.0))] * 2
     datasets = campaign.load()[1:]
     for run, spectrum in zip(datasets, predict(campaign, datasets, threads=1), strict=True):
@@ -102,8 +102,8 @@ def test_runs_that_were_interpolated_are_recognised(tmp_path: Path) -> None:
 def test_records_can_stay_where_they_are(folder: Path, tmp_path: Path) -> None:
     campaign = import_sheet(folder, tmp_path / "out", copy=False)
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["campaign.toml", "model.toml"]
-    assert campaign.said.allow_outside
-    assert campaign.path(campaign.said.records[0]) == folder / "hammer_+12C.mat"
+    assert campaign.stated.allow_outside
+    assert campaign.path(campaign.stated.records[0]) == folder / "hammer_+12C.mat"
 
 
 def test_a_second_import_says_the_same(folder: Path, campaign: Campaign, tmp_path: Path) -> None:
@@ -206,7 +206,7 @@ def test_two_files_of_one_name_are_not_chosen_between(folder: Path, tmp_path: Pa
 
 
 def test_the_model_file_is_one_that_can_be_solved(campaign: Campaign) -> None:
-    from permway.model.file import read_model
+    from permway.formats.model_file import read_model
 
     text = (campaign.folder / "model.toml").read_text()
     assert tomllib.loads(text)["irregularity"] == {"type": "german_sato", "continuous": True, "exponent": 3.06}
@@ -216,7 +216,7 @@ def test_the_model_file_is_one_that_can_be_solved(campaign: Campaign) -> None:
 def test_the_floor_of_a_channel_much_noisier_than_its_like_is_that_of_the_others(
     folder: Path, tmp_path: Path
 ) -> None:
-    """Else the model would hold for right what its owner would call a fault."""
+    """Else the model would hold for right what the user would call a fault."""
     noisy = Path(shutil.copytree(folder, tmp_path / "deck"))
     random = np.random.default_rng(3)
     for path in noisy.glob("run_*.npz"):

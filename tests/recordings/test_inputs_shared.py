@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import read_campaign
 from permway.errors import InputError
-from permway.recordings.campaign import read_campaign
 from permway.recordings.readers import read_frf, read_time
 from permway.recordings.readers.hints import Hints
 from permway.units import parse_unit

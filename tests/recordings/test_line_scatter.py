@@ -1,4 +1,4 @@
-"""Noise told by the scatter of neighbouring lines: against noise that is known, of responses in closed form."""
+"""Noise by the scatter of neighbouring lines: against noise that is known, of responses in closed form."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 from campaigns import tables, write
+from permway.campaign.campaign import Campaign, read_campaign
 from permway.diagnosis.thinning import thinned
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
 from permway.recordings.line_scatter import FREEDOM, scatter_variance
 
 SIGMA = 0.02

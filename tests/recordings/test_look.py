@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 import pyuff
 import written
+from permway.campaign.parts import Record
 from permway.cli import app
 from permway.errors import InputError
-from permway.recordings.campaign_parts import Record
 from permway.recordings.channel import Point, Sensor
 from permway.recordings.look import Asked, look
 from permway.recordings.readers import read_frf, read_time

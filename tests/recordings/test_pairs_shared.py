@@ -10,9 +10,9 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from permway.recordings.campaign import read_campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import predict
+from permway.campaign.campaign import read_campaign
+from permway.campaign.load import Dataset
+from permway.campaign.predict import predict
 
 ROOT = Path(__file__).parents[2]
 RECORDINGS = ROOT.parent / "shared" / "recordings"
@@ -91,7 +91,7 @@ def test_levels_state_what_each_level_is(tmp_path: Path) -> None:
             if damping is not None:
                 assert law.damping / (2.0 * mass * omega) == pytest.approx(damping, abs=0.003)
         whole = read_campaign(next(iter(made.values())))
-        levels = [condition.level for condition in whole.said.conditions]
+        levels = [condition.level for condition in whole.stated.conditions]
         assert levels == sorted(levels)
         datasets = whole.load()
         predicted = predict(whole, datasets[:1], threads=1)[0]["frf"].values

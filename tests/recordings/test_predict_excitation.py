@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 from campaigns import tables, write
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.excitation import Push, TrackLines
+from permway.campaign.predict.excitation import deposit, push
+from permway.campaign.predict.grid import grid_of
+from permway.campaign.predict.run import expected_csd, influence, solved_lines, wheels_of
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_excitation import Push, TrackLines
+from permway.model.place import Place
 from permway.recordings.estimates.welch import cross_spectra
-from permway.recordings.predict.excitation import deposit, push
-from permway.recordings.predict.grid import grid_of
-from permway.recordings.predict.run import expected_csd, influence, solved_lines, wheels_of
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 
 SAMPLING_HZ, SPEED, RADIUS = 512.0, 50.0, 0.43
 ESTIMATE_HZ = np.arange(10.0, 81.0)
@@ -44,7 +45,7 @@ def expected(campaign: Campaign, per_profile: np.ndarray, duration_s: float | No
     sensors = [campaign.sensor(name) for name in ("axle", "axle3", "floor")]
     return expected_csd(
         campaign.model,
-        campaign.said.irregularity,
+        campaign.stated.irregularity,
         campaign.condition("fast"),
         sensors,
         LINES_HZ,
@@ -186,8 +187,8 @@ def test_bands_patch_and_levels_are_their_formulas(tmp_path: Path, per_profile: 
         ({"contact_patch_m": 0.1}, patch),
         ({"level_by_condition_dB": {"fast": 3.0}}, np.full(wavelength.size, 10.0**0.3)),
     ]
-    for said, factor in cases:
-        found = expected(campaign_with(tmp_path, said), per_profile)[:, 0, 0].real - 1e-6
+    for stated, factor in cases:
+        found = expected(campaign_with(tmp_path, stated), per_profile)[:, 0, 0].real - 1e-6
         assert found == pytest.approx(factor * plain, rel=0.01)
 
 
@@ -215,15 +216,15 @@ def test_a_slow_clock_takes_from_cross_spectra_what_it_takes_from_samples(
         return np.convolve(values, np.ones(9) / 9.0, "valid")
 
     seen = smooth(shared) / smooth(power)
-    said = smooth(found[:, 0, 2] / right[:, 0, 2])
-    assert np.abs(said[0]) > 0.95
-    assert np.abs(said[-1]) < 0.80
-    assert np.abs(seen - said).max() < 0.1
+    stated = smooth(found[:, 0, 2] / right[:, 0, 2])
+    assert np.abs(stated[0]) > 0.95
+    assert np.abs(stated[-1]) < 0.80
+    assert np.abs(seen - stated).max() < 0.1
     np.testing.assert_allclose(found[:, [0, 1, 2], [0, 1, 2]], right[:, [0, 1, 2], [0, 1, 2]])
 
 
 @pytest.mark.parametrize(
-    ("said", "where"),
+    ("stated", "where"),
     [
         ({"level_by_condition_dB": {"faster": 3.0}}, "irregularity.level_by_condition_dB.faster"),
         ({"wheels": [{"wheel": 5, "amplitude_m": 1e-5}]}, r"irregularity.wheels\[0\].wheel"),
@@ -240,9 +241,9 @@ def test_a_slow_clock_takes_from_cross_spectra_what_it_takes_from_samples(
         ),
     ],
 )
-def test_faults_are_said_with_their_place(tmp_path: Path, said: dict[str, Any], where: str) -> None:
+def test_faults_are_said_with_their_place(tmp_path: Path, stated: dict[str, Any], where: str) -> None:
     with pytest.raises(InputError, match=where):
-        campaign_with(tmp_path, said)
+        campaign_with(tmp_path, stated)
 
 
 def test_lines_of_dips_are_those_of_their_shape() -> None:

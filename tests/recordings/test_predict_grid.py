@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from permway.recordings.predict.grid import grid_of, halved, interpolating, solved_lines
+from permway.campaign.predict.grid import grid_of, halved, interpolating, solved_lines
 
 ESTIMATE_HZ = np.arange(5.0, 200.0)
 

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from permway.campaign.predict.motion import influence
+from permway.campaign.predict.sliding import retuned, shares, with_vehicle
 from permway.errors import SolveError
-from permway.model.file import Frequencies, Model
 from permway.model.irregularity import GermanLow
 from permway.model.presets import slab_track_viaduct_32m
+from permway.model.train import Train
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_additions import AirSpring, AnyAddition, DamperSeries, FlexibleMode, Resonator, Slider
 from permway.model.vehicle_presets import crh380a
-from permway.recordings.predict.motion import influence
-from permway.recordings.predict.sliding import retuned, shares, with_vehicle
+from permway.problem.model import Frequencies, Model
 from permway.response.sliding import Remainder
-from permway.response.train import Train
 
 LINES_HZ = np.geomspace(0.3, 300.0, 60)
 PRIMARY = Slider(suspension="primary", force_N=300.0, velocity_m_per_s=0.002)

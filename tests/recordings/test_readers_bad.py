@@ -1,4 +1,4 @@
-"""What is wrong with a file ends in one sentence that says file, place, value and remedy."""
+"""What is wrong with a file ends in one sentence that states file, place, value and remedy."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ TEXTS: dict[str, tuple[str | bytes, str]] = {
     "hexadecimal": ("a,b\n1,2\n0x1p3,4\n", "line 3, column 'a': not a number"),
     "two of one name": ("a,b,a\n1,2,3\n", "channel 3: a channel named twice .*'a'"),
     "two of one name with units": ("a [g],b,a [m]\n1,2,3\n", "a channel named twice"),
-    "units that contradict": ("a [g]\nm/s2\n1\n", "the header says 'g', the row of units 'm/s2'"),
+    "units that contradict": ("a [g]\nm/s2\n1\n", "the header states 'g', the row of units 'm/s2'"),
     "decimal comma and comma": ("a,b\n1,5,2,5\n", "line 2: 4 cells.*decimal comma needs ;"),
     "point and comma": (
         "a;b\n1,5;2\n1.5;3\n",
@@ -66,23 +66,23 @@ TEXTS: dict[str, tuple[str | bytes, str]] = {
     "comma of either kind": ("a;b\n1,024;2,048\n3,072;4,096\n", "decimals or thousands .*decimal = "),
     "a clock": ("t,a\n12:00:01,1\n12:00:02,2\n", "column 't': the times are printed so coarsely .* 0 to 2 Hz"),
     "a clock and a word": ("t,a\n12:00:01,1\n12:00:02,2\nnoon,3\n", "line 4, column 't': not a time of day"),
-    "rate against remark": ("# fs = 50 Hz\nt,a\n" + RISING, "means 100 Hz, a remark says 50 Hz"),
+    "rate against remark": ("# fs = 50 Hz\nt,a\n" + RISING, "means 100 Hz, a remark states 50 Hz"),
     "rate of zero": ("# fs = 0\na\n1\n", "line 1: a sampling rate must be"),
 }
 
 
 @pytest.mark.parametrize("kind", TEXTS)
 def test_text(kind: str, tmp_path: Path) -> None:
-    content, said = TEXTS[kind]
+    content, stated = TEXTS[kind]
     path = tmp_path / "a.csv"
     path.write_bytes(content.encode() if isinstance(content, str) else content)
-    with pytest.raises(InputError, match=said) as caught:
+    with pytest.raises(InputError, match=stated) as caught:
         read_time(path)
     assert str(path) in str(caught.value)
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "stated"),
     [
         ("", "the file is empty"),
         ("a,b\n", "a header but no rows"),
@@ -94,10 +94,10 @@ def test_text(kind: str, tmp_path: Path) -> None:
         ("a;b\n1,5;2\n1.5;3\n", "decimal points and decimal commas"),
     ],
 )
-def test_table(content: str, said: str, tmp_path: Path) -> None:
+def test_table(content: str, stated: str, tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text(content)
-    with pytest.raises(InputError, match=said) as caught:
+    with pytest.raises(InputError, match=stated) as caught:
         read_table(path)
     assert str(path) in str(caught.value)
 
@@ -154,16 +154,16 @@ UNIVERSAL: dict[str, tuple[str | bytes, str]] = {
 
 @pytest.mark.parametrize("kind", UNIVERSAL)
 def test_universal_file(kind: str, tmp_path: Path) -> None:
-    content, said = UNIVERSAL[kind]
+    content, stated = UNIVERSAL[kind]
     path = tmp_path / "a.uff"
     path.write_bytes(content.encode() if isinstance(content, str) else content)
-    with pytest.raises(InputError, match=said) as caught:
+    with pytest.raises(InputError, match=stated) as caught:
         read_time(path)
     assert str(path) in str(caught.value)
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "stated"),
     [
         (function() + VALUES + END, "no frequency response"),
         (FRF + FRF, "a pair measured twice"),
@@ -180,10 +180,10 @@ def test_universal_file(kind: str, tmp_path: Path) -> None:
         (FRF.replace("2.00000E+00", "-3.0000E+00"), "from 0 Hz on"),
     ],
 )
-def test_frequency_response(content: str, said: str, tmp_path: Path) -> None:
+def test_frequency_response(content: str, stated: str, tmp_path: Path) -> None:
     path = tmp_path / "a.uff"
     path.write_text(content)
-    with pytest.raises(InputError, match=said) as caught:
+    with pytest.raises(InputError, match=stated) as caught:
         read_frf(path)
     assert str(path) in str(caught.value)
 
@@ -288,7 +288,7 @@ FILES: dict[str, tuple[str, Callable[[Path], object], str]] = {
     "rate and times": (
         "a.npz",
         lambda p: np.savez(p, a=np.ones(9), fs=50.0, t=np.arange(9) / 100),
-        "also says 50 Hz",
+        "also states 50 Hz",
     ),
     "times with a gap": (
         "a.npz",
@@ -329,8 +329,12 @@ FILES: dict[str, tuple[str, Callable[[Path], object], str]] = {
     "wav cut within a sample": ("a.wav", lambda p: save_wav(p, size=19), "the last sample is cut"),
     "wav header alone": ("a.wav", lambda p: p.write_bytes(b"RIFF\x00\x00\x00\x00WAVE"), "no description"),
     "csv named uff": ("a.uff", lambda p: p.write_text("a,b\n1,2\n"), 'the content is text.*format="text"'),
-    "npz named mat": ("a.mat", lambda p: (p.parent / "a.npz").rename(p), "says mat or mat73, the content is npz"),
-    "wav named csv": ("a.csv", save_wav, "the name says text, the content is wav"),
+    "npz named mat": (
+        "a.mat",
+        lambda p: (p.parent / "a.npz").rename(p),
+        "states mat or mat73, the content is npz",
+    ),
+    "wav named csv": ("a.csv", save_wav, "the name states text, the content is wav"),
     "a folder": ("a.csv", lambda p: p.mkdir(), "is a folder, not a file"),
     "nothing": ("a.csv", lambda p: None, "cannot be read: No such file"),
 }
@@ -338,12 +342,12 @@ FILES: dict[str, tuple[str, Callable[[Path], object], str]] = {
 
 @pytest.mark.parametrize("kind", FILES)
 def test_file(kind: str, tmp_path: Path) -> None:
-    name, save, said = FILES[kind]
+    name, save, stated = FILES[kind]
     path = tmp_path / name
     if kind == "npz named mat":
         written.npz(tmp_path / "a.npz", written.samples())
     save(path)
-    with pytest.raises(InputError, match=said) as caught:
+    with pytest.raises(InputError, match=stated) as caught:
         read_time(path)
     assert str(path) in str(caught.value)
     assert not (tmp_path / "ran").exists()
@@ -354,7 +358,7 @@ ENDS = {"sensor": np.array(["a", "b"]), "hammer": np.array(["p", "q", "r"])}
 
 
 @pytest.mark.parametrize(
-    ("arrays", "said"),
+    ("arrays", "stated"),
     [
         ({**FREQUENCIES}, "no names of the responses"),
         ({**FREQUENCIES, "sensor": np.array(["a", "b"])}, "no names of the references"),
@@ -371,10 +375,10 @@ ENDS = {"sensor": np.array(["a", "b"]), "hammer": np.array(["p", "q", "r"])}
         ({**FREQUENCIES, **ENDS, "blows": 0.0}, "'blows': must be a finite number above 0"),
     ],
 )
-def test_frequency_responses_in_arrays(arrays: dict[str, np.ndarray], said: str, tmp_path: Path) -> None:
+def test_frequency_responses_in_arrays(arrays: dict[str, np.ndarray], stated: str, tmp_path: Path) -> None:
     path = tmp_path / "a.npz"
     np.savez(path, **arrays)
-    with pytest.raises(InputError, match=said) as caught:
+    with pytest.raises(InputError, match=stated) as caught:
         read_frf(path)
     assert str(path) in str(caught.value)
 
@@ -392,14 +396,14 @@ def test_arguments(tmp_path: Path) -> None:
         (lambda: read_time(path, sampling_Hz=0.0), "above 0 Hz"),
         (lambda: read_time(path, sampling_Hz=float("nan")), "above 0 Hz"),
         (lambda: read_time(path, format="xls"), "no format of this name"),
-        (lambda: read_time(path, format="wav"), "the caller says wav, the content is text"),
+        (lambda: read_time(path, format="wav"), "the caller states wav, the content is text"),
         (lambda: read_time(path, max_bytes=40), "above the limit"),
         (lambda: list(time_blocks(path, block_samples=0)), "whole number above 0"),
         (lambda: read_frf(path), "no column of frequencies .*a row for each frequency"),
         (lambda: read_table(path, texts=["z"]), "no such column"),
     ]
-    for call, said in calls:
-        with pytest.raises(InputError, match=said):
+    for call, stated in calls:
+        with pytest.raises(InputError, match=stated):
             call()
 
 
@@ -407,7 +411,7 @@ def test_a_rate_that_disagrees_with_the_time_column(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("t,a\n" + RISING)
     assert read_time(path, sampling_Hz=100.0).sampling_Hz == 100.0
-    with pytest.raises(InputError, match=r"the file says 100 Hz, but was said to be sampled at 102\.4 Hz"):
+    with pytest.raises(InputError, match=r"the file states 100 Hz, but was stated to be sampled at 102\.4 Hz"):
         read_time(path, sampling_Hz=102.4)
 
 

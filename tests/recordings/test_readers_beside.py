@@ -50,7 +50,7 @@ def test_unit_beside_contradicts(tmp_path: Path) -> None:
     with h5py.File(path, "w") as file:
         file["x"], file["fs"], file["x_unit"] = SAMPLES, 512.0, "mm/s2"
         file["x"].attrs["unit"] = "m/s2"
-    with pytest.raises(InputError, match="its own unit is 'm/s2', the text beside it says 'mm/s2'"):
+    with pytest.raises(InputError, match="its own unit is 'm/s2', the text beside it states 'mm/s2'"):
         read_time(path)
 
 
@@ -62,7 +62,7 @@ def test_whole_numbers_with_a_scale(kind: str, name: str, value: float, tmp_path
     path = save(tmp_path, kind, fs=512.0, x=COUNTS, **{name: value})
     with pytest.raises(InputError, match=f"'{name}' beside them, which is not applied"):
         read_time(path)
-    # As they stand, where the record says what they are.
+    # As they stand, where the record states what they are.
     as_said = read_time(path, hints=Hints(unit={"x": "V"}))
     np.testing.assert_array_equal(as_said.channel("x"), COUNTS)
     nothing = 0.0 if name == "offset" else 1.0
@@ -90,7 +90,7 @@ def test_several_rates_in_a_list(kind: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("kind", FORMATS)
 def test_a_response_without_names(kind: str, tmp_path: Path) -> None:
-    """One needs none; of two it is said what is missing."""
+    """One needs none; of two it is stated what is missing."""
     record = read_frf(save(tmp_path, kind, f=HZ, H=H))
     assert (record.responses, record.references) == (("response",), ("reference",))
     np.testing.assert_array_equal(record.values, H[None, :])

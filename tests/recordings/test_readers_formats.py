@@ -178,7 +178,7 @@ def test_frequency_responses_in_arrays(file: str, tmp_path: Path) -> None:
             coords={"frequency": frequency, "sensor": sensors, "hammer": hammers},
         )
         with warnings.catch_warnings():
-            # Complex numbers are beyond NetCDF, says the library; it is how this package writes its own results.
+            # Complex numbers are beyond NetCDF, states the library; it is how this package writes its own results.
             warnings.simplefilter("ignore", UserWarning)
             data.to_netcdf(path, engine="h5netcdf", invalid_netcdf=True)
     elif file == "a.h5":
@@ -248,7 +248,7 @@ def test_units_that_mean_the_same_agree(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("a [m/s²]\n1\n")
     assert read_time(path, units="m/s2").units == ("m/s²",)
-    with pytest.raises(InputError, match="the file says 'm/s²', but was said to be in 'g'"):
+    with pytest.raises(InputError, match="the file states 'm/s²', but was stated to be in 'g'"):
         read_time(path, units="g")
 
 

@@ -134,8 +134,8 @@ def test_random_fields_of_a_universal_file(data: st.DataObject) -> None:
     at = data.draw(st.integers(0, 13))
     width = data.draw(st.integers(1, 14))
     field = data.draw(st.integers(0, 70))
-    said = data.draw(
+    stated = data.draw(
         st.sampled_from(["0", "-1", "7", "99999999", "nan", "1e300", "-1e-300", "x", "", "inf", "58b"])
     )
-    lines[at] = lines[at][:field] + said.rjust(width) + lines[at][field + width :]
+    lines[at] = lines[at][:field] + stated.rjust(width) + lines[at][field + width :]
     attempt("a.uff", "\n".join(lines).encode())

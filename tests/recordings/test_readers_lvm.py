@@ -30,18 +30,18 @@ def write(folder: Path, **change: Any) -> Path:
         "Delta_X": [repr(1 / 512)] * 2, **change,
     }  # fmt: skip
 
-    def said(text: str) -> str:
+    def stated(text: str) -> str:
         return text.replace(".", decimal)
 
     lines = ["LabVIEW Measurement" + separator]
     lines += [separator.join([key, *value]) for key, value in head.items()] + ["***End_of_Header***", ""]
-    lines += [separator.join([key, *map(said, value)]) for key, value in inner.items() if value is not None]
+    lines += [separator.join([key, *map(stated, value)]) for key, value in inner.items() if value is not None]
     titles = ["X_Value", "acc", *(["X_Value"] if kind == "Multi" else []), "force", "Comment"]
     lines += ["***End_of_Header***", separator.join(titles)]
     for moment, (a, b) in zip(t, x.T, strict=True):
         first = "" if kind == "No" else f"{moment:.9f}"
         second = [f"{moment:.9f}"] if kind == "Multi" else []
-        lines.append(separator.join(map(said, [first, f"{a:.6f}", *second, f"{b:.6f}"])))
+        lines.append(separator.join(map(stated, [first, f"{a:.6f}", *second, f"{b:.6f}"])))
     path = folder / "a.lvm"
     path.write_text("\r\n".join(lines) + "\r\n")
     return path
@@ -57,7 +57,7 @@ def test_read(kind: str, separator: str, decimal: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "stated"),
     [
         ({"Delta_X": ["0.001", "0.002"]}, "channel 'force': sampled at 500 Hz .*'acc' at 1000 Hz"),
         ({"Time": ["10:00:00", "10:00:01"]}, "channel 'force': begins at 2026/01/05 10:00:01"),
@@ -68,11 +68,11 @@ def test_read(kind: str, separator: str, decimal: str, tmp_path: Path) -> None:
         ({"x": np.where(np.isin(X, X[1, 3]), np.nan, X)}, "line .*, column 3: not a finite number .*nan"),
     ],
 )
-def test_refused(change: dict[str, Any], said: str, tmp_path: Path) -> None:
+def test_refused(change: dict[str, Any], stated: str, tmp_path: Path) -> None:
     path = write(tmp_path, **change)
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=stated):
         read_time(path)
-    if "'force'" in said:
+    if "'force'" in stated:
         np.testing.assert_array_equal(read_time(path, channels=["acc"]).values[0], X[0])
 
 

@@ -88,7 +88,7 @@ def test_without_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         read_time(path)
 
 
-# What the library says to nobody while it drops a damaged file is not of the reader.
+# What the library states to nobody while it drops a damaged file is not of the reader.
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.parametrize("keep", [64, 300, 1500])
 def test_cut_short(keep: int, tmp_path: Path) -> None:

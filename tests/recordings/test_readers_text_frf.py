@@ -46,7 +46,7 @@ HEADER = "frequency;sensor;force;real;imaginary;coherence"
 
 
 @pytest.mark.parametrize(
-    ("lines", "said"),
+    ("lines", "stated"),
     [
         ([HEADER, *rows("parts")[:-1]], "slab < 5.76: does not have the frequencies of rail@8.64 < 3.20"),
         ([HEADER.replace("imaginary", "phase"), *rows("parts")], "no column of imaginary parts"),
@@ -56,16 +56,16 @@ HEADER = "frequency;sensor;force;real;imaginary;coherence"
         ([HEADER, *rows("parts")[:2], "30;rail@8.64;3.20;x;1;0.9", *rows("parts")[3:]], "not a number"),
         (
             [HEADER.replace("real;imaginary", "real [mm/N];imaginary [m/N]"), *rows("parts")],
-            "'imaginary': the file says",
+            "'imaginary': the file states",
         ),
         ([HEADER.replace("real;imaginary", "magnitude;phase"), *rows("polar")], "degrees or radians"),
         ([HEADER, *[row.replace("0.9", "1.9") for row in rows("parts")]], "coherence"),
     ],
 )
-def test_what_cannot_be_used_is_said(tmp_path: Path, lines: list[str], said: str) -> None:
+def test_what_cannot_be_used_is_said(tmp_path: Path, lines: list[str], stated: str) -> None:
     path = tmp_path / "frf.csv"
     path.write_text("\n".join(lines) + "\n")
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=stated):
         read_frf(path)
 
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from permway.campaign.parts import Record
 from permway.cli import app
 from permway.errors import InputError
-from permway.recordings.campaign_parts import Record
 from permway.recordings.look import look
 from permway.recordings.readers import read_frf, read_time
 from permway.recordings.readers.hints import Hints
@@ -94,8 +94,8 @@ def test_names_that_do_not_say_what_was_struck(tmp_path: Path) -> None:
     path = wide(tmp_path, ["f [Hz];H1 [g/N];H2 [g/N]"], [cells(F), [str(h) for h in H], [str(2 * h) for h in H]])
     with pytest.raises(InputError, match=r"cannot be told from a name \(got 'H1'\).*pairs = \{ \"H1\" ="):
         read_frf(path)
-    said = ["--pair", "H1=rail@8.64/3.20", "--pair", "H2=rail@8.64/5.76"]
-    shown = CliRunner().invoke(app, ["look", str(path), *said, "--json"])
+    stated = ["--pair", "H1=rail@8.64/3.20", "--pair", "H2=rail@8.64/5.76"]
+    shown = CliRunner().invoke(app, ["look", str(path), *stated, "--json"])
     assert shown.exit_code == 0, shown.stdout
     part = tomllib.loads(__import__("json").loads(shown.stdout)["campaign"].replace('= ""', '= "c"'))
     record = Record.model_validate(part["records"][0])
@@ -116,7 +116,7 @@ def test_only_what_is_asked_for_has_to_be_sound(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("head", "columns", "said"),
+    ("head", "columns", "stated"),
     [
         ("f;a/1 mag;a/1 phase", [cells(F), ["1", "2", "3"], ["0", "1", "2"]], "degrees or radians"),
         ("f;a/1 mag;a/1 phase [deg]", [cells(F), ["1", "-2", "3"], ["0", "1", "2"]], "a level in dB"),
@@ -127,8 +127,8 @@ def test_only_what_is_asked_for_has_to_be_sound(tmp_path: Path) -> None:
         ("f;a/1", [cells(F), ["1+1j", "", "3+1j"]], "empty or not a finite number"),
     ],
 )  # fmt: skip
-def test_refused(head: str, columns: list[list[str]], said: str, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=said):
+def test_refused(head: str, columns: list[list[str]], stated: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=stated):
         read_frf(wide(tmp_path, [head], columns))
 
 

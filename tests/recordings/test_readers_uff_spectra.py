@@ -12,11 +12,11 @@ import pyuff
 import written
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.predict import predict
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
 from permway.recordings.estimates.welch import cross_spectra
 from permway.recordings.look import look
-from permway.recordings.predict import predict
 from permway.recordings.readers import read_frf
 
 RATE = 256.0
@@ -126,19 +126,19 @@ def test_spectra_are_predicted(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "stated"),
     [
         ({"averages": None}, r"it holds spectra: in a campaign statistic = \"csd\" with averages"),
         ({"segment_s": 1.0}, r"lines 2 Hz apart, and segment_s means 1 Hz .*segment_s = 0.5"),
-        ({"unit": "m/s2"}, "whether these are densities is not said"),
+        ({"unit": "m/s2"}, "whether these are densities is not stated"),
         ({"unit": "(mm/s2)^2/Hz"}, "the record states"),
         ({"channels": {"1:+Z": "axle", "9:+Z": "floor"}}, r"no auto spectrum of this channel \(got '9:\+Z'\)"),
     ],
 )
-def test_refused(change: dict[str, Any], said: str, tmp_path: Path) -> None:
+def test_refused(change: dict[str, Any], stated: str, tmp_path: Path) -> None:
     found = cross_spectra(measured(2), sampling_Hz=RATE, segment_s=0.5, overlap=0.0)
     spectra(tmp_path / "run.uff", found["csd"].values, found["frequency"].values)
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=stated):
         campaign(tmp_path, "run.uff", **{"averages": 80.0, **change}).load()
 
 

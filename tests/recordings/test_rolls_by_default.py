@@ -1,4 +1,4 @@
-"""Trains roll over the model's own supports unless a campaign says that they stand, or they cannot."""
+"""Trains roll over the model's own supports unless a campaign states that they stand, or they cannot."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from typing import Any
 import numpy as np
 import pytest
 from campaigns import tables, write
-from permway.cli_check import checks
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.excitation import Rolling
+from permway.cli.check import checks
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_excitation import Rolling
 from typer.testing import CliRunner
 
 LEFT_OUT = object()
 
 
 def campaign(folder: Path, rolling: Any = LEFT_OUT, **model_changes: Any) -> Campaign:
-    said, model = tables()
-    del said["irregularity"]["rolling"]
+    stated, model = tables()
+    del stated["irregularity"]["rolling"]
     if rolling is not LEFT_OUT:
-        said["irregularity"]["rolling"] = rolling
+        stated["irregularity"]["rolling"] = rolling
     for key, change in model_changes.items():
         change(model["line"][key])
-    return read_campaign(write(folder, said, model))
+    return read_campaign(write(folder, stated, model))
 
 
 def uneven(joints: list[Any]) -> None:
@@ -43,7 +43,7 @@ def short(bodies: dict[str, Any]) -> None:
 
 def test_over_supports_that_repeat(tmp_path: Path) -> None:
     read = campaign(tmp_path)
-    known = read.said.irregularity.rolls
+    known = read.stated.irregularity.rolls
     assert known is not None
     assert known.spacing_m == pytest.approx(0.6)
     assert known.about is not None
@@ -60,23 +60,23 @@ def test_over_supports_that_repeat(tmp_path: Path) -> None:
 )
 def test_not_where_they_cannot_and_then_it_is_said_why(tmp_path: Path, changes: dict[str, Any], why: str) -> None:
     read = campaign(tmp_path, **changes)
-    assert read.said.irregularity.rolls is None
+    assert read.stated.irregularity.rolls is None
     assert read.summary()["trains"] == f"stand: {why}"
-    with pytest.raises(InputError, match=why) as told:
+    with pytest.raises(InputError, match=why) as reported:
         campaign(tmp_path, True, **changes)
-    assert "irregularity.rolling" in str(told.value)
+    assert "irregularity.rolling" in str(reported.value)
 
 
 def test_a_campaign_may_say_that_they_stand(tmp_path: Path) -> None:
     read = campaign(tmp_path, False)
-    assert read.said.irregularity.rolls is None
-    assert read.summary()["trains"] == "stand, as the campaign file says"
+    assert read.stated.irregularity.rolls is None
+    assert read.summary()["trains"] == "stand, as the campaign file states"
     # Values of parameters change nothing of it.
-    assert read.with_values({"pad.k": 5.5e7}).said.irregularity.rolls is None
+    assert read.with_values({"pad.k": 5.5e7}).stated.irregularity.rolls is None
 
 
 def test_a_campaign_may_say_what_they_roll_over(tmp_path: Path) -> None:
-    known = campaign(tmp_path, {"spacing_m": 0.65}, joints=uneven).said.irregularity.rolls
+    known = campaign(tmp_path, {"spacing_m": 0.65}, joints=uneven).stated.irregularity.rolls
     assert known is not None
     assert known.model_copy(update={"about": None}) == Rolling(spacing_m=0.65)
 
@@ -88,21 +88,21 @@ def test_another_word_is_refused(tmp_path: Path, wrong: Any) -> None:
 
 
 def test_without_a_run_there_is_nothing_to_roll(tmp_path: Path) -> None:
-    said, model = tables()
-    del said["irregularity"]["rolling"]
-    said["records"], said["held_out"] = said["records"][:1], []
-    read = read_campaign(write(tmp_path, said, model))
-    assert read.said.irregularity.rolls is None
+    stated, model = tables()
+    del stated["irregularity"]["rolling"]
+    stated["records"], stated["held_out"] = stated["records"][:1], []
+    read = read_campaign(write(tmp_path, stated, model))
+    assert read.stated.irregularity.rolls is None
     assert "trains" not in read.summary()
-    said["irregularity"]["rolling"] = True
+    stated["irregularity"]["rolling"] = True
     with pytest.raises(InputError, match="no run with sensors on board"):
-        read_campaign(write(tmp_path, said, model))
+        read_campaign(write(tmp_path, stated, model))
 
 
 def test_a_check_says_so(tmp_path: Path) -> None:
-    said, model = tables()
-    del said["irregularity"]["rolling"]
-    path = write(tmp_path, said, model)
+    stated, model = tables()
+    del stated["irregularity"]["rolling"]
+    path = write(tmp_path, stated, model)
     done = CliRunner().invoke(checks, ["check", str(path), "--json", "--no-picture"])
     assert json.loads(done.stdout)["trains"] == "roll over supports 0.6 m apart"
 
@@ -111,6 +111,6 @@ def test_stations_written_to_a_centimetre_repeat(tmp_path: Path) -> None:
     def rounded(joints: list[Any]) -> None:
         joints[0]["at"] = [round(float(x), 2) for x in np.arange(38) * 0.6452]
 
-    known = campaign(tmp_path, joints=rounded).said.irregularity.rolls
+    known = campaign(tmp_path, joints=rounded).stated.irregularity.rolls
     assert known is not None
     assert known.spacing_m == pytest.approx(0.6452, rel=1e-3)

@@ -98,9 +98,9 @@ def test_dropouts(seed: int, held: float | None) -> None:
     assert only(screen(record(x)), "dropout") == [(1000, 1007), (20_000, 21_499)]
 
 
-@pytest.mark.parametrize(("held", "told"), [(5, False), (12, True)])
+@pytest.mark.parametrize(("held", "reported"), [(5, False), (12, True)])
 def test_samples_written_with_four_digits_stand_still_by_chance_where_they_are_large(
-    held: int, told: bool
+    held: int, reported: bool
 ) -> None:
     """As five did in one run of a hundred campaigns: above 0.1 steps are ten times those below."""
     random = np.random.default_rng(3)
@@ -109,7 +109,7 @@ def test_samples_written_with_four_digits_stand_still_by_chance_where_they_are_l
     written = np.array([float(f"{value:.4g}") for value in x])
     written[8200 : 8200 + held] = written[8200]
     found = screen(record(written)).of("error")
-    assert [(finding.kind, finding.first) for finding in found] == ([("dropout", 8200)] if told else [])
+    assert [(finding.kind, finding.first) for finding in found] == ([("dropout", 8200)] if reported else [])
 
 
 def test_a_dropout_in_quantised_samples() -> None:

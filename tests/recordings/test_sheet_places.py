@@ -1,4 +1,4 @@
-"""What a sheet says of places: wheelsets as given, spans that end on a fastener, several sensors at one place."""
+"""Places of a sheet: wheelsets as given, spans that end on a fastener, several sensors at one place."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.importers.sheet import import_sheet
+from permway.campaign.importers.sheet_form import Sheet
+from permway.campaign.importers.sheet_model import model_table
+from permway.campaign.importers.sheet_position import position
 from permway.errors import InputError
-from permway.model.file import model_from_dict
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.importers.sheet_form import Sheet
-from permway.recordings.importers.sheet_model import model_table
-from permway.recordings.importers.sheet_position import position
-from permway.response.receptance import Place, receptance
+from permway.formats.model_file import model_from_dict
+from permway.model.place import Place
+from permway.response.receptance import receptance
 from scipy import io
 from sheets import SHEET, make_folder
 
@@ -26,17 +27,17 @@ EXACT = (26.0, 23.5, 8.5, 6.0)
 ROUNDED = (25.92, 23.52, 8.48, 6.08)
 
 
-def sheet(said: Any = "", **layout: Any) -> Sheet:
-    """A deck of 32 m, and what its `position` says."""
+def sheet(stated: Any = "", **layout: Any) -> Sheet:
+    """A deck of 32 m, and what its `position` states."""
     table = copy.deepcopy(SHEET)
     table["layout"] |= {"span_m": 32.0, "slab_length_m": 32.0, **layout}
-    table["runs"]["position"] = said
+    table["runs"]["position"] = stated
     table["hammer"] |= {"sensors": [["rail", 6.4]], "points": [["rail", 2.56]]}
     return Sheet.model_validate(table)
 
 
 @pytest.mark.parametrize(
-    ("said", "wheels", "centre"),
+    ("stated", "wheels", "centre"),
     [
         ("", EXACT, 16.0),
         (f"{FOUR} with x0 = 16 m", EXACT, 16.0),
@@ -58,16 +59,16 @@ def sheet(said: Any = "", **layout: Any) -> Sheet:
         (f"{FOUR} with x0 = 16 m, each rounded to the nearest 0.5 m", EXACT, 16.0),
     ],
 )
-def test_wheelsets_stand_where_the_sheet_has_them(said: Any, wheels: tuple[float, ...], centre: float) -> None:
+def test_wheelsets_stand_where_the_sheet_has_them(stated: Any, wheels: tuple[float, ...], centre: float) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = position(sheet(said))
+        found = position(sheet(stated))
     assert found.wheels_m == pytest.approx(wheels, abs=1e-9)
     assert found.centre_m == pytest.approx(centre)
 
 
 @pytest.mark.parametrize(
-    ("said", "asked"),
+    ("stated", "asked"),
     [
         (
             f"{FOUR} with x0 = 16 m, each rounded down to whole 0.16 m",
@@ -81,7 +82,7 @@ def test_wheelsets_stand_where_the_sheet_has_them(said: Any, wheels: tuple[float
         ("about the middle of the deck", "where do the wheelsets stand? not understood"),
         ("wheelsets 1..4 at 26,0, 23,5, 8,5, 6,0 m", "where do the wheelsets stand? not understood"),
         ("wheelsets 1..4 at 26000, 23500, 8500, 6000 mm", "where do the wheelsets stand? not understood"),
-        (FOUR, "where do the wheelsets stand? x0 is not said"),
+        (FOUR, "where do the wheelsets stand? x0 is not stated"),
         ("wheelsets 1..4 at 26, 23.5, 8.5, 6 m with x0 = 16 m", "what is counted from x0?"),
         ("wheelsets 1..4 at 26, 23.5, 8.5 m", "has 3 places of 4 wheelsets"),
         ([26.0, 23.5], "has 2 places of 4 wheelsets"),
@@ -90,9 +91,9 @@ def test_wheelsets_stand_where_the_sheet_has_them(said: Any, wheels: tuple[float
         (f"{FOUR} with x0 = 16 m, each rounded to the nearest 0 m", "rounded to what?"),
     ],
 )
-def test_what_is_not_understood_to_the_last_word_is_asked_about(said: Any, asked: str) -> None:
+def test_what_is_not_understood_to_the_last_word_is_asked_about(stated: Any, asked: str) -> None:
     with pytest.raises(InputError) as caught:
-        position(sheet(said))
+        position(sheet(stated))
     text = str(caught.value)
     assert text.startswith("sheet.json: runs.position: ")
     assert asked in text
@@ -125,8 +126,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_campaign_has_them_unrounded(folder: Path, tmp_path: Path) -> None:
-    said = "wheelsets 1..4 at x0+10, x0+7.5, x0-7.5, x0-10 with x0 = 6.4 m"
-    campaign = import_sheet(changed(folder, tmp_path / "team", "runs", "position", value=said), tmp_path / "out")
+    stated = "wheelsets 1..4 at x0+10, x0+7.5, x0-7.5, x0-10 with x0 = 6.4 m"
+    campaign = import_sheet(changed(folder, tmp_path / "team", "runs", "position", value=stated), tmp_path / "out")
     for run in ("run_180kmh", "run_252kmh"):
         assert campaign.condition(run).wheels_m == pytest.approx((16.4, 13.9, -1.1, -3.6), abs=1e-9)
 
@@ -143,8 +144,8 @@ ON_FASTENERS = [(2, 12.8, 12.8), (3, 6.4, 6.4), (2, 12.8, 6.4), (1, 12.8, 3.2), 
 
 
 def model(spans: int, span_m: float, slab_m: float) -> Any:
-    said = sheet(spans=spans, span_m=span_m, slab_length_m=slab_m)
-    return model_from_dict(model_table(said, "a deck"), folder=Path())
+    stated = sheet(spans=spans, span_m=span_m, slab_length_m=slab_m)
+    return model_from_dict(model_table(stated, "a deck"), folder=Path())
 
 
 @pytest.mark.parametrize(("spans", "span_m", "slab_m"), ON_FASTENERS)
@@ -197,7 +198,7 @@ def test_two_spans_are_imported_with_their_records(tmp_path: Path, folder: Path)
     table["hammer"]["points"][2] = ["girder[2]", 6.4]
     (team / "sheet.json").write_text(json.dumps(table))
     campaign = import_sheet(team, tmp_path / "out")
-    assert [s.name for s in campaign.said.sensors[:3]] == ["rail@6.4", "slab[1]@6.4", "girder@0"]
+    assert [s.name for s in campaign.stated.sensors[:3]] == ["rail@6.4", "slab[1]@6.4", "girder@0"]
     assert campaign.load()[0].names("force") == ["rail@6.4", "rail@2.56", "girder[2]@6.4"]
 
 
@@ -214,8 +215,8 @@ def test_two_sensors_at_one_place_have_each_its_row(tmp_path: Path, folder: Path
     team = changed(folder, tmp_path / "team", "hammer", "sensors", value=where)
     relabelled(team, ["rail@6.4 left", "rail@6.40 right", "girder@0"])
     campaign = import_sheet(team, tmp_path / "out")
-    assert [s.name for s in campaign.said.sensors[:3]] == ["rail@6.4", "rail@6.4 (2)", "girder@0"]
-    assert campaign.said.records[0].responses == {
+    assert [s.name for s in campaign.stated.sensors[:3]] == ["rail@6.4", "rail@6.4 (2)", "girder@0"]
+    assert campaign.stated.records[0].responses == {
         "rail@6.4 left": "rail@6.4",
         "rail@6.40 right": "rail@6.4 (2)",
         "girder@0": "girder@0",

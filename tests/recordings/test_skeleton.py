@@ -1,4 +1,4 @@
-"""`permway new`: a campaign begun from a folder of exports, its questions answered, and checked."""
+"""`permway new`: a campaign started from a folder of exports, its questions answered, and checked."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def answered(text: str) -> str:
 
 
 def test_a_campaign_is_begun_with_all_that_was_found(exports: Path) -> None:
-    said = write_skeleton(exports)
+    stated = write_skeleton(exports)
     table = tomllib.loads((exports / "campaign.toml").read_text("utf-8"))
     assert {sensor["name"] for sensor in table["sensors"]} == {"rail@6", "deck@3", "box", "bogie"}
     # What the file does not say is left open.
@@ -73,8 +73,8 @@ def test_a_campaign_is_begun_with_all_that_was_found(exports: Path) -> None:
     assert records["point 2"]["references"] == {"hit far": "hit hit far"}
     assert (records["run"]["statistic"], records["run"]["channels"]) == ("csd", ["box", "bogie"])
     assert "512 Hz" in (exports / "campaign.toml").read_text("utf-8")
-    assert (said["sensors"], said["points"], said["records"]) == (4, 3, 4)
-    assert [row["file"] for row in said["files"] if row["format"] == "unknown"] == ["broken.tdms"]
+    assert (stated["sensors"], stated["points"], stated["records"]) == (4, 3, 4)
+    assert [row["file"] for row in stated["files"] if row["format"] == "unknown"] == ["broken.tdms"]
 
 
 def test_unanswered_it_is_refused_and_answered_it_is_checked(exports: Path) -> None:
@@ -111,11 +111,11 @@ def test_the_command_says_what_it_found(exports: Path) -> None:
     command = [sys.executable, "-m", "permway", "new", str(exports), "--json"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=240)
     assert (done.returncode, done.stderr) == (0, "")
-    said = json.loads(done.stdout)
-    assert said["questions"] == (exports / "campaign.toml").read_text("utf-8").count("# question") + (
+    stated = json.loads(done.stdout)
+    assert stated["questions"] == (exports / "campaign.toml").read_text("utf-8").count("# question") + (
         exports / "model.toml"
     ).read_text("utf-8").count("# question")
-    run = next(row for row in said["files"] if row["file"] == "run.csv")
+    run = next(row for row in stated["files"] if row["file"] == "run.csv")
     assert (run["holds"], run["unit"], run["reach"]) == ("2 channels", "g, no unit", "512 Hz")
 
 

@@ -1,4 +1,4 @@
-"""Channels whose samples are spoilt: told, and left out of what is estimated."""
+"""Bad channels: reported, and left out of what is estimated."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from permway.arrays import Reals
+from permway.campaign.bad_channels import BadChannel, without_bad_channels
+from permway.campaign.campaign import Campaign
+from permway.campaign.importers.sheet import import_sheet
 from permway.diagnosis.gather import predictable
 from permway.diagnosis.speak_measurement import with_spoilt
 from permway.diagnosis.verdict import Verdict
 from permway.diagnosis.verdict_parts import ClassMember, Effect, Place
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.spoilt import Spoilt, sound
 from sheets import make_folder
 
-CLIPPED = Spoilt("run", "axlebox2", "clipping", "4 samples flat at 3")
+CLIPPED = BadChannel("run", "axlebox2", "clipping", "4 samples flat at 3")
 
 
 @pytest.fixture
@@ -28,7 +28,7 @@ def campaign(tmp_path: Path) -> Campaign:
 
 def alter(campaign: Campaign, run: int, change: Callable[[Reals], None]) -> None:
     """Write a run's file anew, its samples changed."""
-    path = [campaign.path(record) for record in campaign.said.records if record.statistic == "csd"][run]
+    path = [campaign.path(record) for record in campaign.stated.records if record.statistic == "csd"][run]
     with np.load(path) as stored:
         content = dict(stored)
     change(content["acceleration"])
@@ -44,16 +44,16 @@ def clip(column: int) -> Callable[[Reals], None]:
 
 
 def test_a_sound_campaign_is_left_as_it_is(campaign: Campaign) -> None:
-    whole, spoilt = sound(campaign)
+    whole, bad = without_bad_channels(campaign)
     assert whole is campaign
-    assert spoilt == ()
+    assert bad == ()
 
 
 def test_a_clipped_channel_is_left_out_of_the_run_in_which_it_is(campaign: Campaign) -> None:
     alter(campaign, 1, clip(1))
-    kept, left_out, spoilt = predictable(campaign)
-    assert [(one.channel, one.kind) for one in spoilt] == [("axlebox2", "clipping")]
-    assert list(left_out) == [f"{spoilt[0].record}: axlebox2"]
+    kept, left_out, bad = predictable(campaign)
+    assert [(one.channel, one.kind) for one in bad] == [("axlebox2", "clipping")]
+    assert list(left_out) == [f"{bad[0].record}: axlebox2"]
     first, second = (one.data for one in kept if one.record.statistic == "csd")
     assert "axlebox2" in first["channel"].values
     assert [*second["channel"].values] == [name for name in first["channel"].values if name != "axlebox2"]
@@ -66,12 +66,12 @@ def test_a_run_with_no_channel_left_is_left_out(campaign: Campaign) -> None:
         values[:] = 0.5
 
     alter(campaign, 0, die)
-    kept, _, spoilt = predictable(campaign)
-    assert {one.kind for one in spoilt} >= {"dead"}
+    kept, _, bad = predictable(campaign)
+    assert {one.kind for one in bad} >= {"dead"}
     assert len([one for one in kept if one.record.statistic == "csd"]) == 1
-    runs = tuple(record for record in campaign.said.records if record.statistic == "csd")
-    with pytest.raises(InputError, match="every record is spoilt"):
-        sound(campaign.with_records(runs[:1]))
+    runs = tuple(record for record in campaign.stated.records if record.statistic == "csd")
+    with pytest.raises(InputError, match="every record is bad"):
+        without_bad_channels(campaign.with_records(runs[:1]))
 
 
 def test_a_verdict_says_what_was_spoilt() -> None:

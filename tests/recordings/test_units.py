@@ -93,7 +93,7 @@ def test_levels() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "stated"),
     [
         ("furlong", "not known .*'furlong'"),
         ("hz", "did you mean Hz"),
@@ -118,8 +118,8 @@ def test_levels() -> None:
         ("kdB", "not known"),
     ],
 )
-def test_what_is_no_unit_is_told_with_the_nearest(text: str, said: str) -> None:
-    with pytest.raises(InputError, match=said) as caught:
+def test_what_is_no_unit_is_told_with_the_nearest(text: str, stated: str) -> None:
+    with pytest.raises(InputError, match=stated) as caught:
         parse_unit(text, where="run.csv: channel 'a'")
     assert caught.value.where == "run.csv: channel 'a'"
     assert caught.value.remedy
@@ -133,9 +133,9 @@ def test_another_quantity_is_refused() -> None:
 def test_same_meaning() -> None:
     check_same("m/s²", "m/s2", where="a")
     check_same("kN/mm", "MN/m", where="a")
-    for found, said in (("g", "m/s2"), ("degC", "K"), ("dB re 1 um", "um"), ("Hz", "rad/s")):
-        with pytest.raises(InputError, match="was said to be in"):
-            check_same(found, said, where="a")
+    for found, stated in (("g", "m/s2"), ("degC", "K"), ("dB re 1 um", "um"), ("Hz", "rad/s")):
+        with pytest.raises(InputError, match="was stated to be in"):
+            check_same(found, stated, where="a")
 
 
 @given(st.text(max_size=30) | st.text("mskgNPaHz/()^-*. 12dBre", max_size=20))

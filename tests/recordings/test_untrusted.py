@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 import written
 from permway.errors import InputError
+from permway.formats.model_file import read_model
 from permway.laws.measured import read_measured
-from permway.model.file import read_model
 from permway.recordings.readers import hdf5, hdf5_trial, read_frf, read_table, read_time
 from permway.study import read_study
 

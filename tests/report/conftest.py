@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from permway.paper import report as paper
 from permway.paper.reproduce import Reproduction
-from permway.report import paper
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Report:
     """A report as written, and what it was written from."""
 
     folder: Path
-    told: dict[str, Any]
+    reported: dict[str, Any]
     steps: list[tuple[int, int]]
     result: Reproduction
 
@@ -46,5 +46,5 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Report:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(paper, "reproduce", reproduce_and_keep)
-        told = paper.write_report(folder, progress=lambda done, total: steps.append((done, total)))
-    return Report(folder, told, steps, kept[0])
+        reported = paper.write_report(folder, progress=lambda done, total: steps.append((done, total)))
+    return Report(folder, reported, steps, kept[0])

@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from permway.campaign.campaign import read_campaign
+from permway.campaign.compare import curves, third_octaves
+from permway.campaign.predict import predict
 from permway.diagnosis.compare import CLEAN, RAW, RECALIBRATED, Comparison, compare
 from permway.diagnosis.residuals import lag_correlation
 from permway.errors import InputError
-from permway.recordings.campaign import read_campaign
-from permway.recordings.compare import curves, third_octaves
-from permway.recordings.predict import predict
 from permway.report.compare import write_comparison
 from permway.report.compare.maps import ordered
 from permway.report.compare.tables import quantity, signed
@@ -172,13 +172,13 @@ def test_the_command_without_recalibration(made: Simulated) -> None:
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
-    said = json.loads(done.stdout)
-    assert said["fits"][0]["channels"] == 6
-    assert "recalibrated_dB_rms" not in said["fits"][0]
+    stated = json.loads(done.stdout)
+    assert stated["fits"][0]["channels"] == 6
+    assert "recalibrated_dB_rms" not in stated["fits"][0]
     # By default beside the campaign.
-    assert Path(said["report"]) == made.path.parent / "comparison" / "report.html"
-    assert Path(said["report"]).is_file()
-    assert Path(said["numbers"]).is_file()
+    assert Path(stated["report"]) == made.path.parent / "comparison" / "report.html"
+    assert Path(stated["report"]).is_file()
+    assert Path(stated["numbers"]).is_file()
 
 
 def test_a_campaign_without_anything_to_predict_ends_in_one_error(made: Simulated, tmp_path: Path) -> None:

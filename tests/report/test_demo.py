@@ -1,4 +1,4 @@
-"""The demonstration: what it says of a campaign that comes with the package, how that was made, and its page."""
+"""The demonstration: its result for a campaign that comes with the package, how that was made, and its page."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from permway.recordings.readers import read_frf
 
 @dataclass(frozen=True)
 class Shown:
-    """What the command said and opened."""
+    """What the command stated and opened."""
 
     folder: Path
     out: str
@@ -113,9 +113,9 @@ def test_its_pictures_say_what_lies_under_the_pointer_and_grow_when_clicked(show
                 across = left + (right - left) * _share(panel["x"], x)
                 down = bottom - (bottom - top) * _share(panel["y"], y)
                 page.mouse.move(area["x"] + across * area["width"], area["y"] + down * area["height"])
-                said = shot.locator("output.readout").inner_text()
+                stated = shot.locator("output.readout").inner_text()
                 label = panel["lines"][0]["label"] if panel["lines"] else panel["x"]["label"]
-                assert label in said
+                assert label in stated
                 telling += 1
         assert telling >= 5
         image = shots.first.locator("img")

@@ -1,4 +1,4 @@
-"""The page of a diagnosis: what it says first, that it stands alone, and that its pictures show what was found."""
+"""The page of a diagnosis: what comes first, that it stands alone, and that its pictures show what was found."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lines import hysteretic, supported, uic60
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.compare import assemble
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Where
@@ -35,7 +36,6 @@ from permway.errors import InputError
 from permway.laws import Hysteretic
 from permway.model.changes import Change
 from permway.model.joints import GROUND
-from permway.recordings.campaign import Campaign
 from permway.report.diagnosis import PAGE, write_report
 from permway.report.diagnosis.changes import changes, most_changed
 from permway.report.diagnosis.law import law_picture
@@ -223,7 +223,7 @@ def test_the_verdict_comes_first(page: str, diagnosis: Diagnosis) -> None:
 
 def test_every_section_has_its_numbers(page: str) -> None:
     text = Reader(page).text
-    for said in (
+    for stated in (
         "6.9 to 8.1 m",
         "40 to 120 Hz",
         "0.03 to 0.08",
@@ -240,7 +240,7 @@ def test_every_section_has_its_numbers(page: str) -> None:
         "permway",
         "1.5 s",
     ):
-        assert said in " ".join(text.split()), said
+        assert stated in " ".join(text.split()), stated
 
 
 def test_gains_count_beyond_two_standard_errors(diagnosis: Diagnosis) -> None:
@@ -267,7 +267,7 @@ def test_rivals_without_a_name_are_said_to_be_one_class(diagnosis: Diagnosis) ->
     unsure = effect.model_copy(update={"name": None, "class_": members})
     verdict = diagnosis.verdict.model_copy(update={"status": "ambiguous", "effects": (unsure,)})
     text = " ".join(Reader(render(replace(diagnosis, verdict=verdict), {})).text.split())
-    assert "These data cannot tell apart: fastener_loss (0.60), mortar_void (0.30)." in text
+    assert "These data cannot distinguish: fastener_loss (0.60), mortar_void (0.30)." in text
 
 
 def test_the_numbers_beside_the_status_say_what_they_are_of(diagnosis: Diagnosis) -> None:
@@ -396,8 +396,8 @@ def test_single_sleepers_share_a_level(diagnosis: Diagnosis) -> None:
     line = supported(uic60(), count=5, spacing_m=0.6, pad=pad, ballast=ballast, sleeper_kg=100.0)
     assert line.joints[-1].between[1] == GROUND
     campaign = diagnosis.base.campaign
-    said = campaign.said.model_copy(update={"sensors": (), "forces": ()})
-    bare = replace(campaign, said=said, model=campaign.model.model_copy(update={"line": line}))
+    stated = campaign.stated.model_copy(update={"sensors": (), "forces": ()})
+    bare = replace(campaign, stated=stated, model=campaign.model.model_copy(update={"line": line}))
     plan = drawing(bare)
     assert {plan.level[f"sleeper{i}"] for i in range(5)} == {1.0}
     assert plan.names == {2.0: "rail", 1.0: "sleeper"}
@@ -418,9 +418,9 @@ def test_parameters_say_where_they_went(diagnosis: Diagnosis) -> None:
 
 def test_the_page_says_that_something_is_left() -> None:
     effect = Effect(domain="path", place=Place(joint="pad"), name="fastener_loss")
-    for left, said in ((1.1, False), (74.4, True)):
+    for left, stated in ((1.1, False), (74.4, True)):
         verdict = Verdict(
             status="named", effects=(effect,), evidence=Weight(misfit_before=90.0, misfit_after=left)
         )
         words = [f"{value} {text}" for value, text in headline(verdict)]
-        assert any(line.startswith("74.4 ") and "not all of it" in line for line in words) == said
+        assert any(line.startswith("74.4 ") and "not all of it" in line for line in words) == stated

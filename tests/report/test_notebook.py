@@ -7,10 +7,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from permway.campaign.campaign import read_campaign
 from permway.demo.run import campaign_files
-from permway.model.file import model_from_dict, read_model
+from permway.formats.model_file import model_from_dict, read_model
 from permway.model.presets import slab_track_viaduct_32m
-from permway.recordings.campaign import read_campaign
 from permway.report.notebook import MOST_DRAWN, line_svg
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -76,7 +76,7 @@ def test_a_campaign(tmp_path: Path) -> None:
     html = campaign._repr_html_()
     assert (len(named(drawn(html), "force")), len(named(drawn(html), "sensor"))) == (9, 5)
     assert "hammer_+12C.mat" in html
-    assert all(p.name in html for p in campaign.said.parameters)
+    assert all(p.name in html for p in campaign.stated.parameters)
 
 
 def test_names_cannot_bring_markup() -> None:

@@ -12,13 +12,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
+from permway.campaign.paths import parse_path, value_at
 from permway.diagnosis.catalogue._change import with_chain, with_factors
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.result import Diagnosis
-from permway.model.file import Model, read_model
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_paths import parse_path, value_at
+from permway.formats.model_file import read_model
+from permway.problem.model import Model
 from permway.report.compare.tables import parameter_rows
 from permway.report.diagnosis import write_diagnosis
 from permway.report.diagnosis.better import parameter_picture
@@ -60,7 +61,7 @@ CASES: dict[str, tuple[Callable[[Path], Campaign], str]] = {
     "nothing, and no noise": (concealed(nothing, 1e-3), "recalibrated"),
     "a suspicion": (suspected, "insufficient"),
 }
-"""What makes the campaign, and what is said of it."""
+"""What makes the campaign, and what is stated about it."""
 
 IN_EVERY_RUN = ("lost fasteners", "a suspicion")
 """A diagnosis that names an effect, with all its tables, and one that leaves the nominal model: every check runs
@@ -72,7 +73,7 @@ class Written:
     """A diagnosis and the three files."""
 
     diagnosis: Diagnosis
-    told: dict[str, Any]
+    reported: dict[str, Any]
     verdict: dict[str, Any]
     page: str
     amended: Model
@@ -142,11 +143,11 @@ def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     make, status = CASES[request.param]
     folder = tmp_path_factory.mktemp("one")
     found = diagnose(make(folder / "c"), threads=1)
-    told = write_diagnosis(found, folder / "d")
+    reported = write_diagnosis(found, folder / "d")
     assert found.verdict.status == status
     return Written(
         found,
-        told,
+        reported,
         json.loads((folder / "d" / "verdict.json").read_text(encoding="utf-8")),
         (folder / "d" / "report.html").read_text(encoding="utf-8"),
         read_model(folder / "d" / "amended.toml"),
@@ -181,10 +182,10 @@ def test_the_comparison_says_what_the_verdict_says_of_the_base(written: Written)
 
 def test_the_picture_shows_the_intervals_of_the_verdict(written: Written) -> None:
     known = written.diagnosis.comparison.campaign.parameters.known
-    told = [moved for moved in written.verdict["recalibrated"].values() if moved]
+    reported = [moved for moved in written.verdict["recalibrated"].values() if moved]
     bars = parameter_picture(written.diagnosis).axes[0].containers
-    assert len(bars) == len(told)
-    for bar, moved in zip(bars, told, strict=True):
+    assert len(bars) == len(reported)
+    for bar, moved in zip(bars, reported, strict=True):
         ends = np.array([segment[:, 0] for segment in bar.lines[2][0].get_segments()])
         expected = [[known[name].z(moved[name][end]) for end in ("low", "high")] for name in known]
         np.testing.assert_allclose(ends, expected, atol=1e-9)
@@ -249,7 +250,7 @@ def test_sizes_and_advice(written: Written) -> None:
             same(seen.partition("%")[0], [100.0 * abs(one["value"] / one["none"] - 1.0)])
         elif one["value"] is not None:
             same(re.sub("m/s2", "", seen), [one["value"]])
-    rows = written.rows("Measure, Tells")
+    rows = written.rows("Measure, States")
     assert len(rows) == len(written.verdict["next"])
     for (_, _, now, then), one in zip(rows, written.verdict["next"], strict=True):
         same(now, [one["separation_before"]])
@@ -258,21 +259,21 @@ def test_sizes_and_advice(written: Written) -> None:
 
 def test_the_amended_model_has_the_values_that_the_verdict_says(written: Written) -> None:
     called = written.verdict["status"] not in ("recalibrated", "insufficient")
-    said = written.verdict["recalibrated"]["after" if called else "before"]
+    stated = written.verdict["recalibrated"]["after" if called else "before"]
     campaign = written.diagnosis.comparison.campaign
     for name, known in campaign.parameters.known.items():
         path = parse_path(known.parameter.paths[0], name)
         ratio = value_at(written.amended, path) / value_at(campaign.model, path)
-        assert ratio == pytest.approx(said[name]["value"] / said[name]["prior"], rel=1e-9)
+        assert ratio == pytest.approx(stated[name]["value"] / stated[name]["prior"], rel=1e-9)
     # And where nothing is called missing, nothing beside them.
     if not called:
         assert written.amended.line.joints == campaign.model.line.joints
 
 
 def test_what_is_printed_is_the_verdict(written: Written) -> None:
-    assert written.told["status"] == written.verdict["status"]
-    assert written.told["verdict"] in re.sub(r"&#39;", "'", written.page)
-    assert [one["place"] for one in written.told["effects"]] == [
+    assert written.reported["status"] == written.verdict["status"]
+    assert written.reported["verdict"] in re.sub(r"&#39;", "'", written.page)
+    assert [one["place"] for one in written.reported["effects"]] == [
         effect.place.label for effect in written.diagnosis.verdict.effects
     ]
     amended = bool(written.verdict["recalibrated"]["after"])

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 from permway.errors import InputError
-from permway.report import paper
-from permway.report.slips import slips
+from permway.paper import report as paper
+from permway.paper.misprints import misprints
 from plotly.offline import get_plotlyjs
 
 FIGURES = [f"figure-{n}" for n in range(7, 19)]
@@ -69,7 +69,7 @@ def test_buttons_show_one_convention_at_a_time(own: str) -> None:
 def test_every_statement_slip_and_choice_is_on_the_page(report: Any, own: str) -> None:
     assert own.count('<span class="verdict') == len(report.result.statements)
     assert own.count("✗ does not hold") == sum(not s.holds for s in report.result.statements)
-    assert len(slips(report.result)) >= 15
+    assert len(misprints(report.result)) >= 15
     for choice in report.result.choices:
         assert choice.name in own
 
@@ -77,11 +77,11 @@ def test_every_statement_slip_and_choice_is_on_the_page(report: Any, own: str) -
 def test_sizes_and_what_is_told(report: Any) -> None:
     assert (report.folder / "report.html").stat().st_size < 8e6
     assert sorted(p.name for p in report.folder.iterdir()) == ["report.html", "tables.json"]
-    told = report.told
-    assert (Path(told["report"]).name, Path(told["tables"]).name) == ("report.html", "tables.json")
-    assert (told["rows held"], told["rows missed"], told["rows open"]) == (108, 4, 24)
-    assert re.fullmatch(r"\d+ of \d+ hold", told["statements"])
-    json.dumps(told, allow_nan=False)
+    reported = report.reported
+    assert (Path(reported["report"]).name, Path(reported["tables"]).name) == ("report.html", "tables.json")
+    assert (reported["rows held"], reported["rows missed"], reported["rows open"]) == (108, 4, 24)
+    assert re.fullmatch(r"\d+ of \d+ hold", reported["statements"])
+    json.dumps(reported, allow_nan=False)
     assert report.steps[-1][0] == report.steps[-1][1]
 
 
@@ -94,7 +94,7 @@ def test_the_same_reproduction_gives_the_same_files(report: Any, tmp_path: Path)
 @pytest.fixture
 def no_work(monkeypatch: pytest.MonkeyPatch) -> None:
     def work(**_: Any) -> None:
-        raise AssertionError("work was begun before the fault was found")
+        raise AssertionError("work was started before the fault was found")
 
     monkeypatch.setattr(paper, "reproduce", work)
 

@@ -10,10 +10,11 @@ import xarray as xr
 from permway.errors import InputError
 from permway.laws import Hysteretic
 from permway.model.irregularity import GermanSato
+from permway.model.place import Place
 from permway.model.presets import slab_track_viaduct_32m
 from permway.paper.conventions import train
 from permway.report.response import draw_dataset
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from permway.response.train import train_response
 
 PNG = b"\x89PNG\r\n\x1a\n"

@@ -16,10 +16,10 @@ from permway.laws import Hysteretic, KelvinVoigt
 from permway.model.bodies import Beam, Mass
 from permway.model.joints import Joints
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.shafts import Shaft
 from permway.response.everywhere import everywhere
 from permway.response.modes import modes
-from permway.response.receptance import Place
 
 LENGTH_M, ETA = 24.0, 0.03
 BENDING, MASS = 3.4e10 * 1.2, 1.0e4
@@ -135,7 +135,7 @@ def test_the_pinned_girder_of_the_paper_s_viaduct() -> None:
 
 
 def test_an_endless_rail_on_supports_radiates() -> None:
-    """Modes of the track overlap, and those told apart are damped, also by what runs off along the rail."""
+    """Modes of the track overlap, and those distinguished are damped, also by what runs off along the rail."""
     data = modes(permway.ballasted_b91_60e1(sleepers=31), 40.0, 200.0)
     assert data.sizes["mode"] > 5
     assert (data.damping_ratio.values > 0.0).all()
@@ -185,13 +185,13 @@ def test_an_endless_rail_against_its_characteristic_equation() -> None:
     -s m omega^2 / (s - m omega^2) to the ground.
     """
     rail = Beam(youngs_modulus_Pa=2.1e11, second_moment_m4=3e-5, density_kg_per_m3=7850.0, area_m2=7.7e-3)
-    hung = 200.0
+    attached = 200.0
     joints = (
         Joints(between=("rail", "mass"), law="s", at=(0.0,)),
         Joints(between=("rail", "ground"), law="s", at=(5.0,)),
     )
     line = Line(
-        bodies={"rail": rail, "mass": Mass(mass_kg=hung)},
+        bodies={"rail": rail, "mass": Mass(mass_kg=attached)},
         joints=joints,
         laws={"s": KelvinVoigt(stiffness=2e7, damping=1e4)},
     )
@@ -204,7 +204,7 @@ def test_an_endless_rail_against_its_characteristic_equation() -> None:
             (-1j * np.exp(-1j * k * x) - np.exp(-k * x)) / (4.0 * 2.1e11 * 3e-5 * k**3) for x in (0.0, 5.0)
         )
         s = 2e7 + 1j * w * 1e4
-        stiff = np.array([-s * hung * w**2 / (s - hung * w**2), s])
+        stiff = np.array([-s * attached * w**2 / (s - attached * w**2), s])
         return complex(np.linalg.det(np.eye(2) + np.array([[near, far], [far, near]]) * stiff))
 
     assert omega.size == 5

@@ -1,4 +1,4 @@
-"""Wrong arguments end in one sentence that says what would be right."""
+"""Wrong arguments end in one sentence that states what would be right."""
 
 from __future__ import annotations
 
@@ -72,8 +72,8 @@ def test_it_says_what_would_be_right(call: Callable[[], object], words: str) -> 
 def test_all_faults_of_a_table_are_named_at_once() -> None:
     with pytest.raises(permway.InputError) as caught:
         ANY.Place(body=3, x_m="a", y=1)
-    told = str(caught.value)
-    assert all(f"Place.{key}" in told for key in ("body", "x_m", "y"))
+    reported = str(caught.value)
+    assert all(f"Place.{key}" in reported for key in ("body", "x_m", "y"))
     table = {"frequencies": {"from_Hz": "1"}, "line": {"bodies": {}, "speed": 3}}
     with pytest.raises(permway.InputError) as caught:
         permway.model_from_dict(table)

@@ -9,12 +9,14 @@ from permway.model.bodies import Beam, Mass
 from permway.model.irregularity import GermanLow, Sato
 from permway.model.joints import Ends, Joints, Spread
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.presets import slab_track_viaduct_32m, wj7b_constant
+from permway.model.train import Train
 from permway.model.vehicle_presets import crh380a
+from permway.problem.solve import write_dataset
 from permway.response.decay import decay_rate
-from permway.response.receptance import Place, receptance
-from permway.response.solve import write_dataset
-from permway.response.train import Train, train_response
+from permway.response.receptance import receptance
+from permway.response.train import train_response
 
 RAIL = Beam(
     theory="timoshenko",
@@ -331,8 +333,8 @@ def test_tables_of_a_wrong_type(changes):
     with pytest.raises((TypeError, OverflowError)) as caught:
         _core.solve_line(**tables(**changes))
     # What is at fault stands in the message or in a note below it.
-    told = [str(caught.value), *getattr(caught.value, "__notes__", [])]
-    assert any(next(iter(changes)).partition("_")[0] in text for text in told)
+    reported = [str(caught.value), *getattr(caught.value, "__notes__", [])]
+    assert any(next(iter(changes)).partition("_")[0] in text for text in reported)
 
 
 def test_missing_column():

@@ -14,15 +14,16 @@ import numpy as np
 import pytest
 import xarray as xr
 from permway.errors import InputError, SolveError
+from permway.formats.model_file import model_from_dict
 from permway.laws import Hysteretic
 from permway.model.bodies import Mass
-from permway.model.file import model_from_dict
 from permway.model.joints import Joints
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.presets import slab_track_viaduct_32m, wj7b_constant
+from permway.problem.solve import solve, write_dataset
 from permway.response.quantities import accelerance
-from permway.response.receptance import CONVENTION, Place, receptance
-from permway.response.solve import solve, write_dataset
+from permway.response.receptance import CONVENTION, receptance
 
 LINE = slab_track_viaduct_32m(pad=wj7b_constant())
 MIDSPAN = [Place(body="rail", x_m=16.0), Place(body="girder", x_m=16.0)]
@@ -39,7 +40,8 @@ INTERRUPTED = """
     from permway.model.presets import slab_track_viaduct_32m, wj7b_constant
     # A shell may start its children with the signal ignored.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    from permway.response.receptance import Place, receptance
+    from permway.model.place import Place
+    from permway.response.receptance import receptance
 
     {sweep}
     at = [Place(body="rail", x_m=16.0)]
@@ -269,7 +271,7 @@ def test_dataset_holds_the_model_it_came_from():
 @pytest.mark.parametrize("in_memory", [True, False])
 def test_file_keeps_every_bit(in_memory, tmp_path, monkeypatch):
     if not in_memory:
-        monkeypatch.setattr("permway.response.solve.LARGEST_IN_MEMORY", 0)
+        monkeypatch.setattr("permway.problem.solve.LARGEST_IN_MEMORY", 0)
     data = solve(model_from_dict(MODEL), threads=1)
     path = write_dataset(data, tmp_path / "answer.nc")
     with xr.open_dataset(path, engine="h5netcdf") as read:
@@ -319,7 +321,7 @@ def test_failed_write_leaves_nothing_behind(error, comes_out, tmp_path, monkeypa
             file.write(b"half a file")
         raise error
 
-    monkeypatch.setattr("permway.response.solve.LARGEST_IN_MEMORY", 0)
+    monkeypatch.setattr("permway.problem.solve.LARGEST_IN_MEMORY", 0)
     monkeypatch.setattr(xr.Dataset, "to_netcdf", half)
     with pytest.raises(comes_out):
         write_dataset(data, path)

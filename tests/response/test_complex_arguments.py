@@ -13,20 +13,22 @@ from permway.laws.dma import DmaTable
 from permway.laws.shift import Arrhenius
 from permway.laws.transmissibility import transmissibility
 from permway.model.bodies import Beam, Mass
-from permway.model.file import Frequencies
 from permway.model.irregularity import GermanLow
 from permway.model.irregularity_spectra import check_speed
 from permway.model.joints import Joints
 from permway.model.line import Line
+from permway.model.place import Place
+from permway.model.train import Train
 from permway.model.vehicle_presets import crh380a
+from permway.problem.model import Frequencies
 from permway.recordings.estimates.checks import as_reals, check_positive
 from permway.recordings.estimates.intervals import power_interval
 from permway.recordings.estimates.welch import cross_spectra
 from permway.response.decay import decay_rate
 from permway.response.pseudo import power_spectrum, pseudo_excitation
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from permway.response.sensitivity import sensitivity
-from permway.response.train import Train, train_response
+from permway.response.train import train_response
 from permway.units import parse_unit
 
 RAIL = Beam(

@@ -13,8 +13,9 @@ from permway.laws import FractionalKelvinVoigt, Hysteretic, Law
 from permway.model.bodies import AnyBody, Beam, Mass
 from permway.model.joints import Joints, Spread
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response.dispersion import dispersion
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from permway.tables import to_frame
 
 EI, RHO_A, S, D = 6.4e6, 60.0, 3.0e7, 0.6
@@ -141,8 +142,8 @@ def test_what_is_no_bed_is_held_and_said() -> None:
     assert found.bed.bodies == ("rail",)
     assert found.critical_speed_m_per_s == pytest.approx((4.0 * S * EI / RHO_A**2) ** 0.25, rel=1e-6)
     assert any("slab is taken as rigid" in note for note in found.notes)
-    told = dispersion(line, held=("slab",))
-    assert told.critical_speed_m_per_s == pytest.approx(found.critical_speed_m_per_s)
+    reported = dispersion(line, held=("slab",))
+    assert reported.critical_speed_m_per_s == pytest.approx(found.critical_speed_m_per_s)
     for options, says in (
         ({"body": "deck"}, "is no beam"),
         ({"held": ("rail",)}, "cannot be held|can be held"),
@@ -171,12 +172,12 @@ def test_the_command_draws_and_writes(tmp_path: Path, capsys: pytest.CaptureFixt
     with pytest.raises(SystemExit) as end:
         app(["dispersion", str(model), "--plot", str(tmp_path / "p"), "-o", str(table), "--json"])
     assert end.value.code == 0
-    said = json.loads(capsys.readouterr().out)
+    stated = json.loads(capsys.readouterr().out)
     # By rail and sleepers together on the ballast, Fryba's speed is 307 m/s.
-    assert 250.0 < said["critical_speed_m_per_s"] < 307.0
-    assert said["critical_speed_km_per_h"] == pytest.approx(3.6 * said["critical_speed_m_per_s"])
-    assert said["bodies"] == ["rail", "sleeper"]
+    assert 250.0 < stated["critical_speed_m_per_s"] < 307.0
+    assert stated["critical_speed_km_per_h"] == pytest.approx(3.6 * stated["critical_speed_m_per_s"])
+    assert stated["bodies"] == ["rail", "sleeper"]
     waves = np.loadtxt(table, delimiter=",", skiprows=1)
     assert waves.shape == (400, 3)
-    assert Path(said["picture"]).name == "dispersion.png"
-    assert Path(said["picture"]).stat().st_size > 3000
+    assert Path(stated["picture"]).name == "dispersion.png"
+    assert Path(stated["picture"]).stat().st_size > 3000

@@ -7,12 +7,13 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from permway.errors import InputError, SolveError
+from permway.formats.model_file import model_from_dict
 from permway.laws import Hysteretic
 from permway.model.bodies import Beam
-from permway.model.file import model_from_dict
 from permway.model.joints import Joints
 from permway.model.line import Line
-from permway.response.receptance import Place, receptance
+from permway.model.place import Place
+from permway.response.receptance import receptance
 from permway.response.sensitivity import sensitivity
 from scipy.optimize import brentq
 

@@ -18,9 +18,9 @@ from permway.laws import Hysteretic, KelvinVoigt
 from permway.model.bodies import Beam, Mass
 from permway.model.joints import Joints
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response.modes import poles_between
 from permway.response.poles import lines_for, poles_of
-from permway.response.receptance import Place
 from scipy.optimize import brentq
 
 LENGTH_M, ETA = 24.0, 0.03

@@ -7,7 +7,9 @@ from permway.laws import KelvinVoigt
 from permway.model.bodies import Beam
 from permway.model.irregularity import GermanLow
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.presets import slab_track_viaduct_32m
+from permway.model.train import Train
 from permway.model.vehicle_presets import crh380a
 from permway.response.passby import Axles, hslm_a, passby
 from permway.response.passby.bands import band_energy, one_third_octaves
@@ -16,8 +18,8 @@ from permway.response.passby.loads import static_axles
 from permway.response.passby.path import path_of
 from permway.response.passby.rough import realise
 from permway.response.passby.transfer import transfer
-from permway.response.receptance import Place, receptance
-from permway.response.train import Train, train_response
+from permway.response.receptance import receptance
+from permway.response.train import train_response
 from scipy.interpolate import CubicSpline
 
 PAD = KelvinVoigt(stiffness=8e7, damping=6e4)

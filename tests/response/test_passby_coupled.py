@@ -7,13 +7,14 @@ from permway.laws import KelvinVoigt
 from permway.model.bodies import Beam
 from permway.model.joints import Joints
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.vehicle_presets import crh380a
 from permway.response.passby import Axles, MassOnSpring, SprungMass, couple, passby
 from permway.response.passby.kernel import kernels
 from permway.response.passby.path import path_of
 from permway.response.passby.sprung import stepper
 from permway.response.pseudo import wheel_rail_forces
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 

@@ -1,4 +1,4 @@
-"""A passage said wrongly: one clear error each; and the model file, the command line and the pictures."""
+"""A passage stated wrongly: one clear error each; and the model file, the command line and the pictures."""
 
 import json
 
@@ -7,17 +7,17 @@ import pytest
 import xarray as xr
 from lines import supported, uic60
 from permway.errors import InputError
+from permway.formats.model_file import model_from_dict
 from permway.laws import Hysteretic, KelvinVoigt
 from permway.model.bodies import Beam
-from permway.model.file import model_from_dict
 from permway.model.irregularity import Iso3095
 from permway.model.line import Line
+from permway.model.place import Place
+from permway.model.train import Train
 from permway.model.vehicle_presets import crh380a
+from permway.problem.solve import solve, write_dataset
 from permway.report.response import draw_dataset
 from permway.response.passby import Axles, MassOnSpring, couple, hslm_a, passby
-from permway.response.receptance import Place
-from permway.response.solve import solve, write_dataset
-from permway.response.train import Train
 
 TRACK = supported(uic60(), count=21, spacing_m=0.6, pad=KelvinVoigt(stiffness=8e7, damping=6e4))
 SENSOR = Place(body="rail", x_m=0.3)

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.model.place import Place
 from permway.model.presets import slab_track_viaduct_32m, wj7b_constant
 from permway.recordings.readers import read_time
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 
 sys.path.append(str(Path(__file__).parents[1] / "recordings"))
 

@@ -9,6 +9,8 @@ import numpy as np
 import permway
 import pytest
 from permway.arrays import Complexes, Reals
+from permway.campaign.importers.sheet import import_sheet
+from permway.campaign.predict.motion import influence
 from permway.challenge import rolling as marched
 from permway.challenge.case import Case, draw, write
 from permway.challenge.irregularity import profile
@@ -16,9 +18,7 @@ from permway.challenge.layout import Layout
 from permway.challenge.plan import Chain
 from permway.challenge.running import with_dashpots
 from permway.errors import InputError
-from permway.model.file import Model
-from permway.recordings.importers.sheet import import_sheet
-from permway.recordings.predict.motion import influence
+from permway.problem.model import Model
 from permway.response.rolling import Kernel, kernel, kernels, rolled
 from permway.response.rolling.bays import bays
 
@@ -28,7 +28,7 @@ SPEED = LAPS * LAYOUT.length_m / SECONDS
 
 
 def case() -> Case:
-    """Three short spans with layers of dashpots, as their owner says."""
+    """Three short spans with layers of dashpots, as the file states."""
     drawn = draw(3, "null")
     tests = replace(
         drawn.tests,

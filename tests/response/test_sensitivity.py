@@ -5,8 +5,9 @@ import permway
 import pytest
 from permway.errors import InputError
 from permway.laws import law_from_dict
+from permway.model.place import Place
 from permway.response.core import run
-from permway.response.receptance import Place, check_places, receptance
+from permway.response.receptance import check_places, receptance
 from permway.response.sensitivity import by_joint, change_joint, sensitivity
 
 FREQUENCY = np.array([1.7, 4.1, 23.0, 61.0, 180.0, 700.0, 1900.0])

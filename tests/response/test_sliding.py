@@ -7,11 +7,12 @@ import pytest
 from permway.errors import InputError
 from permway.model.irregularity import GermanLow
 from permway.model.presets import slab_track_viaduct_32m
+from permway.model.train import Train
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_additions import DamperSeries, Slider
 from permway.model.vehicle_presets import crh380a
 from permway.response.sliding import Remainder, at_work, remainders
-from permway.response.train import Train, train_response
+from permway.response.train import train_response
 from scipy.special import erf
 
 STEP_HZ, LINES = 0.125, 1600

@@ -43,8 +43,8 @@ def main() -> None:
     arguments = parser.parse_args()
     folders = sorted(arguments.campaigns.glob("sealed-*"))
     with ThreadPoolExecutor(arguments.workers) as pool:
-        for said in pool.map(one, folders):
-            print(said, flush=True)
+        for stated in pool.map(one, folders):
+            print(stated, flush=True)
 
 
 if __name__ == "__main__":

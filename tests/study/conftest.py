@@ -91,13 +91,19 @@ def table(model):
     }
 
 
-@pytest.fixture
-def study_file(tmp_path):
-    """Write a study of 2 x count cases."""
+@pytest.fixture(scope="session")
+def study_in():
+    """Write a study of 2 x count cases into a folder."""
 
-    def write(count):
-        path = tmp_path / "pads.toml"
+    def write(folder, count):
+        path = folder / "pads.toml"
         path.write_text(TOML.replace("COUNT", str(count)), encoding="utf-8")
         return path
 
     return write
+
+
+@pytest.fixture
+def study_file(tmp_path, study_in):
+    """Write a study of 2 x count cases."""
+    return lambda count: study_in(tmp_path, count)

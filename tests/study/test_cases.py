@@ -10,8 +10,8 @@ from permway.study.places import parse_place, replaced, written
 def test_product_is_in_the_order_of_the_axes(table):
     plan = study_from_dict(table).plan
     assert plan.shape == (3, 2)
-    said = [tuple(plan.said(i).values()) for i in range(plan.cases)]
-    assert said == [(2e7, 0.1), (2e7, 0.3), (5e7, 0.1), (5e7, 0.3), (8e7, 0.1), (8e7, 0.3)]
+    stated = [tuple(plan.stated(i).values()) for i in range(plan.cases)]
+    assert stated == [(2e7, 0.1), (2e7, 0.3), (5e7, 0.1), (5e7, 0.3), (8e7, 0.1), (8e7, 0.3)]
 
 
 def test_values_reach_the_model(table):
@@ -25,7 +25,7 @@ def test_zip_runs_axes_together(table):
     table["axes"]["loss"]["values"] = [0.1, 0.2, 0.3]
     plan = study_from_dict(table).plan
     assert [(d.name, d.size) for d in plan.dimensions] == [("case", 3)]
-    assert [tuple(plan.said(i).values()) for i in range(3)] == [(2e7, 0.1), (5e7, 0.2), (8e7, 0.3)]
+    assert [tuple(plan.stated(i).values()) for i in range(3)] == [(2e7, 0.1), (5e7, 0.2), (8e7, 0.3)]
 
 
 def test_one_axis_sets_several_places(table):
@@ -57,7 +57,7 @@ def test_sample_follows_from_its_seed(table, method):
     table["axes"]["loss"]["values"] = {"from": 0.1, "to": 0.3}
     first, again = (study_from_dict(table).plan for _ in range(2))
     assert (first.shape, first.hash()) == ((5,), again.hash())
-    drawn = np.array([list(first.said(i).values()) for i in range(5)])
+    drawn = np.array([list(first.stated(i).values()) for i in range(5)])
     assert np.all((drawn >= [2e7, 0.1]) & (drawn <= [8e7, 0.3]))
     if method == "latin_hypercube":
         strata = np.floor(5 * np.log(drawn[:, 0] / 2e7) / np.log(4.0))

@@ -12,14 +12,14 @@ from permway.study import cluster as cluster_module
 from permway.study import read_study, run_study
 
 distributed = pytest.importorskip("distributed")
-# What distributed says of itself on closing, above all when a worker was killed.
+# What distributed states about itself on closing, above all when a worker was killed.
 pytestmark = [
     pytest.mark.filterwarnings("ignore::ResourceWarning"),
     pytest.mark.filterwarnings("ignore::DeprecationWarning"),
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
 ]
 
-COUNT = 40
+COUNT = 16
 
 
 @pytest.fixture(scope="module")
@@ -35,11 +35,12 @@ def cluster():
         yield local
 
 
-@pytest.fixture
-def here(study_file, tmp_path):
-    path = study_file(COUNT)
-    run_study(read_study(path), tmp_path / "here", threads=1)
-    return read_study(path), files(tmp_path / "here")
+@pytest.fixture(scope="module")
+def here(study_in, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("here")
+    path = study_in(folder, COUNT)
+    run_study(read_study(path), folder / "here", threads=1)
+    return read_study(path), files(folder / "here")
 
 
 def files(folder):

@@ -73,9 +73,9 @@ def test_failed_cases_are_status_1(tmp_path):
     )
     done = run(path, "--json")
     assert (done.returncode, done.stderr) == (1, "")
-    said = json.loads(done.stdout)
-    assert [f["case"] for f in said["failed"]] == [1]
-    assert "at 1 Hz" in said["failed"][0]["error"]
+    stated = json.loads(done.stdout)
+    assert [f["case"] for f in stated["failed"]] == [1]
+    assert "at 1 Hz" in stated["failed"][0]["error"]
 
 
 def test_the_examples_are_here():

@@ -34,11 +34,12 @@ def wait_for(folder, count, sweep):
         time.sleep(0.01)
 
 
-@pytest.fixture
-def undisturbed(study_file, tmp_path):
-    path = study_file(CASES // 2)
-    run_study(read_study(path), tmp_path / "undisturbed", threads=1)
-    return path, whole_files(tmp_path / "undisturbed")
+@pytest.fixture(scope="module")
+def undisturbed(study_in, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("undisturbed")
+    path = study_in(folder, CASES // 2)
+    run_study(read_study(path), folder / "out", threads=1)
+    return path, whole_files(folder / "out")
 
 
 def test_killed_at_any_time_and_resumed(undisturbed, tmp_path):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import xarray as xr
-from permway.model.file import model_from_dict
-from permway.response.solve import solve, write_dataset
+from permway.formats.model_file import model_from_dict
+from permway.problem.solve import solve, write_dataset
 from permway.study import netcdf
 
 

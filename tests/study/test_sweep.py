@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from permway.errors import InputError
-from permway.model.file import model_from_dict
-from permway.response.solve import solve
+from permway.formats.model_file import model_from_dict
+from permway.problem.solve import solve
 from permway.study import local, open_study, run_study, study_from_dict
 from permway.study.answer import Answer
 

@@ -12,7 +12,7 @@ from permway.challenge.score import Scored
 from permway.challenge.summary import interval
 
 DEVIANCES = (-np.inf, 15.0, 50.0, 200.0, 1e3, 1e4, 1e5, np.inf)
-"""Ends of the classes of deviance that power is told for."""
+"""Ends of the classes of deviance that power is reported for."""
 
 PROBABILITIES = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0)
 """Ends of the classes of what verdicts say."""
@@ -39,10 +39,10 @@ def power(scored: Iterable[Scored]) -> list[dict[str, Any]]:
         mine = [s for s, deviance in weighed if low <= deviance < high]
         if mine:
             row: dict[str, Any] = {"from": _end(low), "to": _end(high), "cases": len(mine)}
-            row["found"] = _told([bool(s.found) for s in mine])
-            row["placed"] = _told([bool(s.placed) for s in mine])
-            # What no catalogue holds has no name to be told.
-            row["family"] = _told([bool(s.family) for s in mine if s.concealed_family])
+            row["found"] = _reported([bool(s.found) for s in mine])
+            row["placed"] = _reported([bool(s.placed) for s in mine])
+            # What no catalogue holds has no name to be reported.
+            row["family"] = _reported([bool(s.family) for s in mine if s.concealed_family])
             rows.append(row)
     return rows
 
@@ -57,7 +57,7 @@ def reliability(scored: Iterable[Scored]) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        `from`, `to`, `claims`, `mean` (of what was said), `true` (the count and its 90 % interval).
+        `from`, `to`, `claims`, `mean` (of what was stated), `true` (the count and its 90 % interval).
     """
     claims = [claim for s in scored for claim in s.claims]
     rows = []
@@ -65,8 +65,8 @@ def reliability(scored: Iterable[Scored]) -> list[dict[str, Any]]:
         mine = [c for c in claims if low <= c.probability < high or c.probability == high == 1.0]
         if mine:
             mean = float(np.mean([c.probability for c in mine]))
-            told = _told([c.true for c in mine])
-            rows.append({"from": low, "to": high, "claims": len(mine), "mean": round(mean, 3), "true": told})
+            reported = _reported([c.true for c in mine])
+            rows.append({"from": low, "to": high, "claims": len(mine), "mean": round(mean, 3), "true": reported})
     return rows
 
 
@@ -102,6 +102,6 @@ def _end(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def _told(values: Sequence[bool]) -> dict[str, float]:
+def _reported(values: Sequence[bool]) -> dict[str, float]:
     low, high = interval(sum(values), len(values)) if values else (0.0, 1.0)
     return {"count": sum(values), "of": len(values), "low": round(low, 3), "high": round(high, 3)}

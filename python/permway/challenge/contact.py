@@ -21,7 +21,7 @@ TAPER_HZ = (3000.0, 4000.0)
 """Where the response to an impact is cut: from 2 to 3 kHz a landing's peak was 10 % off, here 3 (a test)."""
 
 LASTING_S, LINE_HZ = 1.0, 0.25
-"""How long an impact is felt, and the lines that its response is made of."""
+"""How long an impact acts, and the lines that its response is made of."""
 
 ROUNDS, CLOSE = 100, 1e-7
 """Of a step, and the change of its force over the load at which it ends."""

@@ -78,7 +78,7 @@ class Crossing:
         m, down.
     axlebox : ndarray, shape (N, wheels)
         Accelerations of the wheelsets, m/s2, down.
-    felt : ndarray, shape (N, arms)
+    on_board : ndarray, shape (N, arms)
         Accelerations on board of the first car, m/s2.
     """
 
@@ -87,7 +87,7 @@ class Crossing:
     contact_force: Reals
     displacement: Reals
     axlebox: Reals
-    felt: Reals
+    on_board: Reals
 
 
 def cross(
@@ -162,7 +162,7 @@ def cross(
     steps = int((to_m - from_m) / train.speed_m_per_s / step_s + 1e-6)
     times: Reals = step_s * np.arange(steps + 1, dtype=np.float64)
     front: Reals = np.asarray(from_m + train.speed_m_per_s * times)
-    forces, moved, hurried, felt = (
+    forces, displaced, velocities, on_board = (
         np.zeros((times.size, n)) for n in (wheels.size, len(read), wheels.size, len(rows))
     )
     force = _rest(below, cars, rail, law, wheels, weight, front[0] - behind, surface)
@@ -178,9 +178,9 @@ def cross(
             below.go_on(free + force @ pressed)
             cars.go_on(hanging - force @ wheels_give)
         forces[step] = force
-        moved[step], hurried[step] = below.moved[read], cars.hurried[wheels]
-        felt[step] = rows @ cars.hurried[:size]
-    return Crossing(times, front, forces, moved, hurried, felt)
+        displaced[step], velocities[step] = below.displaced[read], cars.velocities[wheels]
+        on_board[step] = rows @ cars.velocities[:size]
+    return Crossing(times, front, forces, displaced, velocities, on_board)
 
 
 def _check(train: Consist, from_m: float, to_m: float, step_s: float, viscous_at_Hz: float) -> None:
@@ -249,12 +249,12 @@ def _rest(
     above = stiffness[np.ix_(others, others)]
     force = np.full(wheels.size, law.hertz.load_N)
     for _ in range(ROUNDS):
-        line.moved = held.solve(under.press(force, line.moved.size))
-        stands = under.read(line.moved, force) + surface(at) + law.closing(force)
+        line.displaced = held.solve(under.press(force, line.displaced.size))
+        stands = under.read(line.displaced, force) + surface(at) + law.closing(force)
         hangs = np.linalg.solve(above, weight[others] - stiffness[np.ix_(others, wheels)] @ stands)
-        cars.moved = np.zeros(weight.size)
-        cars.moved[wheels], cars.moved[others] = stands, hangs
-        last, force = force, weight[wheels] - (stiffness @ cars.moved)[wheels]
+        cars.displaced = np.zeros(weight.size)
+        cars.displaced[wheels], cars.displaced[others] = stands, hangs
+        last, force = force, weight[wheels] - (stiffness @ cars.displaced)[wheels]
         if np.abs(force - last).max() < AT_REST * law.hertz.load_N:
             return force
     raise SolveError(f"the train at rest is not found in {ROUNDS} rounds; give another from_m")

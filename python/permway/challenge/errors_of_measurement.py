@@ -1,4 +1,4 @@
-"""What every measurement has: gains that wander with frequency, and noise blow by blow."""
+"""What every measurement has: calibration errors over frequency, and noise blow by blow."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ NEPER_PER_DB = float(np.log(10.0) / 20.0)
 _KNOTS = np.linspace(np.log(0.1), np.log(1000.0), 80)
 
 
-def wander(
+def calibration_error(
     random: np.random.Generator, frequency_Hz: Reals, *, size_dB: float, length: float = OCTAVE
 ) -> Complexes:
-    """A smooth complex gain: its level in dB and its phase in as many nepers wander by `size_dB`.
+    """A smooth complex gain: its level in dB and its phase in as many nepers vary by `size_dB`.
 
     Normal with a squared-exponential correlation over ln f.
 
@@ -64,10 +64,10 @@ def struck(
     for _ in range(blows):
         strength = np.exp(0.25 * random.standard_normal(points))
         read = strength + cell * _complex(random, (lines, points))
-        moved = response * strength + noise[:, :, None] * _complex(random, (lines, sensors, points))
-        cross += moved * read.conj()[:, None, :]
+        displaced = response * strength + noise[:, :, None] * _complex(random, (lines, sensors, points))
+        cross += displaced * read.conj()[:, None, :]
         force += np.abs(read) ** 2
-        power += np.abs(moved) ** 2
+        power += np.abs(displaced) ** 2
     estimate = cross / force[:, None, :]
     return estimate, np.abs(cross) ** 2 / (force[:, None, :] * power)
 

@@ -1,4 +1,4 @@
-"""What a verdict advises to measure next is measured, and it is seen whether that tells the rivals apart."""
+"""What a verdict advises to measure next is measured, and it is seen whether that distinguishes the rivals."""
 
 from __future__ import annotations
 
@@ -57,13 +57,13 @@ class Separated:
     measurement : str
         What was advised.
     rivals : tuple of str
-        The two that it should tell apart.
+        The two that it should distinguish.
     truth : tuple of str
         Identifiers of what was concealed, or that nothing was.
     after : tuple of str
         Names, or classes, of the new verdict; its status if it names nothing.
     apart : bool
-        Whether the new verdict says one of them and not the other, in any class.
+        Whether the new verdict states one of them and not the other, in any class.
     right : bool or None
         Whether that is the true one; None where neither is.
     """

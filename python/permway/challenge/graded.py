@@ -1,4 +1,4 @@
-"""Effects so weak that records hardly tell of them: each faded until it weighs what was drawn for it.
+"""Effects so weak that records hardly constrain them: each faded until it weighs what was drawn for it.
 
 Effects of the other tiers are of a size that an engineer would call one, and most stand far out of the records.
 What a diagnosis is worth at the edge of what can be known is seen on these.

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from permway.challenge.beams import Complexes, Reals
-from permway.challenge.errors_of_measurement import wander
+from permway.challenge.errors_of_measurement import calibration_error
 
 STRETCH_M = (60.0, 400.0)
 """Lengths over which the level stays."""
@@ -36,7 +36,7 @@ def density(wavenumber: Reals) -> Reals:
 def deviation(random: np.random.Generator) -> Callable[[Reals], Reals]:
     """By how many dB the line's spectrum differs from the sheet's, at wavenumbers in rad/m: one draw."""
     wavenumber = np.geomspace(1e-3, 1e3, 400)
-    off = 20.0 * np.log10(np.abs(wander(random, wavenumber * 10.0, size_dB=1.0, length=1.0)))
+    off = 20.0 * np.log10(np.abs(calibration_error(random, wavenumber * 10.0, size_dB=1.0, length=1.0)))
     off = np.clip(off, -WITHIN_DB, WITHIN_DB)
     return lambda at: np.interp(np.log(at), np.log(wavenumber), off)
 

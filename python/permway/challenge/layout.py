@@ -1,4 +1,4 @@
-"""What a measuring team would know of a line: layout, values with their owner's tolerances, places, runs."""
+"""What a measuring team would know of a line: layout, values with their tolerances, places, runs."""
 
 from __future__ import annotations
 
@@ -170,7 +170,7 @@ def draw_nominal(random: np.random.Generator) -> dict[str, dict[str, float]]:
 
 
 def draw_true(random: np.random.Generator, nominal: Values) -> dict[str, dict[str, float]]:
-    """True values within the owner's tolerances: normal, cut off at two standard deviations."""
+    """True values within the tolerances: normal, cut off at two standard deviations."""
     values = {group: dict(table) for group, table in nominal.items()}
     for group, table in TOLERANCE.items():
         for name, tolerance in table.items():

@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline
 
 from permway.challenge.beams import Complexes, Reals
 from permway.challenge.contact import TAPER_HZ
-from permway.challenge.errors_of_measurement import struck, wander
+from permway.challenge.errors_of_measurement import calibration_error, struck
 from permway.challenge.irregularity import deviation, profile
 from permway.challenge.mesh import Mesh
 from permway.challenge.plan import FLOOR, Plan
@@ -35,7 +35,7 @@ SLOW_HZ = (0.25, 0.75)
 """Where its high-pass goes from nothing to one."""
 
 SHARE = {"sensor": 0.8, "point": 0.6}
-"""Of the smooth errors; the squares add to one."""
+"""Of the calibration errors; the squares add to one."""
 
 
 @dataclass(frozen=True)
@@ -74,11 +74,11 @@ def measure(plan: Plan, random: np.random.Generator) -> tuple[list[HammerTest], 
     errors = _errors(plan, random, lines)
     for index, written in enumerate(tests.temperatures_C):
         at = grid if index == 0 else lines
-        moved = mesh.receptance(at, written + plan.chain.warmer_C[index], rows, columns)
+        displaced = mesh.receptance(at, written + plan.chain.warmer_C[index], rows, columns)
         if index == 0:
             r, c = ([names.index(wheel) for wheel in wheels] for names in (rows, columns))
-            under = moved[:, r][:, :, c]
-        rates = moved[np.searchsorted(at, lines)] * -((2.0 * np.pi * lines[:, None, None]) ** 2)
+            under = displaced[:, r][:, :, c]
+        rates = displaced[np.searchsorted(at, lines)] * -((2.0 * np.pi * lines[:, None, None]) ** 2)
         r = [rows.index(spot) for spot in tests.sensors]
         c = [columns.index(spot) for spot in tests.points]
         hammers.append(_hammer(plan, random, written, lines, rates[:, r][:, :, c] * errors))
@@ -95,10 +95,10 @@ def measure(plan: Plan, random: np.random.Generator) -> tuple[list[HammerTest], 
 
 
 def _wander(plan: Plan, random: np.random.Generator, frequency_Hz: Reals, of: str) -> Complexes:
-    """The smooth error of one chain, which it has in all tests."""
+    """The calibration error of one chain, which it has in all tests."""
     if plan.chain.clean:
         return np.ones(frequency_Hz.size, dtype=np.complex128)
-    return wander(random, frequency_Hz, size_dB=plan.chain.wander_dB * SHARE[of])
+    return calibration_error(random, frequency_Hz, size_dB=plan.chain.calibration_error_dB * SHARE[of])
 
 
 def _errors(plan: Plan, random: np.random.Generator, lines: Reals) -> Complexes:
@@ -153,8 +153,8 @@ def _run(
         rates = rolled(plan, met, speed, samples=samples, sampling_Hz=tests.sampling_Hz)[kept]
         rates = rates * _window(lines)[:, None]
     else:
-        moved = _stood(plan, met[kept], lines, np.flatnonzero(kept), times, speed, under_wheels)
-        rates = moved * (-((2.0 * np.pi * lines) ** 2) * _window(lines))[:, None]
+        displaced = _stood(plan, met[kept], lines, np.flatnonzero(kept), times, speed, under_wheels)
+        rates = displaced * (-((2.0 * np.pi * lines) ** 2) * _window(lines))[:, None]
     names = list(plan.vehicle.channels)
     spectrum = np.zeros((frequency.size, len(tests.channels)), dtype=np.complex128)
     for column, channel in enumerate(tests.channels):

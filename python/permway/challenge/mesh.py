@@ -175,10 +175,10 @@ class Mesh:
                     for i in (0, 1):
                         for j in (0, 1):
                             band[2 * self.reach + i - j, dof + j] += stiffness[index, i, j]
-            _, _, moved, info = lapack.zgbsv(self.reach, self.reach, band, forces, overwrite_ab=1)
+            _, _, displaced, info = lapack.zgbsv(self.reach, self.reach, band, forces, overwrite_ab=1)
             if info:
                 raise SolveError(f"singular at {hertz:g} Hz")
-            answer[index] = moved[read].T
+            answer[index] = displaced[read].T
         return answer
 
     def _coefficients(self, frequency_Hz: Reals, temperature_C: float) -> Complexes:

@@ -58,7 +58,7 @@ class Marched:
 
     Attributes
     ----------
-    moved, speed, hurried : ndarray, shape (n,)
+    displaced, speed, velocities : ndarray, shape (n,)
         Displacement, velocity, acceleration.
     """
 
@@ -69,11 +69,11 @@ class Marched:
         effective = self.stiffness + gamma / (beta * h) * self.damping + 1.0 / (beta * h**2) * self.mass
         self._solve = splu(sparse.csc_array(effective)).solve
         size = self.mass.shape[0]
-        self.moved, self.speed, self.hurried = np.zeros(size), np.zeros(size), np.zeros(size)
+        self.displaced, self.speed, self.velocities = np.zeros(size), np.zeros(size), np.zeros(size)
 
     def free(self, force: Reals) -> Reals:
         """Where it would be a step later under forces at its end."""
-        h, u, v, a = self.step_s, self.moved, self.speed, self.hurried
+        h, u, v, a = self.step_s, self.displaced, self.speed, self.velocities
         gamma, beta = self._gamma, self._beta
         inert = u / (beta * h**2) + v / (beta * h) + (0.5 / beta - 1.0) * a
         lost = gamma / (beta * h) * u + (gamma / beta - 1.0) * v + 0.5 * h * (gamma / beta - 2.0) * a
@@ -89,12 +89,12 @@ class Marched:
             found[rows] = self._solve(forces).T
         return found
 
-    def go_on(self, moved: Reals) -> None:
+    def go_on(self, displaced: Reals) -> None:
         """Take a step to where it is."""
-        h, by, beta = self.step_s, moved - self.moved, self._beta
-        hurried = by / (beta * h**2) - self.speed / (beta * h) - (0.5 / beta - 1.0) * self.hurried
-        self.speed = self.speed + h * ((1.0 - self._gamma) * self.hurried + self._gamma * hurried)
-        self.moved, self.hurried = moved, hurried
+        h, by, beta = self.step_s, displaced - self.displaced, self._beta
+        velocities = by / (beta * h**2) - self.speed / (beta * h) - (0.5 / beta - 1.0) * self.velocities
+        self.speed = self.speed + h * ((1.0 - self._gamma) * self.velocities + self._gamma * velocities)
+        self.displaced, self.velocities = displaced, velocities
 
 
 def line_matrices(

@@ -1,4 +1,4 @@
-"""Processes that work on campaigns side by side, and end when they are told to."""
+"""Processes that work on campaigns side by side, and end when they have to."""
 
 from __future__ import annotations
 

@@ -24,8 +24,8 @@ class Pull:
     ----------
     case, parameter : str
     sigmas : float
-        True value less the recalibrated one, in standard deviations of what is said of it; of logarithms where all
-        is above zero.
+        True value less the recalibrated one, in standard deviations of what is stated about it; of logarithms
+        where all is above zero.
     inside : bool
         Whether the 90 % interval holds the true value.
     """
@@ -54,9 +54,9 @@ def pulls(folder: Path, scored: Iterable[Scored], verdicts: Path | None = None) 
             continue
         true = json.loads((Path(folder) / "truth" / f"{one.name}.json").read_text())
         said = json.loads(((verdicts or Path(folder) / "verdicts") / one.name / "verdict.json").read_text())
-        moved = said.get("recalibrated", {}).get("before" if one.found is None else "after", {})
+        displaced = said.get("recalibrated", {}).get("before" if one.found is None else "after", {})
         for name, value in _by_name(true.get("parameters", {})):
-            estimate = moved.get(name)
+            estimate = displaced.get(name)
             if estimate is not None and estimate.get("low") is not None:
                 found.append(_pull(one.name, name, value, estimate))
     return found

@@ -85,4 +85,4 @@ def rolled(plan: Plan, met: Complexes, speed: float, *, samples: int, sampling_H
         beams_at_Hz=BEAMS_LOSE_AT_HZ,
         gamma=UNDAMPED,
     )
-    return np.asarray(np.fft.rfft(done.felt[start:], axis=0)[: samples // 2 + 1] / FINER)
+    return np.asarray(np.fft.rfft(done.on_board[start:], axis=0)[: samples // 2 + 1] / FINER)

@@ -75,7 +75,7 @@ def threads_of(workers: int) -> int:
 
 
 def ruled_out(folder: Path, name: str) -> list[str]:
-    """What the catalogue has to do without in one campaign: all that its truth tells beforehand."""
+    """What the catalogue has to do without in one campaign: all that its truth states beforehand."""
     truth = folder / "truth" / f"{name}.json"
     if not truth.is_file():
         return []

@@ -20,7 +20,7 @@ SPACINGS_M = (0.60, 0.65)
 SECONDS = 32.0
 
 VISCOUS_AT_HZ = {"pad": 80.0, "mortar": 80.0, "sliding": 80.0, "bearing": 30.0}
-"""Where layers lose what the sheet says: in proportion to frequency, as what is marched in time must."""
+"""Where layers lose what the sheet states: in proportion to frequency, as what is marched in time must."""
 
 
 def running_layout(random: np.random.Generator) -> Layout:

@@ -21,7 +21,7 @@ FITS = ("recalibrated", "outside_tolerance")
 """Statuses of a model that fits without any effect."""
 
 DIFFICULTY = {"easy": 200.0, "medium": 50.0, "hard": 15.0, "too small": -np.inf}
-"""Least deviance against the best recalibrated base; too small is what the records do not tell."""
+"""Least deviance against the best recalibrated base; too small is what the records do not decide."""
 
 NOVEL = "novel"
 """The name of what no catalogue has."""
@@ -32,7 +32,7 @@ NEAR_M = 1.5
 
 @dataclass(frozen=True)
 class Claim:
-    """A name of a verdict, how probable it says that is, and whether it is so."""
+    """A name of a verdict, how probable it states that is, and whether it is so."""
 
     name: str
     probability: float
@@ -48,12 +48,12 @@ class Scored:
     name, tier, status : str
     truth : tuple of str
         Identifiers of what was concealed, or its mechanics in words.
-    said : tuple of str
+    stated : tuple of str
         Names of the effects, or their classes.
     found, placed, family, in_class, false_name : bool or None
         Of the strongest concealed effect; None where that does not apply.
     all_found : bool or None
-        Whether each of several effects that the records tell of is found: at its place, and named or classed.
+        Whether each of several effects that the records constrain is found: at its place, and named or classed.
     mechanics : bool or None
         Whether the words that describe an effect of no catalogue say its mechanics.
     covered : tuple of bool
@@ -111,7 +111,7 @@ def score(folder: Path, families: Mapping[str, str], verdicts: Path | None = Non
     folder : Path
         As `run` left it.
     families : mapping of effect to family
-        Effects of one family are near twins.
+        Effects of one family are near-degenerate alternatives.
     verdicts : Path, optional
         Where `CASE/verdict.json` lie; by default in the folder's `verdicts`.
 
@@ -145,7 +145,7 @@ def _strongest_first(truth: Mapping[str, Any], each: Sequence[float] | None) -> 
 
 
 def _telling(truth: Mapping[str, Any], each: Sequence[float] | None) -> int:
-    """How many effects the records tell of, each for itself; all, if that was not weighed."""
+    """How many effects the records constrain, each for itself; all, if that was not weighed."""
     least = DIFFICULTY["hard"]
     count = len(truth["effects"])
     return count if each is None or len(each) != count else sum(one >= least for one in each)
@@ -163,7 +163,7 @@ def _scored(
     effects = list(verdict["effects"]) if verdict["status"] in FOUND else []
     harmed = (
         any(g["gain_nats"] < -2.0 * (g["standard_error"] or 0.0) for g in verdict["held_out"].values())
-        # Where nothing but a place is said, no amended model is offered.
+        # Where nothing but a place is stated, no amended model is offered.
         if any(e["parameters"] for e in effects)
         else False
     )
@@ -244,7 +244,7 @@ def _same(true: Mapping[str, Any], said: Mapping[str, Any], families: Mapping[st
 
 
 def _described(true: Mapping[str, Any], effects: Iterable[Mapping[str, Any]]) -> bool:
-    """Whether what is said at the place of an effect without a name uses one of its words."""
+    """Whether what is stated at the place of an effect without a name uses one of its words."""
     there = [e for e in effects if _there(true["place"], e["place"], true.get("domain"), e["domain"])]
     # Rivals say no words.
     said = [e["law"]["words"] for e in there if not e["name"] and "law" in e]

@@ -1,6 +1,6 @@
 """Few sensors, few blows, often one run: records that leave open which of two effects acts.
 
-A team that begins with these is told what to measure next, and whether that helps can be seen.
+A team that begins with these is given what to measure next, and whether that helps can be seen.
 """
 
 from __future__ import annotations

@@ -120,13 +120,13 @@ class Ridden:
         links = [replace(one, scale=one.scale * f) for one, f in zip(self.track.links, factor, strict=True)]
         changed = replace(self.track, links=links)
         spots = list(dict.fromkeys([*self.wheels, *(spot for link in links for spot in _ends(link))]))
-        moved = Mesh(changed, spots).receptance(grid_Hz, self.temperature_C, self.wheels, spots)
+        displaced = Mesh(changed, spots).receptance(grid_Hz, self.temperature_C, self.wheels, spots)
         at = {spot: index for index, spot in enumerate(spots)}
         stretch = np.zeros((grid_Hz.size, len(links), len(self.wheels)), dtype=np.complex128)
         for index, link in enumerate(links):
             for spot, sign in zip(_ends(link), (1.0, -1.0), strict=False):
-                stretch[:, index] += sign * moved[:, :, at[spot]]
-        return moved[:, :, [at[wheel] for wheel in self.wheels]], stretch
+                stretch[:, index] += sign * displaced[:, :, at[spot]]
+        return displaced[:, :, [at[wheel] for wheel in self.wheels]], stretch
 
 
 def _ends(link: Link) -> tuple[Spot, ...]:

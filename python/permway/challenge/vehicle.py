@@ -99,8 +99,8 @@ class Vehicle:
     def pressed(self, frequency_Hz: Reals, track: Complexes) -> Complexes:
         """Force of each linear contact per profile under each wheel, shape (F, wheels, wheels), N/m."""
         under = np.linalg.inv(track + np.eye(len(self.wheels)) / self.contact)
-        moved = self._moved(frequency_Hz, track)[:, self.wheels]
-        return np.asarray(under @ (moved - np.eye(len(self.wheels))))
+        displaced = self._moved(frequency_Hz, track)[:, self.wheels]
+        return np.asarray(under @ (displaced - np.eye(len(self.wheels))))
 
     def leaving(
         self,
@@ -148,9 +148,9 @@ class Vehicle:
             drives = [samples * force.spectrum(frequency_Hz) for force in self.forces]
             return np.asarray(np.einsum("fcw,fw->fc", parts, np.column_stack([profiles, *drives])))
         along = self.rows([arm for arm, name in self.ties if name == self.slider.tie])
-        moved = self._moved(frequency_Hz, track, along)
-        driven = np.einsum("fdw,fw->fd", moved[:, :, : len(self.wheels)], profiles)
-        gives_way = moved[:, :, len(self.wheels) :]
+        displaced = self._moved(frequency_Hz, track, along)
+        driven = np.einsum("fdw,fw->fd", displaced[:, :, : len(self.wheels)], profiles)
+        gives_way = displaced[:, :, len(self.wheels) :]
         force = settle(
             self.slider,
             np.asarray(driven @ along.T),

@@ -71,9 +71,9 @@ class Under:
     shares: Reals
     yielding: Reals
 
-    def read(self, moved: Reals, force: Reals | None = None) -> Reals:
+    def read(self, displaced: Reals, force: Reals | None = None) -> Reals:
         """Deflection under the wheels; without what their forces do within elements if these are not given."""
-        nodal = (self.shares * moved[self.dofs]).sum(axis=1)
+        nodal = (self.shares * displaced[self.dofs]).sum(axis=1)
         return np.asarray(nodal if force is None else nodal + self.yielding * force)
 
     def press(self, force: Reals, size: int) -> Reals:
@@ -85,7 +85,7 @@ class Under:
     def gathered(self, gives: Reals, places: NDArray[np.int64]) -> Reals:
         """How much a force of 1 N on each wheel moves all degrees, (wheels, n).
 
-        `gives` is that of forces along some degrees, and `places` says which of them each degree is.
+        `gives` is that of forces along some degrees, and `places` states which of them each degree is.
         """
         return np.asarray(np.einsum("wi,win->wn", self.shares, gives[places[self.dofs]]))
 

@@ -1,4 +1,4 @@
-"""Phases in degrees that a header, or the campaign, says to be in radians."""
+"""Phases in degrees that a header, or the campaign, states to be in radians."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.checking.blunder import Blunder
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
 from permway.recordings.readers import read_table
 from permway.recordings.readers.formats import recognise
 from permway.recordings.readers.stored import is_one_of
@@ -22,9 +22,9 @@ LARGEST_RAD = 4.0 * math.pi
 def angles(campaign: Campaign) -> Iterator[Blunder]:
     """Tables whose phases are called radians and lie as degrees do.
 
-    After reading nothing tells: degrees taken for radians are wrapped to any phase.
+    After reading nothing states: degrees taken for radians are wrapped to any phase.
     """
-    for record in campaign.said.records:
+    for record in campaign.stated.records:
         if record.statistic != "frf":
             continue
         try:
@@ -32,7 +32,7 @@ def angles(campaign: Campaign) -> Iterator[Blunder]:
                 continue
             table = read_table(campaign.path(record), format=record.format, hints=record.hints)
         except InputError:
-            # Why it cannot be read is told elsewhere.
+            # Why it cannot be read is reported elsewhere.
             continue
         for name, cells in table.columns.items():
             if not is_one_of(name, tuple(PHASE)) or not isinstance(cells, np.ndarray):
@@ -40,7 +40,7 @@ def angles(campaign: Campaign) -> Iterator[Blunder]:
             unit = record.hints.unit_of(name) or table.units[name] or name.lower().partition("_")[2]
             largest = float(np.nanmax(np.abs(cells), initial=0.0))
             if unit.lower().startswith("rad") and LARGEST_RAD < largest <= 360.0 and _turns(cells) == 360.0:
-                what = f"'{name}' is said to be in radians and reaches {largest:.4g}: degrees"
+                what = f"'{name}' is stated to be in radians and reaches {largest:.4g}: degrees"
                 remedy = f'in the record: unit = {{ {name} = "deg" }}'
                 yield Blunder("angle", f"records.{record.name}", what, remedy, asked=True)
 

@@ -30,7 +30,7 @@ class Ratio:
 
 @dataclass(frozen=True)
 class Change:
-    """One way in which a record may not be what it is said to be.
+    """One way in which a record may not be what it is stated to be.
 
     Attributes
     ----------

@@ -8,24 +8,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset
+from permway.campaign.predict import predict
 from permway.checking.angles import angles
 from permway.checking.blunder import Blunder
 from permway.checking.compared import Compared, compared
 from permway.checking.noise import noise_floors
 from permway.checking.reading import Reading, read
-from permway.checking.search import told
+from permway.checking.search import reported
 from permway.checking.stated import places, tolerances
 from permway.checking.words import blunder_of
 from permway.errors import InputError, SolveError
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import predict
 
 COMPARABLE = ("frf", "csd", "psd", "transmissibility")
 
 LEVEL, LEVEL_FREE = 0.3, 2.3
 """Standard deviation of a level that all rows of a record share, neper: 2.6 dB; 20 dB where nobody knows the
-irregularity. At half of the first, honest campaigns are doubted; at twice, g for m/s2 is not told of a record."""
+irregularity. At half of the first, honest campaigns are doubted; at twice, g for m/s2 is not found in a record."""
 
 SLOPE, SLOPE_FREE = 0.1, 0.5
 """The same of its slope in runs, neper an octave."""
@@ -80,7 +80,7 @@ def check(campaign: Campaign, *, threads: int | None = None) -> Checked:
         given = compared(dataset, predicted, common(campaign, dataset))
         sensors = [campaign.sensor(name) for name in given.channels]
         points = [campaign.point(name) for name in given.points]
-        changes, right = told(given, sensors, [point.unit for point in points])
+        changes, right = reported(given, sensors, [point.unit for point in points])
         records.append((dataset, given, right))
         blunders += [blunder_of(one, dataset.record.name, given, sensors, points) for one in changes]
     blunders += angles(campaign)
@@ -109,7 +109,7 @@ def common(campaign: Campaign, dataset: Dataset) -> tuple[float, float]:
     level = float(np.hypot(LEVEL, FROM_TOLERANCE * least_known))
     if dataset.record.statistic not in ("csd", "psd"):
         return level, 0.0
-    known = campaign.said.irregularity
+    known = campaign.stated.irregularity
     if known.knowledge == "unknown":
         return LEVEL_FREE, SLOPE_FREE
     return float(np.hypot(level, 0.5 * (known.within_dB or 0.0) / 8.686)), SLOPE
@@ -120,7 +120,7 @@ def _together(blunders: Sequence[Blunder]) -> list[Blunder]:
     found: dict[tuple[str, str, str, str], Blunder] = {}
     for one in blunders:
         head, _, members = one.where.partition(": ")
-        # Only what is said of sensors and points, not of files, can be the same of several records.
+        # Only what is stated about sensors and points, not of files, can be the same of several records.
         key = (one.kind, one.what, one.remedy, members if head.startswith("records.") else one.where)
         if one.log_odds is None:
             key = (*key[:3], one.where)

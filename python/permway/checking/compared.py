@@ -9,8 +9,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.load import Dataset
 from permway.checking.change import Change, Ratio
-from permway.recordings.campaign_load import Dataset
 
 SUREST, LEAST_SURE = 1e-4, 0.25
 """Variance of a line's logarithm that is taken at least, and beyond which the line is left out: noise of a quarter
@@ -39,7 +39,7 @@ class Compared:
         What a phase of the second member counts: 1 for a response, -1 for a cross spectrum.
     measured, predicted : ndarray of complex128, shape (rows, F)
     variance : ndarray, shape (rows, F)
-        Of the logarithm and of the phase, by noise; infinite where a line says nothing.
+        Of the logarithm and of the phase, by noise; infinite where a line states nothing.
     levelled, phased : ndarray of bool, shape (rows,)
         Whether a row has a level, and a phase, of its own.
     share : float
@@ -146,7 +146,7 @@ def compared(dataset: Dataset, predicted: xr.Dataset, common: tuple[float, float
     dataset : Dataset
         Of statistic "frf", "csd", "psd" or "transmissibility".
     predicted : xarray.Dataset
-        As :func:`permway.recordings.predict.predict` gives it.
+        As :func:`permway.campaign.predict.predict` gives it.
     common : (float, float)
         Standard deviations of a level that nobody knows, neper, and of its slope, neper an octave.
     """
@@ -183,12 +183,12 @@ def _of_spectra(dataset: Dataset, predicted: xr.Dataset, common: tuple[float, fl
     power = np.sqrt(np.abs(np.einsum("ccf->cf", csd))), np.sqrt(np.abs(np.einsum("ccf->cf", model)))
     values, expected = csd[first, at], model[first, at]
     values[:count], expected[:count] = power
-    told = np.minimum(_coherence(csd), _coherence(model))[first, at]
+    reported = np.minimum(_coherence(csd), _coherence(model))[first, at]
     with np.errstate(divide="ignore"):
-        variance = (1.0 - told) / (2.0 * averages * told)
+        variance = (1.0 - reported) / (2.0 * averages * reported)
     variance[:count] = 0.25 / averages
-    # Below what no coherence gives by chance a phase says nothing.
-    variance[told < 4.0 / averages] = np.inf
+    # Below what no coherence gives by chance a phase states nothing.
+    variance[reported < 4.0 / averages] = np.inf
     made = _made(names, (), dataset.frequency_Hz, first, second, values, expected, variance, common)
     alone_rows = np.arange(first.size) < count
     return replace(made, levelled=alone_rows, phased=~alone_rows, side=-np.ones(first.size))
@@ -213,7 +213,9 @@ def _made(
     common: tuple[float, float],
 ) -> Compared:
     known = np.maximum(np.broadcast_to(variance, measured.shape), SUREST)
-    told = np.isfinite(measured) & np.isfinite(predicted) & (np.abs(measured) > 0.0) & (np.abs(predicted) > 0.0)
+    reported = (
+        np.isfinite(measured) & np.isfinite(predicted) & (np.abs(measured) > 0.0) & (np.abs(predicted) > 0.0)
+    )
     rows = first.size
     return Compared(
         channels,
@@ -222,9 +224,9 @@ def _made(
         first,
         second,
         np.ones(rows),
-        np.where(told, measured, 1.0),
-        np.where(told, predicted, 1.0),
-        np.where(told & (known <= LEAST_SURE), known, np.inf),
+        np.where(reported, measured, 1.0),
+        np.where(reported, predicted, 1.0),
+        np.where(reported & (known <= LEAST_SURE), known, np.inf),
         np.ones(rows, dtype=bool),
         np.ones(rows, dtype=bool),
         share=(len(channels) + max(len(points), 1) - 1) / rows,

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset
 from permway.checking.blunder import Blunder
 from permway.checking.compared import Compared
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
 
 QUIET = 0.1
 """Share of the lines that count as quiet. Half of it makes the estimate scatter, twice lifts it."""
@@ -47,14 +47,16 @@ def noise_floors(
             sensor = campaign.sensor(name)
             if sensor.chain.noise_floor or sensor.chain.noise_flicker or not density > 0.0:
                 continue
-            said = density / sensor.to_SI**2
+            stated = density / sensor.to_SI**2
             where = f"records.{dataset.record.name}: {name}"
             if unshared_share > SEEN and _predicted(beside, name) > SEEN:
-                what = f"no noise floor is stated, and none shows: it is below {said:.2g} ({sensor.unit})2/Hz"
+                what = f"no noise floor is stated, and none shows: it is below {stated:.2g} ({sensor.unit})2/Hz"
                 remedy = f'sensors "{name}": chain = {{ noise_floor = ... }} by its data sheet'
             else:
-                what = f"no noise floor is stated; in its quietest lines is at most {said:.2g} ({sensor.unit})2/Hz"
-                remedy = f'sensors "{name}": chain = {{ noise_floor = {said:.2g} }}, or less by its data sheet'
+                what = (
+                    f"no noise floor is stated; in its quietest lines is at most {stated:.2g} ({sensor.unit})2/Hz"
+                )
+                remedy = f'sensors "{name}": chain = {{ noise_floor = {stated:.2g} }}, or less by its data sheet'
             yield Blunder("noise_floor", where, what, remedy, asked=True)
 
 

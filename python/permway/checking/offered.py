@@ -15,7 +15,7 @@ from permway.recordings.channel import DERIVATIVES, UNITS, Sensor
 
 WHOLE, SINGLE = -4.0, -6.0
 """Log prior of a change of a whole record and of one channel or point. One more or less of it moves the least odds
-that are told by as much."""
+that are determined by as much."""
 
 ODD = -4.0
 """Log prior of a factor that no unit explains over one that a unit does."""
@@ -85,7 +85,7 @@ def _ratios(
     found: list[tuple[Ratio, float]] = []
     alike = all((s.quantity, s.unit) == (one.quantity, one.unit) for s in sensors)
     units = [ratio for _, _, ratio in other_units(one)] if alike and one.quantity in DERIVATIVES else []
-    # Of forces in kN that were said to be in N, or the other way round.
+    # Of forces in kN that were stated to be in N, or the other way round.
     units += [Ratio(1e-3 if force == "N" else 1e3) for force in dict.fromkeys(forces)]
     odd = [Ratio(size) for factor in FACTORS for size in (factor, 1.0 / factor)]
     odd += [Ratio(1.0, order) for order in (-2, -1, 1, 2)]

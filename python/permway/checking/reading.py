@@ -1,4 +1,4 @@
-"""A campaign's records, read one by one: what cannot be read is told, and the others go on."""
+"""A campaign's records, read one by one: what cannot be read is reported, and the others go on."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from permway.campaign.bad_channels import without_bad_channels
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset, load_record
+from permway.campaign.parts import Record
+from permway.campaign.predict import why_not
 from permway.checking.blunder import Blunder
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset, load_record
-from permway.recordings.campaign_parts import Record
-from permway.recordings.predict import why_not
-from permway.recordings.spoilt import sound
 
 MOST_LINES = 64
 """Lines of a record that are held against the model: a check takes in proportion to them."""
@@ -52,13 +52,13 @@ def read(campaign: Campaign) -> Reading:
     kept: list[Dataset] = []
     blunders: list[Blunder] = []
     left_out: dict[str, str] = {}
-    for record in campaign.said.records:
+    for record in campaign.stated.records:
         try:
-            data, spoilt = _one(campaign, record)
+            data, channels_out = _one(campaign, record)
         except InputError as error:
             blunders.append(_unreadable(record, error))
             continue
-        blunders += spoilt
+        blunders += channels_out
         whole.append(data)
         reason = why_not(campaign, data)
         if reason is not None:
@@ -69,19 +69,19 @@ def read(campaign: Campaign) -> Reading:
 
 
 def _one(campaign: Campaign, record: Record) -> tuple[Dataset, list[Blunder]]:
-    alone, bad = sound(campaign.with_records([record]))
-    spoilt = [
+    alone, bad = without_bad_channels(campaign.with_records([record]))
+    channels_out = [
         Blunder("spoilt", f"records.{one.record}: {one.channel}", f"{one.kind}: {one.what}", "it is left out")
         for one in bad
     ]
     with warnings.catch_warnings():
         # Estimates of few segments warn; what they are worth is in the intervals.
         warnings.simplefilter("ignore")
-        return load_record(campaign, alone.said.records[0]), spoilt
+        return load_record(campaign, alone.stated.records[0]), channels_out
 
 
 def _unreadable(record: Record, error: InputError) -> Blunder:
-    remedy = next((better for said, better in COHERENCE if error.what.startswith(said)), error.remedy)
+    remedy = next((better for stated, better in COHERENCE if error.what.startswith(stated)), error.remedy)
     got = "" if error.value is None else f" (got {error.value!r})"
     place = error.where.removeprefix(f"records.{record.name}: ")
     return Blunder("unreadable", f"records.{record.name}", f"{place}: {error.what}{got}", remedy or "see the file")

@@ -17,7 +17,7 @@ SCALES = np.array([0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0])
 """Standard deviations of what a model is wrong by, neper and rad: from 3 dB, which an honest one may be off."""
 
 TAIL = 4.0
-"""Degrees of freedom of the t distribution. At 2 a factor of ten is told half as surely, at 8 twice."""
+"""Degrees of freedom of the t distribution. At 2 a factor of ten is reported half as surely, at 8 twice."""
 
 
 FEW = 3
@@ -85,7 +85,7 @@ def _common(one: Compared) -> tuple[Reals, float]:
     with np.errstate(divide="ignore", invalid="ignore"):
         level = np.log(np.abs(one.measured[one.levelled] / one.predicted[one.levelled]))
     seen = one.used[one.levelled]
-    # A line that no row tells of weighs nothing, and its level is any.
+    # A line that no row constrains weighs nothing, and its level is any.
     middle = np.nanmedian(np.where(seen | ~seen.any(axis=0), np.where(seen, level, 0.0), np.nan), axis=0)
     octaves = np.log2(one.frequency_Hz)
     octaves = octaves - np.average(octaves, weights=np.maximum(weight, 1e-12))

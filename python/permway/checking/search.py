@@ -12,11 +12,11 @@ from permway.checking.score import Scored
 from permway.recordings.channel import Sensor
 
 LEAST_ODDS = 5.0
-"""Log odds from which a change is told: 150 to 1. At half of it more honest campaigns are doubted, at twice of it
-single channels of short records go unnoticed; the page on `check` has both rates."""
+"""Log odds from which a change is reported: 150 to 1. At half of it more honest campaigns are doubted, at twice
+of it single channels of short records go unnoticed; the page on `check` has both rates."""
 
 MOST = 6
-"""Changes of one record that are told, one on top of the other."""
+"""Changes of one record that are reported, one on top of the other."""
 
 
 NEAR = 4.0
@@ -24,7 +24,7 @@ NEAR = 4.0
 
 
 @dataclass(frozen=True)
-class Told:
+class Reported:
     """A change that the record speaks for.
 
     Attributes
@@ -41,7 +41,7 @@ class Told:
     rivals: tuple[Change, ...] = ()
 
 
-def told(given: Compared, sensors: Sequence[Sensor], forces: Sequence[str]) -> tuple[list[Told], Compared]:
+def reported(given: Compared, sensors: Sequence[Sensor], forces: Sequence[str]) -> tuple[list[Reported], Compared]:
     """Changes, the surest first, each held against the record with those before it made; and the record so.
 
     Parameters
@@ -51,7 +51,7 @@ def told(given: Compared, sensors: Sequence[Sensor], forces: Sequence[str]) -> t
     forces : sequence of str
         As of :func:`permway.checking.offered.offered`.
     """
-    found: list[Told] = []
+    found: list[Reported] = []
     now = given
     while len(found) < MOST and now.used.any():
         scored = Scored(now)
@@ -67,7 +67,7 @@ def told(given: Compared, sensors: Sequence[Sensor], forces: Sequence[str]) -> t
             for one, gain in zip(changes, odds, strict=True)
             if one is not changes[at] and gain > odds[at] - NEAR and _alike(one, changes[at])
         ]
-        found.append(Told(changes[at], odds[at], tuple(rivals)))
+        found.append(Reported(changes[at], odds[at], tuple(rivals)))
         now = now.changed(changes[at])
     return found, now
 
@@ -78,7 +78,7 @@ def _alike(one: Change, other: Change) -> bool:
 
 
 def _undoes(new: Change, old: Change) -> bool:
-    """Whether a change is of the same members and kind as one that was made: no more is learnt of them."""
+    """Whether a change is of the same members and kind as one that was made: no more is estimated of them."""
     if new.kind != old.kind and {new.kind, old.kind} != {"factor", "quantity"}:
         return False
     return not new.ratios or bool(set(new.ratios) & set(old.ratios))

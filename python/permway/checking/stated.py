@@ -1,4 +1,4 @@
-"""Numbers of a campaign file that are probably slips of the pen: tolerances in percent, places off the track."""
+"""Numbers of a campaign file that are probably typing errors: tolerances in percent, places off the track."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.checking.blunder import Blunder
-from permway.recordings.campaign import Campaign
 
 LARGEST = 1.0
 """Relative tolerance of two standard deviations from which it is asked back: 100 %. Half of it asks of what nobody
@@ -20,7 +20,7 @@ sensor in the next span is asked of; at twice 60 m is passed."""
 
 def tolerances(campaign: Campaign) -> Iterator[Blunder]:
     """Relative tolerances of more than the number itself."""
-    for parameter in campaign.said.parameters:
+    for parameter in campaign.stated.parameters:
         tolerance = parameter.tolerance_2sigma
         if tolerance is None or parameter.absolute or tolerance < LARGEST:
             continue
@@ -31,8 +31,8 @@ def tolerances(campaign: Campaign) -> Iterator[Blunder]:
 
 def places(campaign: Campaign) -> Iterator[Blunder]:
     """Sensors and points that stand far from everything else on the line."""
-    named = [("sensors", s.name, s.x_m) for s in campaign.said.sensors if s.x_m is not None]
-    named += [("forces", p.name, p.x_m) for p in campaign.said.forces]
+    named = [("sensors", s.name, s.x_m) for s in campaign.stated.sensors if s.x_m is not None]
+    named += [("forces", p.name, p.x_m) for p in campaign.stated.forces]
     places_m = np.array([x for *_, x in named])
     for index, (key, name, x) in enumerate(named):
         others = np.delete(places_m, index)

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.load import Dataset
 from permway.checking.check import Checked
 from permway.checking.compared import Compared
-from permway.recordings.campaign_load import Dataset
 
 DECIBELS = 20.0 / np.log(10.0)
 """Of a neper."""
@@ -61,7 +61,7 @@ def _row(dataset: Dataset, right: Compared | None) -> dict[str, Any]:
 
 
 def levels_dB(one: Compared) -> Reals:
-    """Measured over predicted, shape (rows that have a level, F); NaN where a line says nothing."""
+    """Measured over predicted, shape (rows that have a level, F); NaN where a line states nothing."""
     rows = one.levelled
     with np.errstate(divide="ignore"):
         levels = DECIBELS * np.log(np.abs(one.measured[rows] / one.predicted[rows]))
@@ -69,7 +69,7 @@ def levels_dB(one: Compared) -> Reals:
 
 
 def phases_deg(one: Compared) -> Reals:
-    """Measured less predicted, -180 to 180, shape (rows that have a phase, F); NaN where a line says nothing."""
+    """Measured less predicted, -180 to 180, shape (rows that have a phase, F); NaN where a line states nothing."""
     rows = one.phased
     phases = np.rad2deg(np.angle(one.measured[rows] / one.predicted[rows]))
     return np.where(one.used[rows], phases, np.nan)

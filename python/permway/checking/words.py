@@ -9,20 +9,20 @@ from permway.checking.blunder import Blunder
 from permway.checking.change import Change, Ratio
 from permway.checking.compared import Compared
 from permway.checking.offered import other_units, same
-from permway.checking.search import Told
+from permway.checking.search import Reported
 from permway.recordings.channel import Point, Sensor
 
 NAMES = {9.80665: "9.80665", 25.4: "25.4", 1e3: "1000", 1e6: "1e6", 2.0 * math.pi: "2 pi"}
 
 
 def blunder_of(
-    one: Told, record: str, given: Compared, sensors: Sequence[Sensor], points: Sequence[Point]
+    one: Reported, record: str, given: Compared, sensors: Sequence[Sensor], points: Sequence[Point]
 ) -> Blunder:
-    """What a change says of a record.
+    """What a change states about a record.
 
     Parameters
     ----------
-    one : Told
+    one : Reported
     record : str
     given : Compared
     sensors, points : sequence of Sensor, of Point
@@ -32,14 +32,14 @@ def blunder_of(
     names = [*given.channels, *given.points]
     members = list(change.ratios) + list(change.swapped or ())
     concerned = "" if change.whole or not members else ": " + ", ".join(names[m] for m in members)
-    what, remedy = _said(change, names, sensors, points)
+    what, remedy = _stated(change, names, sensors, points)
     for rival in one.rivals:
-        other, instead = _said(rival, names, sensors, points)
+        other, instead = _stated(rival, names, sensors, points)
         what, remedy = f"{what} (or {other})", f"{remedy} (or {instead})"
     return Blunder(change.kind, f"records.{record}{concerned}", what, remedy, one.log_odds)
 
 
-def _said(
+def _stated(
     change: Change, names: Sequence[str], sensors: Sequence[Sensor], points: Sequence[Point]
 ) -> tuple[str, str]:
     match change.kind:
@@ -96,7 +96,7 @@ def _unit(ratio: Ratio, mine: Sequence[Sensor], points: Sequence[Point]) -> tupl
     if points and same(ratio, Ratio(1e-3 if points[0].unit == "N" else 1e3)):
         remedies.append(f'all forces: unit = "{"kN" if points[0].unit == "N" else "N"}", not "{points[0].unit}"')
     if ratio.order == 0:
-        what = f"levels are {_times(1.0 / ratio.size)} what the model says ({_decibels(1.0 / ratio.size)})"
+        what = f"levels are {_times(1.0 / ratio.size)} what the model states ({_decibels(1.0 / ratio.size)})"
         if not remedies:
             remedies = [
                 f"sensors {listed}: chain = {{ gain = {1.0 / ratio.size:.6g} }}, or bring the file to the unit"
@@ -104,7 +104,7 @@ def _unit(ratio: Ratio, mine: Sequence[Sensor], points: Sequence[Point]) -> tupl
     else:
         power = f"(2 pi f)^{-ratio.order}" if ratio.order != -1 else "2 pi f"
         size = "" if abs(ratio.size - 1.0) < 1e-9 else f" times {1.0 / ratio.size:.6g}"
-        what = f"levels are {power}{size} times what the model says, and a quarter turn of phase for each 2 pi f"
+        what = f"levels are {power}{size} times what the model states, and a quarter turn of phase for each 2 pi f"
         if not remedies:
             remedies = [f"see what sensors {listed} read: displacement, velocity or acceleration"]
     return what, "; or ".join(remedies)

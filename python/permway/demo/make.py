@@ -1,7 +1,7 @@
 """Makes the embedded campaign: `python -m permway.demo.make FOLDER`.
 
 The records come from the generator of :mod:`permway.challenge`, which shares no code with the solver: a deck of
-one short span, its pads, layers and beams off their nominal values within the owner's tolerances, smooth errors of
+one short span, its pads, layers and beams off their nominal values within the tolerances, calibration errors of
 sensors and hammer, noise, and three fasteners that hold next to nothing.
 """
 
@@ -13,12 +13,12 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
+from permway.campaign.importers.sheet import import_sheet
 from permway.challenge.case import Case, draw
 from permway.challenge.effects.fasteners import FastenersLost
 from permway.challenge.files import write_mat
 from permway.challenge.layout import Layout
 from permway.files import write_text
-from permway.recordings.importers.sheet import import_sheet
 
 SEED = 1
 LAYOUT = Layout(spans=1, bays=26, spacing_m=0.64, approach_bays=14)

@@ -1,4 +1,4 @@
-"""Diagnoses the embedded campaign, and says what was concealed in it."""
+"""Diagnoses the embedded campaign, and states what was concealed in it."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ def run(
     InputError
         If the folder cannot be written.
     """
+    from permway.campaign.campaign import read_campaign
     from permway.diagnosis.diagnose import diagnose
-    from permway.recordings.campaign import read_campaign
     from permway.report.diagnosis import write_diagnosis
 
     prepare_folder(Path(folder))

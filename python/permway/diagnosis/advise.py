@@ -8,6 +8,7 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
+from permway.campaign.predict import predict
 from permway.diagnosis.clock import Progress
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import evidence_of
@@ -16,7 +17,6 @@ from permway.diagnosis.side_by_side import each
 from permway.diagnosis.tangent import STEP
 from permway.diagnosis.verdict_parts import NextMeasurement
 from permway.errors import InputError, SolveError
-from permway.recordings.predict import predict
 
 MOST = 3
 """Measurements that are advised."""

@@ -14,8 +14,8 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
+from permway.campaign.load import Dataset
 from permway.diagnosis.smooth import Smooth
-from permway.recordings.campaign_load import Dataset
 
 SURE = 0.25
 """Relative error of a response or a transfer below which it counts by its logarithm."""

@@ -9,11 +9,11 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import SURE, Basis, Rows
 from permway.diagnosis.line_noise import noise_variance, widened
 from permway.diagnosis.smooth import Origin, PairColumns, Smooth, as_complex, as_parts
 from permway.diagnosis.wander import Wander
-from permway.recordings.campaign_load import Dataset
 
 FLOOR = 0.003
 """Relative error that no record is free of: rounding, discretisation, the last decimals (0.026 dB)."""

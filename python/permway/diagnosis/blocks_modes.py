@@ -6,12 +6,12 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
+from permway.campaign.compare import NEPER_DB
+from permway.campaign.load import Dataset
+from permway.campaign.predict.modes import FARTHEST, LIGHTEST
 from permway.diagnosis.blocks import Rows
 from permway.diagnosis.smooth import PlainColumns, Smooth
 from permway.errors import InputError
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.compare import NEPER_DB
-from permway.recordings.predict.modes import FARTHEST, LIGHTEST
 
 MISSED = (float(np.log(FARTHEST)), 0.0)
 """Neper, of frequency and of damping: what a mode counts as that the model does not have, whatever its sign."""
@@ -96,7 +96,7 @@ def missed_modes(record: xr.Dataset) -> list[str]:
     Parameters
     ----------
     record : Dataset of xarray
-        From :func:`permway.recordings.compare.curves`.
+        From :func:`permway.campaign.compare.curves`.
     """
     if record.attrs["statistic"] != "modes":
         return []

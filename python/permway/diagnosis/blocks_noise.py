@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
+from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import Rows
 from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
-from permway.recordings.campaign_load import Dataset
 
 FEWEST = 5
 """Sensors that tell how much their noise differs; with fewer none is told from the others."""

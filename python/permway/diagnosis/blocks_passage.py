@@ -10,12 +10,12 @@ import xarray as xr
 from scipy.ndimage import uniform_filter1d
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.compare import NEPER_DB
+from permway.campaign.load import Dataset
+from permway.campaign.passage import spectrum_of
 from permway.diagnosis.blocks import Rows
 from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
 from permway.diagnosis.wander import Wander
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.campaign_passage import spectrum_of
-from permway.recordings.compare import NEPER_DB
 
 FLOOR = 0.003
 """Relative error that no record is free of, as of frequency responses: of the spectrum's size about a line."""

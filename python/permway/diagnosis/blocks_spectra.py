@@ -11,6 +11,7 @@ from scipy import sparse
 from scipy.special import polygamma
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import SURE, Rows
 from permway.diagnosis.blocks_shared import apart, covariance
 from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
@@ -18,7 +19,6 @@ from permway.diagnosis.spectra_errors import Moved, Part, at_most
 from permway.diagnosis.spectra_parts import coherence, mean_of_logarithm, remainder, transfer, tree_of
 from permway.diagnosis.wander import Wander
 from permway.errors import InputError
-from permway.recordings.campaign_load import Dataset
 
 LEAST_LINES = 20
 """Of a part, from which its scatter is learnt."""
@@ -51,7 +51,7 @@ class SpectraBlock:
         Expected cross spectra of noise and hum, which gains do not act on.
     away : ndarray of complex128, shape (channels, channels, F), optional
         Expected cross spectra times the distance from the line, which errors that grow from line to line act on;
-        see :func:`permway.recordings.predict.away_from_lines`. By default they act on nothing.
+        see :func:`permway.campaign.predict.away_from_lines`. By default they act on nothing.
     floor : float
         Relative error of transfers that adds to their scatter.
     scatter : sequence of float, optional

@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
+from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import Rows
 from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
 from permway.diagnosis.wander import Wander
-from permway.recordings.campaign_load import Dataset
 
 SCATTER_DB = {"decay_rate": 1.0, "transmissibility": 0.3, "modulus": 0.5}
 """One standard deviation of a value, where the record says none: 10 lg of a decay rate, 20 lg of the others."""

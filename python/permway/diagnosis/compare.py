@@ -10,6 +10,8 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.compare import NEPER_DB, POWER_DB, POWERS, VARIABLE, curves, flat, third_octaves
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_modes import ModesBlock, missed_modes
@@ -22,8 +24,6 @@ from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.residuals import standardised
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.tangent import STEP
-from permway.recordings.campaign import Campaign
-from permway.recordings.compare import NEPER_DB, POWER_DB, POWERS, VARIABLE, curves, flat, third_octaves
 
 RAW, RECALIBRATED, CLEAN = "raw", "recalibrated", "smooth errors out"
 
@@ -52,11 +52,11 @@ class Comparison:
     fit : Fit or None
         None if nothing was recalibrated.
     records : tuple of Dataset
-        See :func:`permway.recordings.compare.curves`; beside that `predicted_dB` (model, channel, frequency), one
+        See :func:`permway.campaign.compare.curves`; beside that `predicted_dB` (model, channel, frequency), one
         standard deviation of the predicted level, by the priors for the raw model and what the records left of
         them for the recalibrated one.
     bands : tuple of Dataset
-        Record by record, see :func:`permway.recordings.compare.third_octaves`.
+        Record by record, see :func:`permway.campaign.compare.third_octaves`.
     deviations : tuple of Dataset
         Record by record `z` (model, part, row, frequency): see :func:`permway.diagnosis.residuals.standardised`.
     parameters : Dataset
@@ -115,7 +115,7 @@ class Comparison:
 
     def summary(self) -> dict[str, Any]:
         """For people and machines."""
-        found: dict[str, Any] = {"campaign": self.campaign.said.title, "fits": self.fits()}
+        found: dict[str, Any] = {"campaign": self.campaign.stated.title, "fits": self.fits()}
         if self.fit is not None:
             table = self.parameters
             found["parameters"] = table.sizes["parameter"]

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.compare import NEPER_DB, POWER_DB, POWERS, VARIABLE
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import WIDTH, Fit
 from permway.diagnosis.recalibrated_values import recalibrated_of
-from permway.recordings.campaign import Campaign
-from permway.recordings.compare import NEPER_DB, POWER_DB, POWERS, VARIABLE
 
 SAYS_NOTHING = 0.9
 """A posterior that is wider than this share of the prior: the records say nothing of the parameter."""

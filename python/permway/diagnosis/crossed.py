@@ -13,6 +13,7 @@ from itertools import product
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import REACH_M, fresh, with_factors, with_joints
 from permway.diagnosis.catalogue._interval import shares, spacing_of, span_of, stations_of
 from permway.diagnosis.catalogue._roles import LOW_HZ, ROOM_C
@@ -23,7 +24,6 @@ from permway.errors import InputError
 from permway.laws import Waves
 from permway.model.changes import Change
 from permway.model.joints import GROUND, Joints
-from permway.recordings.campaign import Campaign
 
 DELAYS_S = (2.5e-4, 5e-4, 1e-3, 2e-3)
 """That a wave through a layer is looked for with: from a hard to a soft rubber of some decimetres."""

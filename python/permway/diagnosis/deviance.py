@@ -6,14 +6,14 @@ from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.importers.sheet import import_sheet
 from permway.diagnosis.bases import bases
 from permway.diagnosis.clock import Clock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.recalibrate import recalibrate
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.importers.sheet import import_sheet
 
 Progress = Callable[[str], object]
 

@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from permway.arrays import Complexes
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.advise import advise
 from permway.diagnosis.bases import bases
 from permway.diagnosis.candidates import candidates
@@ -32,7 +33,6 @@ from permway.diagnosis.speak_measurement import mixed_up, with_spoilt
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict_parts import RECALIBRATED, NextMeasurement
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
 
 SHOWN_INCONSTANT = 8
 """Parameters that would not stay constant, at most."""

@@ -154,7 +154,7 @@ def _learnt(fit: Fit) -> tuple[float, float]:
 def _most(fit: Fit) -> Sensor:
     """The sensor whose rows are missed by most, over their noise."""
     rows, square = fit.evidence.rows, _mean_square(fit)
-    names = [name for name in dict.fromkeys(rows.sensor) if name in {s.name for s in fit.campaign.said.sensors}]
+    names = [name for name in dict.fromkeys(rows.sensor) if name in {s.name for s in fit.campaign.stated.sensors}]
     return fit.campaign.sensor(str(max(names, key=lambda name: square[name])))
 
 

@@ -10,6 +10,19 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset
+from permway.campaign.predict import (
+    Key,
+    Request,
+    Result,
+    added_to,
+    away_from_lines,
+    plan,
+    predict_one,
+    request_of,
+    solve,
+)
 from permway.diagnosis.blocks import Block, Rows
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
@@ -19,19 +32,6 @@ from permway.diagnosis.side_by_side import threads_of_solver
 from permway.diagnosis.thinning import thinned
 from permway.diagnosis.wander import FIRST_LENGTH
 from permway.diagnosis.whitener import AllColumns, Whitener
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import (
-    Answer,
-    Need,
-    State,
-    added_to,
-    away_from_lines,
-    need_of,
-    plan,
-    predict_one,
-    solve,
-)
 
 SMALLEST_SMOOTH, LARGEST_SMOOTH = 0.001, 0.2
 """Between which the size of smooth errors is learnt, neper or rad: 0.009 and 1.7 dB."""
@@ -48,17 +48,17 @@ class Solved:
     """Predictions, and what they were made from."""
 
     campaign: Campaign
-    needs: tuple[Need | None, ...]
-    answers: Mapping[State, Answer]
+    needs: tuple[Request | None, ...]
+    answers: Mapping[Key, Result]
     datasets: list[xr.Dataset]
 
 
-def _answered(needs: Sequence[Need | None], campaign: Campaign, near: Solved | None) -> dict[State, Answer]:
+def _answered(needs: Sequence[Request | None], campaign: Campaign, near: Solved | None) -> dict[Key, Result]:
     """What a campaign of the same line had solved, of all states in which nothing else is needed."""
     if near is None or campaign.model.line != near.campaign.model.line:
         return {}
     others = {
-        need.state
+        need.key
         for need, old in zip(needs, near.needs, strict=True)
         if need is not None and (old is None or not need.is_like(old))
     }
@@ -67,8 +67,8 @@ def _answered(needs: Sequence[Need | None], campaign: Campaign, near: Solved | N
 
 def _kept(
     datasets: Sequence[Dataset],
-    needs: Sequence[Need | None],
-    answers: Mapping[State, Answer],
+    needs: Sequence[Request | None],
+    answers: Mapping[Key, Result],
     campaign: Campaign,
     near: Solved,
 ) -> list[bool]:
@@ -77,7 +77,7 @@ def _kept(
     alike = {"frf": True, "csd": _shaken_alike(campaign, near.campaign)}
     return [
         need is not None
-        and answers[need.state] is near.answers.get(need.state)
+        and answers[need.key] is near.answers.get(need.key)
         and alike.get(dataset.record.statistic, False)
         and same(dataset)
         for dataset, need in zip(datasets, needs, strict=True)
@@ -90,13 +90,13 @@ def _shaken_alike(one: Campaign, other: Campaign) -> bool:
         one.model.train == other.model.train
         and one.model.irregularity == other.model.irregularity
         and one.model.conversion == other.model.conversion
-        and one.said.irregularity == other.said.irregularity
+        and one.stated.irregularity == other.stated.irregularity
     )
 
 
 def _read_alike(one: Campaign, other: Campaign, dataset: Dataset) -> bool:
     """Whether a dataset's sensors and points are the same, and its condition is."""
-    if one.said is other.said:
+    if one.stated is other.stated:
         return True
     if one.condition(dataset.condition.name) != other.condition(dataset.condition.name):
         return False
@@ -156,11 +156,11 @@ class Evidence:
         near : Solved, optional
             Of a campaign that may have the same line: it is then not solved again.
         """
-        needs = [need_of(campaign, dataset) for dataset in self.datasets]
+        needs = [request_of(campaign, dataset) for dataset in self.datasets]
         answers = _answered(needs, campaign, near)
-        sweeps = plan(need for need in needs if need is not None and need.state not in answers)
+        sweeps = plan(need for need in needs if need is not None and need.key not in answers)
         for sweep in sweeps:
-            answers[sweep.state] = solve(sweep, campaign.model, threads=threads_of_solver(self.threads))
+            answers[sweep.key] = solve(sweep, campaign.model, threads=threads_of_solver(self.threads))
         kept = [] if near is None else _kept(self.datasets, needs, answers, campaign, near)
         datasets: list[xr.Dataset] = []
         made: dict[int, xr.Dataset] = {}
@@ -168,7 +168,7 @@ class Evidence:
             if near is not None and kept[index]:
                 made[id(dataset)] = near.datasets[index]
             elif id(dataset) not in made:
-                answer = None if need is None else answers[need.state]
+                answer = None if need is None else answers[need.key]
                 made[id(dataset)] = predict_one(campaign, dataset, need, answer)
             # Two blocks may be of one dataset.
             datasets.append(made[id(dataset)])
@@ -258,7 +258,7 @@ class Evidence:
             if isinstance(block, SpectraBlock):
                 campaign, need = solved.campaign, solved.needs[index]
                 assert need is not None
-                away = away_from_lines(campaign, block.dataset, need, solved.answers[need.state])
+                away = away_from_lines(campaign, block.dataset, need, solved.answers[need.key])
                 block = block.expecting(prediction, added_to(campaign, block.dataset), away)
             elif isinstance(block, FrfBlock):
                 block = block.with_reference(prediction, block.errors(self.whitener.of_part(explained, index)))

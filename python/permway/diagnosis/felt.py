@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
+from permway.campaign.compare import POWERS, VARIABLE
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Domain
-from permway.recordings.compare import POWERS, VARIABLE
 
 FELT = 0.01
 """Change of a sensor's prediction, neper (0.09 dB), below which nothing is called missing: two discretisations of

@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.evidence import Evidence
-from permway.recordings.campaign import Campaign
 
 Z_LIMIT = 8.0
 """Beyond which no parameter is sought, in standard deviations of the prior."""

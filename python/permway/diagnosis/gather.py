@@ -8,6 +8,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from permway.campaign.bad_channels import BadChannel, without_bad_channels
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset
+from permway.campaign.predict import added_to, predict, why_not
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_modes import ModesBlock
@@ -18,10 +22,6 @@ from permway.diagnosis.blocks_tabular import TableBlock
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.thinning import LINES_PER_FREQUENCY, thinned
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.predict import added_to, predict, why_not
-from permway.recordings.spoilt import Spoilt, sound
 
 
 class Readable(NamedTuple):
@@ -38,7 +38,7 @@ class Readable(NamedTuple):
 
     kept: list[Dataset]
     left_out: dict[str, str]
-    spoilt: tuple[Spoilt, ...]
+    spoilt: tuple[BadChannel, ...]
 
 
 def predictable(campaign: Campaign, *, screened: bool = True) -> Readable:
@@ -55,7 +55,7 @@ def predictable(campaign: Campaign, *, screened: bool = True) -> Readable:
     InputError
         If none can be predicted, all are spoilt, or a file cannot be read.
     """
-    whole, spoilt = sound(campaign) if screened else (campaign, ())
+    whole, spoilt = without_bad_channels(campaign) if screened else (campaign, ())
     datasets = whole.load()
     reasons = {dataset.record.name: why_not(campaign, dataset) for dataset in datasets}
     left_out = {name: str(why) for name, why in reasons.items() if why is not None}
@@ -146,7 +146,7 @@ def _kind(dataset: Dataset) -> str:
 
 def first_size(campaign: Campaign, origin: str) -> float:
     """Size of an origin's smooth errors before anything is learnt, neper; the irregularity's is its owner's."""
-    known = campaign.said.irregularity
+    known = campaign.stated.irregularity
     if origin == "irregularity":
         # Two standard deviations, of a power.
         return {"known": 0.01, "unknown": 1.0}.get(known.knowledge, 0.5 * (known.within_dB or 2.0) / 4.343)

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import linalg
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.side_by_side import SMALL, each
 from permway.errors import InputError, SolveError
-from permway.recordings.campaign import Campaign
 
 
 class Glance:

@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis import crossed
 from permway.diagnosis import grammar_places as places
 from permway.diagnosis.catalogue._change import fresh, with_joints, with_law
@@ -27,7 +28,6 @@ from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL
 from permway.laws import Parallel
 from permway.model.joints import GROUND, Joints
-from permway.recordings.campaign import Campaign
 
 WEAKER = (-0.5, -1.5, -2.5)
 """Sizes, in coordinates, that what is beside every joint of a layer is looked for with, too."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import fresh, with_joints
 from permway.diagnosis.catalogue._interval import shares, spacing_of, span_of, stations_of
 from permway.diagnosis.elements import Element, Values
@@ -16,7 +17,6 @@ from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL
 from permway.model.changes import Change
 from permway.model.joints import Joints
-from permway.recordings.campaign import Campaign
 
 RESONANCES_HZ = np.geomspace(4.0, 150.0, 12)
 """Where resonances are looked for, beside where the free stiffness is best known."""

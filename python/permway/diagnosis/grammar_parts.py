@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_law
 from permway.diagnosis.catalogue._interval import spacing_of, weakened
 from permway.diagnosis.catalogue._loss import first_look
@@ -21,7 +22,6 @@ from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import NOVEL
 from permway.laws import Parallel, Scaled, Springpot
 from permway.laws.base import Law
-from permway.recordings.campaign import Campaign
 
 SHARES = (0.25, -0.25, -0.75)
 """That a part of one joint's law is looked for with."""

@@ -14,6 +14,8 @@ import xarray as xr
 from scipy import linalg
 
 from permway.arrays import Reals
+from permway.campaign.groups import held_out
+from permway.campaign.parts import HeldOut
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
@@ -22,8 +24,6 @@ from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit, limits_of
 from permway.diagnosis.whitener import Whitener
 from permway.errors import InputError, SolveError
-from permway.recordings.campaign_groups import held_out
-from permway.recordings.campaign_parts import HeldOut
 
 STEPS = 4
 OWN = 1e-3
@@ -78,7 +78,7 @@ class Scored:
 
 def parts(evidence: Evidence) -> Iterator[Part]:
     """What may be left out: the campaign's own groups, or else speeds, temperatures, blows, sensors and a band."""
-    own = [Part(g.axis, g.name, _of_group(evidence, g)) for g in evidence.campaign.said.held_out]
+    own = [Part(g.axis, g.name, _of_group(evidence, g)) for g in evidence.campaign.stated.held_out]
     yield from (p for p in (own or list(_usual(evidence))) if p.rows.any() and not p.rows.all())
 
 

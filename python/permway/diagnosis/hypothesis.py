@@ -8,9 +8,9 @@ from typing import Literal, Protocol
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.fit import Fit, Free
 from permway.diagnosis.spot import Found
-from permway.recordings.campaign import Campaign
 
 Domain = Literal["path", "irregularity", "vehicle", "measurement"]
 Amend = Callable[[Campaign, Mapping[str, float]], Campaign]

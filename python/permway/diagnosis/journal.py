@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from permway._core import __version__
+from permway.campaign.campaign import Campaign
 from permway.errors import InputError
 from permway.files import write_bytes
-from permway.recordings.campaign import Campaign
 
 Arrays = Mapping[str, np.ndarray]
 
@@ -34,9 +34,9 @@ FOLDER = "unfinished"
 def key_of(campaign: Campaign, seed: int, ruled_out: Collection[str] = ()) -> str:
     """Of all that a diagnosis depends on: version, campaign file, model, every record, seed, what is ruled out."""
     said = hashlib.sha256(f"{__version__} {seed} {sorted(set(ruled_out))}".encode())
-    said.update(campaign.said.model_dump_json().encode())
+    said.update(campaign.stated.model_dump_json().encode())
     said.update(campaign.model.model_dump_json().encode())
-    for record in campaign.said.records:
+    for record in campaign.stated.records:
         for name in (record.file, record.loss_file):
             # What cannot be read is told of by its reader.
             with contextlib.suppress(OSError):

@@ -10,11 +10,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.compare import NEPER_DB
 from permway.diagnosis.evidence import LARGEST_SMOOTH, SMALLEST_SMOOTH, Evidence, Solved
 from permway.diagnosis.gather import first_size
 from permway.diagnosis.wander import LENGTHS
-from permway.recordings.campaign import Campaign
-from permway.recordings.compare import NEPER_DB
 
 USUAL, SEEN = 0.02, 4.0
 """Size of smooth errors that is expected beforehand, neper or rad, or as those of its kind have; and how many
@@ -75,9 +75,9 @@ def learnt(evidence: Evidence, solved: Solved) -> tuple[Evidence, float]:
 
 
 def _highest(campaign: Campaign, origin: str) -> float:
-    if origin == "irregularity" and campaign.said.irregularity.knowledge == "within":
+    if origin == "irregularity" and campaign.stated.irregularity.knowledge == "within":
         return TRUSTED * first_size(campaign, origin)
-    stated = {f"record {r.name}": r.within_dB for r in campaign.said.records}.get(origin)
+    stated = {f"record {r.name}": r.within_dB for r in campaign.stated.records}.get(origin)
     if stated is not None:
         # Two standard deviations, of an amplitude.
         return float(TRUSTED * 0.5 * stated / NEPER_DB)

@@ -15,15 +15,16 @@ import xarray as xr
 from scipy import linalg
 
 from permway.arrays import Complexes
+from permway.campaign.factors import campaign_under
+from permway.campaign.predict.hammer import read, temperature
 from permway.diagnosis.blocks import Basis
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.side_by_side import SMALL, each
 from permway.diagnosis.spot import Found, Spot
 from permway.errors import InputError
-from permway.recordings.campaign_factors import campaign_under
-from permway.recordings.predict.hammer import read, temperature
-from permway.response.receptance import Place, receptance
+from permway.model.place import Place
+from permway.response.receptance import receptance
 from permway.response.sensitivity import sensitivity
 
 KNOTS_PER_OCTAVE = 1.5

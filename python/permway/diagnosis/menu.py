@@ -9,10 +9,10 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset
 from permway.errors import InputError
 from permway.model.segments import Segment
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
 from permway.recordings.channel import Point, Sensor
 
 Kind = Literal["repeat", "sensor", "blows", "speed", "temperature"]
@@ -164,8 +164,8 @@ def _other_condition(dataset: Dataset, words: str, kind: Kind, **changed: float)
     condition = dataset.condition.model_copy(update={"name": f"planned {dataset.condition.name}", **changed})
 
     def planned(campaign: Campaign) -> Campaign:
-        said = campaign.said.model_copy(update={"conditions": (*campaign.said.conditions, condition)})
-        return replace(campaign, said=said)
+        said = campaign.stated.model_copy(update={"conditions": (*campaign.stated.conditions, condition)})
+        return replace(campaign, stated=said)
 
     (value,) = changed.values()
     return Item(words, kind, COST[kind], planned, replace(dataset, condition=condition), value=value)
@@ -173,15 +173,15 @@ def _other_condition(dataset: Dataset, words: str, kind: Kind, **changed: float)
 
 def _with_sensor(sensor: Sensor) -> Callable[[Campaign], Campaign]:
     def planned(campaign: Campaign) -> Campaign:
-        said = campaign.said.model_copy(update={"sensors": (*campaign.said.sensors, sensor)})
-        return replace(campaign, said=said)
+        said = campaign.stated.model_copy(update={"sensors": (*campaign.stated.sensors, sensor)})
+        return replace(campaign, stated=said)
 
     return planned
 
 
 def _with_point(point: Point) -> Callable[[Campaign], Campaign]:
     def planned(campaign: Campaign) -> Campaign:
-        said = campaign.said.model_copy(update={"forces": (*campaign.said.forces, point)})
-        return replace(campaign, said=said)
+        said = campaign.stated.model_copy(update={"forces": (*campaign.stated.forces, point)})
+        return replace(campaign, stated=said)
 
     return planned

@@ -15,13 +15,13 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.factors import model_under
+from permway.campaign.predict import Request, Result, Sweep, plan, predict_one, request_of, solve
+from permway.campaign.predict.sweeps import places_of
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.side_by_side import threads_of_solver
 from permway.model.line import Line
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_factors import model_under
-from permway.recordings.predict import Answer, Need, Sweep, need_of, plan, predict_one, solve
-from permway.recordings.predict.sweeps import places_of
 from permway.response.sensitivity import sensitivity
 
 COLUMNS = ("bending", "shear", "mass", "rotary")
@@ -42,7 +42,7 @@ class _Numbers:
     masses_kg: Reals
 
     @staticmethod
-    def of(line: Line, need: Need) -> _Numbers:
+    def of(line: Line, need: Request) -> _Numbers:
         """At a need's frequencies and temperature."""
         stiffness = line.stiffness(need.frequency_Hz, need.temperature_C)
         return _Numbers(stiffness, line.beam_columns(), line.masses_kg())
@@ -92,7 +92,7 @@ class Nearby:
         one, other = near.campaign.model.line, campaign.model.line
         if one == other or not self._few(one) or campaign.model.formulation != "chain" or not _alike(one, other):
             return None
-        needs = [need_of(campaign, dataset) for dataset in self.evidence.datasets]
+        needs = [request_of(campaign, dataset) for dataset in self.evidence.datasets]
         if not all(_same_places(new, old) for new, old in zip(needs, near.needs, strict=True)):
             return None
         return self._read(campaign, {id(n): self._moved(n, campaign) for n in near.needs if n is not None})
@@ -115,7 +115,7 @@ class Nearby:
         """
         if self._exact or not self._few(self.solved.campaign.model.line):
             return None
-        answers: dict[int, Answer] = {}
+        answers: dict[int, Result] = {}
         for need in self.solved.needs:
             if need is not None:
                 line = model_under(self.solved.campaign.model, need.factors).line
@@ -132,7 +132,7 @@ class Nearby:
     def _few(self, line: Line) -> bool:
         return len(line.beams()) + line.masses_kg().size <= MOST_BEAMS
 
-    def _read(self, campaign: Campaign, answers: Mapping[int, Answer]) -> Solved:
+    def _read(self, campaign: Campaign, answers: Mapping[int, Result]) -> Solved:
         """All datasets, from what their needs were answered."""
         made: dict[int, xr.Dataset] = {}
         for dataset, need in zip(self.evidence.datasets, self.solved.needs, strict=True):
@@ -142,13 +142,13 @@ class Nearby:
                 )
         return Solved(campaign, self.solved.needs, {}, [made[id(dataset)] for dataset in self.evidence.datasets])
 
-    def _answer(self, need: Need, moved: Complexes) -> Answer:
+    def _answer(self, need: Request, moved: Complexes) -> Result:
         """The receptances of a need, moved."""
         places = places_of(need.columns), places_of(need.rows)
         sweep = Sweep(need.temperature_C, need.frequency_Hz, *places, need.factors)
-        return Answer(sweep, self.solved.answers[need.state].of(need) + moved)
+        return Result(sweep, self.solved.answers[need.key].of(need) + moved)
 
-    def _moved(self, need: Need, campaign: Campaign) -> Answer:
+    def _moved(self, need: Request, campaign: Campaign) -> Result:
         if id(need) in self._exact:
             (sweep,) = plan([need])
             return solve(sweep, campaign.model, threads=threads_of_solver(self.evidence.threads))
@@ -167,7 +167,7 @@ class Nearby:
             values += mass[index] * known.by_mass[:, index]
         return self._answer(need, values)
 
-    def _derivatives(self, need: Need, line: Line) -> _Derivatives:
+    def _derivatives(self, need: Request, line: Line) -> _Derivatives:
         if id(need) not in self._known:
             # Two runs at one temperature may need the same.
             like = next((n for n in self.solved.needs if n is not None and n.is_like(need)), need)
@@ -212,7 +212,7 @@ def _alike(one: Line, other: Line) -> bool:
     )
 
 
-def _same_places(one: Need | None, other: Need | None) -> bool:
+def _same_places(one: Request | None, other: Request | None) -> bool:
     if one is None or other is None:
         return one is other
     return one.is_like(other)

@@ -10,9 +10,9 @@ import numpy as np
 from scipy import optimize
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.hypothesis import Hypothesis
-from permway.recordings.campaign import Campaign
 
 
 @dataclass(frozen=True)

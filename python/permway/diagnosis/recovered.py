@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.factors import campaign_under
+from permway.campaign.predict.hammer import temperature
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.spot import Found, Spot
 from permway.model.line import Line
-from permway.recordings.campaign_factors import campaign_under
-from permway.recordings.predict.hammer import temperature
-from permway.response.receptance import Place, receptance
+from permway.model.place import Place
+from permway.response.receptance import receptance
 
 
 def law_stiffness(base: Fit, amended: Fit, found: Found) -> Complexes | None:

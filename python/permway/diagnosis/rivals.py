@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign, read_campaign
 from permway.diagnosis.bases import bases
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
@@ -36,7 +37,6 @@ from permway.diagnosis.rivals_held_out import MOST_STEPS, LeftOut
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.verdict import NOVEL
 from permway.errors import InputError, SolveError
-from permway.recordings.campaign import Campaign, read_campaign
 
 NONE = 1e-6
 """Size of smooth errors of a method that knows of none, neper."""
@@ -103,7 +103,7 @@ def rivals(
     best = min(fitted, key=lambda one: one.objective)
     by_bic = min(fitted, key=lambda one: one.objective + penalty(one.quick, ring))
     missing = by_bic.objective + penalty(by_bic.quick, ring) < fit.objective
-    text = f"{seed} {campaign.said.title}".encode()
+    text = f"{seed} {campaign.stated.title}".encode()
     random = np.random.default_rng(int.from_bytes(hashlib.sha256(text).digest()[:8], "big"))
     drawn = screened[int(random.integers(len(screened)))]
     by_chance = _fitted(ring, drawn) if random.random() < CALLED else None

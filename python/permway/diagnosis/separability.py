@@ -13,6 +13,8 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.predict import predict
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.clock import Progress
 from permway.diagnosis.compete import Ring
@@ -23,8 +25,6 @@ from permway.diagnosis.locate import unseen
 from permway.diagnosis.refit import untouched
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign
-from permway.recordings.predict import predict
 
 
 @dataclass(frozen=True)

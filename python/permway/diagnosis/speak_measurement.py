@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from permway.campaign.bad_channels import BadChannel
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.labels import Mislabelled
 from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.verdict import RIGHT, Status, Verdict
 from permway.diagnosis.verdict_parts import Effect, Mechanics, Place, Recalibrated
-from permway.recordings.spoilt import Spoilt
 
 LABELS = "sensor_labels"
 """Name of the fault that channels carry each other's labels."""
@@ -28,11 +28,11 @@ def mixed_up(base: Fit, mixed: Mislabelled) -> Verdict:
     )
 
 
-def with_spoilt(said: Verdict, spoilt: Sequence[Spoilt]) -> Verdict:
+def with_spoilt(said: Verdict, spoilt: Sequence[BadChannel]) -> Verdict:
     """The verdict with channels whose samples are no measurement, which nothing was estimated from."""
     if not spoilt:
         return said
-    faults: dict[tuple[str, str], list[Spoilt]] = {}
+    faults: dict[tuple[str, str], list[BadChannel]] = {}
     for one in spoilt:
         faults.setdefault((one.channel, one.kind), []).append(one)
     effects = tuple(

@@ -2,7 +2,7 @@
 
 An error need not be the same all over what Hann's window takes in about a line. To first order it then acts on a
 spectrum by its value at the line, and by its growth there on the spectrum times the distance from the line
-(:func:`permway.recordings.predict.away_from_lines`). Of what one channel does not share with another that comes
+(:func:`permway.campaign.predict.away_from_lines`). Of what one channel does not share with another that comes
 late, the second is most: a phase that grows with frequency makes it come later, and share less.
 """
 

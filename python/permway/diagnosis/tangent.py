@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.nearby import Nearby
 from permway.diagnosis.side_by_side import SMALL, each
 from permway.diagnosis.whitener import Whitener
 from permway.errors import InputError, SolveError
-from permway.recordings.campaign import Campaign
 
 STEP = 1e-5
 """Of finite differences, in standard deviations of the prior."""

@@ -13,12 +13,12 @@ from dataclasses import replace
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Build, Fit
 from permway.diagnosis.quick import stacked
 from permway.diagnosis.search import Finalist
 from permway.errors import InputError, SolveError
-from permway.recordings.campaign import Campaign
 
 OFF_K = 0.5
 """Standard deviation by which what was read may be off what the structure had."""
@@ -38,7 +38,7 @@ def misread(fit: Fit, accepted: Sequence[Finalist]) -> Reals:
         The effects, in the order in which they stand on each other.
     """
     evidence, found = fit.evidence, np.zeros(fit.z.size)
-    read = {c.temperature_C for c in evidence.campaign.said.conditions} - {None}
+    read = {c.temperature_C for c in evidence.campaign.stated.conditions} - {None}
     values, reduced = fit.values(), evidence.whitener.reduce(fit.jacobian)
     solved = evidence.predicted(_built(evidence.campaign, None, accepted)(values))
     plain = evidence.deviations(solved.datasets)
@@ -70,10 +70,10 @@ def _shifted(campaign: Campaign, temperature_C: float | None, step_K: float) -> 
         return campaign
     conditions = tuple(
         c.model_copy(update={"temperature_C": temperature_C + step_K}) if c.temperature_C == temperature_C else c
-        for c in campaign.said.conditions
+        for c in campaign.stated.conditions
     )
-    said = campaign.said.model_copy(update={"conditions": conditions})
-    return replace(campaign, said=said)
+    said = campaign.stated.model_copy(update={"conditions": conditions})
+    return replace(campaign, stated=said)
 
 
 def _built(

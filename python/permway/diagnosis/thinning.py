@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from permway.recordings.campaign_load import Dataset
+from permway.campaign.load import Dataset
 
 LINES_PER_FREQUENCY = 40.0
 """Lines of a frequency response within its own frequency, at most."""

@@ -50,7 +50,7 @@ AnyLaw = Annotated[
     | StorageLossPair,
     Field(discriminator="type"),
 ]
-"""Any law, told apart by its `type`."""
+"""Any law, distinguished by its `type`."""
 
 __all__ = [
     "FVMP",

@@ -1,9 +1,9 @@
-"""Is a law passive, is it causal? Said over a band, with the worst place and the reason.
+"""Is a law passive, is it causal? Stated over a band, with the worst place and the reason.
 
 Passive: no energy comes out, Im k >= 0, and the stiffness at rest is not negative (k/(i omega) is then
 positive real).
 
-Causal: storage and loss obey Kramers and Kronig. Two witnesses are heard. The first is the structure of the
+Causal: storage and loss obey Kramers and Kronig. Two tests are made. The first is the structure of the
 closed form (poles, branch points, growth) where it is known. The second is numerical: with u = ln(omega),
 
     E'(u) - E'(u0) = -(1/pi) P int E''(v) [coth(v - u) - coth(v - u0)] dv,
@@ -40,7 +40,7 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, kw_only=True)
 class LawCheck:
-    """What can be said of a law over a band.
+    """What can be stated about a law over a band.
 
     Attributes
     ----------

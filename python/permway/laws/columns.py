@@ -182,7 +182,9 @@ def _match(index: int, header: str, beneath: str, where: str) -> Column | tuple[
         for quantity, kind in _quantities(name):
             inner = bare(rest)
             if _UNIT_REQUIRED & {quantity} and _says_none(rest) and not beneath:
-                return target_of(quantity), f"'{header}' says that it has no unit: write it, as in freq_Hz, temp_C"
+                return target_of(
+                    quantity
+                ), f"'{header}' states that it has no unit: write it, as in freq_Hz, temp_C"
             target = target_of(quantity)
             unit = column_unit(quantity, inner)
             if unit is None and inner:
@@ -197,7 +199,7 @@ def _match(index: int, header: str, beneath: str, where: str) -> Column | tuple[
                     return target, what + known_units(quantity)
                 if inner and unit != below:
                     raise InputError(
-                        f"'{header}' says {inner!r}, the row of units under it {beneath!r}",
+                        f"'{header}' states {inner!r}, the row of units under it {beneath!r}",
                         where=where,
                         remedy="correct whichever is wrong",
                     )
@@ -224,7 +226,7 @@ def target_of(quantity: str) -> str:
 
 
 def _says_none(rest: str) -> bool:
-    """Whether a header says that there is no unit, as "f [-]" does."""
+    """Whether a header states that there is no unit, as "f [-]" does."""
     return bool(rest.strip()) and not re.search(r"[\w°%℃℉]", rest)
 
 

@@ -144,12 +144,12 @@ def refuse_percent(source: Path, rows: list[Line], loss_factor: Reals, column: C
 
 
 def refuse_again(source: Path, rows: list[Line], frequency: Reals) -> None:
-    """Refuse a table without temperatures whose frequencies come again: sweeps at several that nobody says."""
+    """Refuse a table without temperatures whose frequencies come again: sweeps at several that nobody states."""
     _, first = np.unique(frequency, return_index=True)
     again = np.setdiff1d(np.arange(len(frequency)), first)
     if len(again):
         raise InputError(
-            "the frequencies come again and no column says the temperature of each sweep",
+            "the frequencies come again and no column states the temperature of each sweep",
             where=f"{source}: line {rows[again[0]].number}",
             value=f"{frequency[again[0]]:g} Hz",
             remedy="add a column temperature_C; if all rows are of one temperature, give it: --temperature",

@@ -244,7 +244,7 @@ def read_modulus_pair(
 
     A first line at 0 Hz is quasi-static and kept apart as `static_Pa`. The loss factor is interpolated over
     the logarithm of frequency onto the frequencies of the storage modulus that lie within its range;
-    `notes` says how many fell outside.
+    `notes` states how many fell outside.
 
     Parameters
     ----------
@@ -277,9 +277,9 @@ def read_modulus_pair(
             value=(float(loss_frequency[0]), float(loss_frequency[-1])),
             remedy="give both over one band",
         )
-    moved = int(np.sum(~np.isin(frequency[inside], loss_frequency)))
+    shifted = int(np.sum(~np.isin(frequency[inside], loss_frequency)))
     notes = (
-        f"loss factor interpolated over log frequency at {moved} of {int(inside.sum())} rows; "
+        f"loss factor interpolated over log frequency at {shifted} of {int(inside.sum())} rows; "
         f"{int((~inside).sum())} rows of the storage modulus lie outside its range and were left out",
     )
     frequency, storage = frequency[inside], storage[inside]

@@ -53,7 +53,7 @@ def read_layout(path: Path, *, decimal: str | None = None) -> Layout:
     ----------
     path : Path
     decimal : {".", ","}, optional
-        Said by the user; else found from the cells.
+        Stated by the user; else found from the cells.
 
     Raises
     ------

@@ -43,14 +43,14 @@ def storage_and_loss(
     first, second = sorted(next(way for way in WAYS if way <= read.keys()), key=_ORDER.index)
     storage, loss = _solve(source, rows, columns, first, second, read[first], read[second])
     with np.errstate(all="ignore"):
-        said = {
+        stated = {
             "magnitude": np.hypot(storage, loss),
             "loss_factor": loss / storage,
             "phase": np.arctan2(loss, storage),
             "loss": loss,
         }
-    for name in set(read) & set(said) - {first, second}:
-        _check_agrees(source, rows, columns[name], read[name], said[name])
+    for name in set(read) & set(stated) - {first, second}:
+        _check_agrees(source, rows, columns[name], read[name], stated[name])
     return storage, loss
 
 
@@ -89,15 +89,15 @@ def _check_phase(source: Path, rows: list[Line], phase: Reals, column: Column) -
         )
 
 
-def _check_agrees(source: Path, rows: list[Line], column: Column, found: Reals, said: Reals) -> None:
+def _check_agrees(source: Path, rows: list[Line], column: Column, found: Reals, stated: Reals) -> None:
     # What the last digit is worth may be more than the tolerance where little is printed.
     rounding = np.array([_last_digit(row.cells[column.index]) for row in rows]) * abs(column.factor)
-    apart = np.nonzero(np.abs(said - found) > _DISAGREE * np.abs(said) + rounding)[0]
+    apart = np.nonzero(np.abs(stated - found) > _DISAGREE * np.abs(stated) + rounding)[0]
     if not len(apart):
         return
     at = int(apart[0])
     raise InputError(
-        f"the other columns give {said[at] / column.factor:.4g}, which this one contradicts",
+        f"the other columns give {stated[at] / column.factor:.4g}, which this one contradicts",
         where=f"{source}: line {rows[at].number}, column '{column.header}'",
         value=float(found[at] / column.factor),
         remedy="mixed units or a shifted column? correct or remove one of the two",

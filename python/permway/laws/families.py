@@ -80,7 +80,7 @@ class Family:
     parameters: Callable[[Reals], dict[str, float]]
     kinds: tuple[str, ...]
 
-    def moved(self, x: Reals, lg_shift: float, lg_scale: float) -> Reals:
+    def shifted(self, x: Reals, lg_shift: float, lg_scale: float) -> Reals:
         """Coordinates of the law k' with k'(f) = 10^lg_scale k(10^lg_shift f).
 
         Parameters

@@ -148,7 +148,7 @@ class FVMP(Law):
 
     The transform of (23) with c2 = mu2/eta2 is k = mu1 + eta1 s^gamma + mu2 s^beta / (c2 + s^alpha), s = i
     omega; its real and imaginary parts are (24) and (25). Orders are free, so that Table 1 of the paper
-    (alpha 1.754, beta 2.813) can be written down; `check` says what it does to the physics.
+    (alpha 1.754, beta 2.813) can be written down; `check` states what it does to the physics.
 
     Parameters
     ----------

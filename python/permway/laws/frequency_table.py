@@ -19,7 +19,7 @@ def check_columns(frequency_Hz: Sequence[float], **columns: Sequence[float]) -> 
     Raises
     ------
     ValueError
-        For pydantic, which says where.
+        For pydantic, which states where.
     """
     rows = len(frequency_Hz)
     if rows < 2:

@@ -97,8 +97,8 @@ def identify(
     shift : {"none", "wlf", "arrhenius", "wlf_arrhenius", "free"}
         A free shift has one number per isotherm but one.
     reference_temperature_C : float, optional
-        Needed with a shift. The law's parameters are written for it; what the law says at any temperature does not
-        depend on it.
+        Needed with a shift. The law's parameters are written for it; what the law states at any temperature does
+        not depend on it.
     vertical : {"none", "paper"}
         Vertical factor, see :class:`permway.laws.TFDV`.
     seed : int
@@ -145,7 +145,7 @@ def _pose(
         )
     chosen = family(law)
     temperature = table.temperature_C
-    moved = shift_family(shift, temperature, nodes_of(table), reference_C)
+    shifted = shift_family(shift, temperature, nodes_of(table), reference_C)
     if shift == "none" and temperature is not None and np.ptp(temperature) > 5.0:
         raise InputError(
             f"the table spans {np.ptp(temperature):.3g} K but no shift is to be identified",
@@ -154,8 +154,8 @@ def _pose(
             remedy='use "wlf", "arrhenius", "wlf_arrhenius" or "free", or a table of one temperature',
         )
     lg_frequency = np.log10(table.frequency_Hz)
-    scales = _scales(table, moved)
-    bounds = np.array(chosen.bounds(scales) + moved.bounds)
+    scales = _scales(table, shifted)
+    bounds = np.array(chosen.bounds(scales) + shifted.bounds)
     if 2 * len(table) <= len(bounds):
         raise InputError(
             f"{len(table)} rows cannot determine {len(bounds)} parameters",
@@ -169,7 +169,7 @@ def _pose(
     measured = np.log(table.modulus)
     return Problem(
         law=chosen,
-        shift=moved,
+        shift=shifted,
         bounds=bounds,
         log_frequency=lg_frequency,
         vertical=factor,
@@ -179,11 +179,11 @@ def _pose(
     )
 
 
-def _scales(table: DmaTable, moved: ShiftFamily) -> Scales:
+def _scales(table: DmaTable, shifted: ShiftFamily) -> Scales:
     lg_modulus = np.log10(np.abs(table.modulus))
     lg_omega = np.log10(2.0 * np.pi * table.frequency_Hz)
     # How far a shift will stretch the axis is not known yet; the bounds need only be wide enough.
-    stretch = 3.0 if moved.bounds else 0.0
+    stretch = 3.0 if shifted.bounds else 0.0
     return Scales(
         float(lg_modulus.min()),
         float(lg_modulus.max()),

@@ -1,4 +1,4 @@
-"""Intervals of identified parameters from the Jacobian at the optimum, and what the data do not tell."""
+"""Intervals of identified parameters from the Jacobian at the optimum, and what the data do not constrain."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _AT_BOUND = 1e-4
 _WIDE_DECADES = 1.0
 _WIDE_RANGE = 0.5
 _WIDE_K = 20.0
-"""Of a transition: half is what few isotherms allow, twice says nothing of where the glass begins."""
+"""Of a transition: half is what few isotherms allow, twice states nothing of where the glass begins."""
 _STEP = 1e-6
 
 
@@ -76,8 +76,8 @@ def parameter_table(problem: Problem, x: Reals, jacobian: Reals, square: float) 
         touched = np.nonzero(bound & (np.abs(gradient) * width > 1e-3))[0]
         note = ""
         if len(touched):
-            said = dict.fromkeys(limit_words(kinds[index], not low_end[index]) for index in touched)
-            note = "not identifiable: " + "; also, ".join(said)
+            stated = dict.fromkeys(limit_words(kinds[index], not low_end[index]) for index in touched)
+            note = "not identifiable: " + "; also, ".join(stated)
         elif spread > _widest(name, scale)[0]:
             note = f"not identifiable: the interval is wider than {_widest(name, scale)[1]}"
             note += " on either side; measure over more temperatures and frequencies, or use a law with fewer "

@@ -30,11 +30,11 @@ class Step:
     cold_C, warm_C : float
         Degrees Celsius.
     decades : float or None
-        log10 alpha of the cold one minus that of the warm one; None if it cannot be told.
+        log10 alpha of the cold one minus that of the warm one; None if it cannot be determined.
     error : float
         Standard error from the scatter of both isotherms, decades.
     why : str
-        Why it cannot be told.
+        Why it cannot be determined.
     """
 
     cold_C: float
@@ -52,7 +52,7 @@ class Overlay:
 
     @property
     def unbroken(self) -> bool:
-        """Whether all steps could be told."""
+        """Whether all steps could be determined."""
         return all(step.decades is not None for step in self.steps)
 
     def log10_shift(self) -> dict[float, float]:

@@ -93,7 +93,7 @@ def shift_factors(found: Identification) -> Figure:
         axes.errorbar(nodes, law.log10_shift(nodes), yerr=spread, fmt="none", color="0.15", capsize=2, lw=0.8)
     laid = overlay(found.table).log10_shift()
     if len(laid) > 1:
-        # What is laid over each other says differences only: it begins on the law at the warmest temperature.
+        # What is laid over each other states differences only: it begins on the law at the warmest temperature.
         nodes = np.clip(np.array(list(laid)), low, high)
         at = np.array(list(laid.values())) + law.log10_shift(nodes[0])
         axes.plot(nodes, at, "o", color="0.15", markersize=3.5, label="overlaid without a law")

@@ -21,7 +21,7 @@ from permway.laws.families import Family
 from permway.laws.shift_fit import ShiftFamily, middle, shift_family
 
 Progress = Callable[[int, int], None]
-"""Told the steps done and the steps in all."""
+"""Reported the steps done and the steps in all."""
 
 STEPS = 100
 """Of one identification."""
@@ -57,7 +57,7 @@ class Problem:
     def at_reference(self, x: Reals) -> Reals:
         """The law's own coordinates at the user's reference, from those of the search."""
         own = len(x) - len(self.shift.bounds)
-        return self.law.moved(x[:own], self.shift.at_reference(x[own:]), self.lg_scale)
+        return self.law.shifted(x[:own], self.shift.at_reference(x[own:]), self.lg_scale)
 
     def residuals(self, x: Reals) -> Reals:
         """Weighted errors of log modulus and phase, shape (..., 2 n), for coordinates of shape (..., d)."""

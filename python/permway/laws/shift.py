@@ -19,7 +19,7 @@ GAS_CONSTANT = 8.31446261815324
 
 
 CLOSEST_K, HOTTEST_C, MOST_DECADES = 1e-3, 3000.0, 100.0
-"""Of a shift known at some temperatures: what lies beyond is a slip, and overflows between them."""
+"""Of a shift known at some temperatures: what lies beyond is a mistake, and overflows between them."""
 
 
 class Shift(FrozenModel, ABC):
@@ -212,4 +212,4 @@ class Free(Shift):
 
 
 AnyShift = Annotated[WLF | Arrhenius | WLFArrhenius | Free, Field(discriminator="type")]
-"""Any shift, told apart by its `type`."""
+"""Any shift, distinguished by its `type`."""

@@ -121,15 +121,15 @@ def _wlf(temperature: Reals, reference: float) -> ShiftFamily:
 
     def parameters(x: Reals) -> dict[str, float]:
         c1, c2 = 10.0 ** (x[0] + x[1]), 10.0 ** x[1]
-        moved = c2 + reference - centre
-        if moved <= 0.0:
+        shifted = c2 + reference - centre
+        if shifted <= 0.0:
             raise InputError(
                 f"at or below {centre - c2:.4g} degC, where the WLF shift of this table is singular",
                 where="reference_temperature_C",
                 value=reference,
                 remedy="give a reference within the table, or use the shift wlf_arrhenius",
             )
-        return {"c1": float(c1 * c2 / moved), "c2_K": float(moved)}
+        return {"c1": float(c1 * c2 / shifted), "c2_K": float(shifted)}
 
     def shift(x: Reals) -> Shift:
         return WLF(**parameters(x), reference_temperature_C=reference)

@@ -3,7 +3,7 @@
 T = k*/(k* - m omega^2) with k* = n G* A/h for n rubber rings sheared side by side; T is the motion of the
 mass over that of the base. The mass is everything that moves with it. A DMA modulus holds at the strain it
 was measured at: filled rubber softens with strain (Payne), so a record should be taken near that strain;
-`shear_strain` says what a record saw.
+`shear_strain` states what a record saw.
 """
 
 from __future__ import annotations

@@ -157,7 +157,7 @@ AnyBody = Annotated[Beam | Shaft | Mass, Field(discriminator="type")]
 
 
 def _check_units(beam: Beam) -> None:
-    """Refuse values that only a slip of units explains."""
+    """Refuse values that only a wrong unit explains."""
     shear = beam.shear_modulus_Pa
     radius = math.sqrt(beam.second_moment_m4 / beam.area_m2)
     for key, slipped, what in (

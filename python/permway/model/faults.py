@@ -25,8 +25,8 @@ def fault(what: str, *place: str | int, value: object = None) -> ValidationError
     value : object, optional
         The value met, if `what` does not say it.
     """
-    told = PydanticCustomError("fault", "{what}", {"what": what})
-    return ValidationError.from_exception_data("fault", [{"type": told, "loc": place, "input": value}])
+    reported = PydanticCustomError("fault", "{what}", {"what": what})
+    return ValidationError.from_exception_data("fault", [{"type": reported, "loc": place, "input": value}])
 
 
 def model_error(error: ValidationError, table: Mapping[str, Any], place: str) -> InputError:
@@ -98,3 +98,15 @@ def _unknown(key: str) -> str:
 def _keys(model: type[BaseModel]) -> set[str]:
     own = {field.alias or name for name, field in model.model_fields.items()}
     return own.union(*(_keys(child) for child in model.__subclasses__()))
+
+
+def table_at(value: object, where: str) -> dict[str, Any]:
+    """A copy of a table, or an error with its place."""
+    if not isinstance(value, Mapping):
+        raise InputError("must be a table", where=where, value=value, remedy=f"write [{where}]")
+    return dict(value)
+
+
+def below(table: str, error: InputError) -> InputError:
+    """The same complaint, its place taken to lie in a table."""
+    return InputError(error.what, where=f"{table}.{error.where}", value=error.value, remedy=error.remedy)

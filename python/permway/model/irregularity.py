@@ -158,7 +158,7 @@ class GermanHigh(_German):
 class Sato(Irregularity):
     """Sato's short-wave spectrum, S = A / W^n, m^2/(rad/m), W in rad/m (paper, equation (29)).
 
-    The paper prints A / W^(-n) and A = 0.065 without a unit. The exponent's sign is a slip, and A is in
+    The paper prints A / W^(-n) and A = 0.065 without a unit. The exponent's sign is a mistake, and A is in
     mm^2 (rad/m)^(n-1): 6.5e-8 in metres meets the German spectrum at 1 m within a factor of 1.35, 0.065
     in metres would lie six orders above it. One-sided as used; the source does not say. Wavelengths 0.01
     to 1 m.

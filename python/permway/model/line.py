@@ -22,6 +22,7 @@ from permway.model.joints import GROUND, Ends, Joints
 from permway.model.rods import check_rods, passes_through
 from permway.model.segments import Segment as Segment
 from permway.model.segments import check_ends, check_rows, find, segments_of
+from permway.notebook import Shown
 from permway.records import FrozenModel
 
 _NAME = re.compile(r"^[A-Za-z][A-Za-z0-9_-]*$")
@@ -34,7 +35,7 @@ _COMPILED: dict[int, tuple[weakref.ref[Line], JointTable]] = {}
 """The lines whose joints were compiled last, and they."""
 
 
-class Line(FrozenModel):
+class Line(FrozenModel, Shown):
     """A line: track, viaduct and what lies beside them.
 
     Parameters
@@ -78,11 +79,6 @@ class Line(FrozenModel):
         check_rows(self.bodies)
         check_rods(self.joints, self.laws)
         return self
-
-    def _repr_html_(self) -> str:
-        from permway.report.notebook import line_html
-
-        return line_html(self)
 
     def segments(self) -> list[Segment]:
         """Beams and shafts one by one, then masses: the bodies of the core."""

@@ -60,7 +60,7 @@ class CycleTable(Tabulated):
 class En13848(Tabulated):
     """The longitudinal level by its standard deviations in the bands of EN 13848-1.
 
-    A standard deviation says how much there is in a band, not how it is spread: within each band the density is
+    A standard deviation states how much there is in a band, not how it is spread: within each band the density is
     taken as a power of the wavenumber, and it may step where two bands meet.
 
     Parameters

@@ -15,7 +15,7 @@ from permway.records import FrozenModel
 End = Literal["free", "pinned", "clamped"]
 
 SHORTEST_M = 1e-6
-"""A change of section over less is a slip."""
+"""A change of section over less is a mistake."""
 
 Factor = Annotated[float, Field(gt=0.0, le=1e6)]
 
@@ -112,9 +112,9 @@ def check_changes(changes: Sequence[SectionChange], intervals_m: Sequence[tuple[
     reach = -math.inf
     for index in order:
         change = changes[index]
-        told = f"the interval ({change.from_m:g}, {change.to_m:g}) m"
+        reported = f"the interval ({change.from_m:g}, {change.to_m:g}) m"
         if change.from_m < reach - TOUCH_M:
-            what = f"{told} begins before {reach:g} m, where another change ends: leave no overlap"
+            what = f"{reported} begins before {reach:g} m, where another change ends: leave no overlap"
             raise fault(what, "changes", index)
         reach = change.to_m
         held = [
@@ -124,4 +124,4 @@ def check_changes(changes: Sequence[SectionChange], intervals_m: Sequence[tuple[
         if not any(held):
             runs = ", ".join(f"{start:g} to {stop:g} m" for start, stop in (intervals_m or ())[:4])
             more = ", ..." if intervals_m is not None and len(intervals_m) > 4 else ""
-            raise fault(f"{told} does not lie on one body, which runs {runs}{more}", "changes", index)
+            raise fault(f"{reported} does not lie on one body, which runs {runs}{more}", "changes", index)

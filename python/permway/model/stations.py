@@ -13,7 +13,7 @@ from permway.model.faults import fault
 from permway.records import FrozenModel
 
 FARTHEST_M = 1e6
-"""Coordinates beyond this are taken for a slip of units."""
+"""Coordinates beyond this are taken for a wrong unit."""
 
 MOST_STATIONS = 1_000_000
 
@@ -112,7 +112,7 @@ _SPREADS: TypeAdapter[tuple[Spread, ...]] = TypeAdapter(tuple[Spread, ...])
 
 
 def _read(value: object) -> object:
-    """Read one of the forms by its looks, so that a fault in it is told as that form's."""
+    """Read one of the forms by its looks, so that a fault in it is reported as that form's."""
     if isinstance(value, Spread | Ends):
         return value
     if isinstance(value, Mapping):

@@ -165,7 +165,7 @@ class Slider(FrozenModel):
 
 
 AnyAddition = Annotated[Resonator | FlexibleMode | DamperSeries | AirSpring | Slider, Field(discriminator="type")]
-"""Any addition, told apart by its `type`."""
+"""Any addition, distinguished by its `type`."""
 
 
 def check_additions(additions: Sequence[AnyAddition]) -> None:

@@ -12,11 +12,13 @@ import xarray as xr
 from permway.laws import AnyLaw
 from permway.model.contact import GivenContact
 from permway.model.irregularity import Conversion, GermanForm, GermanSato
+from permway.model.place import Place
 from permway.model.presets import slab_track_viaduct_32m
+from permway.model.train import Train
 from permway.model.vehicle_presets import crh380a
 from permway.paper.printed import SPEED_M_PER_S
-from permway.response.receptance import Place, Progress
-from permway.response.train import Train, train_response
+from permway.response.receptance import Progress
+from permway.response.train import train_response
 
 CENTRE_M = 16.0
 """The train stands over mid-span: its wheels at 6, 8.5, 23.5 and 26 m each stand over a fastener."""

@@ -14,11 +14,12 @@ import numpy as np
 from permway.arrays import Complexes, Reals
 from permway.model.joints import Joints
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.presets import slab_track_viaduct_32m, wj7b_constant
 from permway.paper.conventions import Convention, train
 from permway.paper.readings import Curves
 from permway.response.pseudo import pseudo_excitation
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 
 
 @dataclass(frozen=True)

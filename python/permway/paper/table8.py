@@ -52,7 +52,7 @@ def bounds(convention: Convention, contact_N_per_m: float = CONTACT_N_PER_M) -> 
 
 @dataclass(frozen=True)
 class Trial:
-    """A reading of "rail acceleration" that a slip might have made, against print.
+    """A reading of "rail acceleration" that a mistake might have made, against print.
 
     Attributes
     ----------

@@ -9,6 +9,7 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
+from permway.campaign.predict import added_to, away_from_lines
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
@@ -18,7 +19,6 @@ from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.gather import first_size
 from permway.posterior.chains import Chains, Factor, chains_of
 from permway.posterior.hyper import Hyper
-from permway.recordings.predict import added_to, away_from_lines
 
 NEPER_PER_DB = float(np.log(10.0)) / 20.0
 
@@ -97,7 +97,7 @@ class Frame:
             elif isinstance(block, SpectraBlock):
                 need = solved.needs[index]
                 if need is not None:
-                    campaign, answer = solved.campaign, solved.answers[need.state]
+                    campaign, answer = solved.campaign, solved.answers[need.key]
                     away = away_from_lines(campaign, block.dataset, need, answer)
                     block = block.expecting(prediction, added_to(campaign, block.dataset), away)
             elif isinstance(block, PassageBlock):

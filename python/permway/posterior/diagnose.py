@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.advise import advise
 from permway.diagnosis.catalogue import known
 from permway.diagnosis.clock import Clock, Progress
@@ -28,7 +29,6 @@ from permway.posterior.fit import Fit, Fitter
 from permway.posterior.held_out import gains
 from permway.posterior.masses import Masses
 from permway.posterior.search import explored
-from permway.recordings.campaign import Campaign
 
 FEW_LINES = 10.0
 """Lines of a frequency response within its own frequency with which large changes are looked for."""

@@ -13,6 +13,7 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.bounded import bounded_step
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.hypothesis import Hypothesis
@@ -21,7 +22,6 @@ from permway.diagnosis.tangent import Problem, State
 from permway.errors import InputError
 from permway.posterior.covariance import Covariance, Frame, Roots
 from permway.posterior.hyper import Hyper
-from permway.recordings.campaign import Campaign
 
 ENOUGH = 0.1
 """Of minus two log posterior: a step that gains less is the last."""

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import fresh, with_joints
 from permway.diagnosis.catalogue._roles import Layer, layers
 from permway.diagnosis.elements import ELEMENTS, Element
@@ -19,7 +20,6 @@ from permway.diagnosis.verdict import NOVEL
 from permway.model.bodies import Beam
 from permway.model.joints import GROUND, Joints
 from permway.model.segments import Segment
-from permway.recordings.campaign import Campaign
 
 ID = NOVEL
 DOMAIN: Domain = "path"

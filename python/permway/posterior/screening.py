@@ -15,13 +15,13 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.side_by_side import SMALL, each
 from permway.errors import InputError, SolveError
 from permway.posterior.cells import Cell
 from permway.posterior.covariance import Roots
 from permway.posterior.fit import Fit, grown
 from permway.posterior.hyper import Hyper
-from permway.recordings.campaign import Campaign
 
 BATCH = 64
 """Cells whose residuals are held at once."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.parameters import Known
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where
-from permway.recordings.campaign import Campaign
-from permway.recordings.parameters import Known
 
 ID = "owner_value"
 DOMAIN: Domain = "path"

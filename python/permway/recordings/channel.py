@@ -171,7 +171,7 @@ class Sensor(FrozenModel):
 
     @property
     def predicted(self) -> bool:
-        """Whether the model says anything of its direction."""
+        """Whether the model states anything of its direction."""
         return self.direction in ("down", "up")
 
     @property

@@ -34,8 +34,8 @@ LEFT_ALONE = {
 MOST_FILES = 2000
 """Files of a folder: a look takes up to a second each."""
 
-UNTOLD = "what was read and what was struck cannot be told from a name"
-"""What the reader says of a column that names a sensor alone."""
+UNDETERMINED = "what was read and what was struck cannot be determined from a name"
+"""What the reader states about a column that names a sensor alone."""
 
 MOST_COLUMNS = 500
 """Sensors side by side that are named so."""
@@ -43,7 +43,7 @@ MOST_COLUMNS = 500
 FEWEST_SAMPLES = 16
 """Samples below which a table is a list of something, and no record in time."""
 
-_UNSAID = re.compile(r"^(\w+) = [^#\n]*# .*does not say.*$", re.MULTILINE)
+_UNSTATED = re.compile(r"^(\w+) = [^#\n]*# .*does not say.*$", re.MULTILINE)
 _BLOCK = re.compile(r"^(?=\[\[)", re.MULTILINE)
 _REMARK = re.compile(r"^# (.*)$", re.MULTILINE)
 
@@ -53,7 +53,7 @@ class Found:
     """A table of a campaign file, and those of its keys that the file of recordings does not say."""
 
     table: dict[str, Any]
-    unsaid: set[str]
+    unstated: set[str]
 
 
 @dataclass(frozen=True)
@@ -120,19 +120,19 @@ def _export(folder: Path, path: Path) -> Export:
     except InputError as error:
         return Export(name, "", remarks=[f"{error.what}; {error.remedy}".rstrip("; ")])
     part = str(seen.get("campaign", ""))
-    said = tomllib.loads(part)
+    stated = tomllib.loads(part)
     remarks = [*_REMARK.findall(part), *(str(one) for one in seen.get("notes", ()))]
     if _short(seen):
-        said, part = {}, ""
+        stated, part = {}, ""
         remarks = [f"fewer than {FEWEST_SAMPLES} rows: no record is made of it"]
-    if not said.get("records"):
+    if not stated.get("records"):
         remarks += [str(one) for one in seen.get("problems", ())][:1] or ["no record of it can be used"]
     return Export(
         name,
         str(seen["format"]),
-        _tables(part, said, "sensors"),
-        _tables(part, said, "forces"),
-        _tables(part, said, "records"),
+        _tables(part, stated, "sensors"),
+        _tables(part, stated, "forces"),
+        _tables(part, stated, "records"),
         # Whoever reads them knows the folder.
         list(dict.fromkeys(remark.replace(f"{path}: ", "") for remark in remarks)),
         _shown(seen),
@@ -150,7 +150,7 @@ def _looked(path: Path) -> dict[str, Any]:
             read_frf(path, hints=Hints(pairs=pairs or None), keep_nonfinite=True)
         except InputError as error:
             name = str(error.value)
-            if not error.what.startswith(UNTOLD) or name in pairs:
+            if not error.what.startswith(UNDETERMINED) or name in pairs:
                 return seen
             pairs[name] = (name, path.stem)
         else:
@@ -163,11 +163,11 @@ def _short(seen: Mapping[str, Any]) -> bool:
     return "responses" not in seen and bool(rows) and all((row["samples"] or 0) < FEWEST_SAMPLES for row in rows)
 
 
-def _tables(part: str, said: Mapping[str, Any], key: str) -> list[Found]:
+def _tables(part: str, stated: Mapping[str, Any], key: str) -> list[Found]:
     """Tables of one kind, each with the keys that stand there with a remark that the file does not say them."""
     blocks = [block for block in _BLOCK.split(part) if block.startswith(f"[[{key}]]")]
-    tables = said.get(key, ())
-    return [Found(dict(table), set(_UNSAID.findall(block))) for table, block in zip(tables, blocks, strict=True)]
+    tables = stated.get(key, ())
+    return [Found(dict(table), set(_UNSTATED.findall(block))) for table, block in zip(tables, blocks, strict=True)]
 
 
 def _shown(seen: dict[str, Any]) -> dict[str, Any]:

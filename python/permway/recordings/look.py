@@ -160,13 +160,13 @@ def _channels(source: Path, asked: Asked, before: str, places: Places) -> dict[s
         notes = list(file.notes)
         if file.times is not None:
             notes.append(f"times: {file.times}")
-    sound = [row for row in rows if not row["problem"]]
-    unsaid = sound and asked.sampling_Hz is None and all(row["sampling_Hz"] is None for row in sound)
-    if unsaid and not any(row["fault"] for row in sound):
+    usable = [row for row in rows if not row["problem"]]
+    unstated = usable and asked.sampling_Hz is None and all(row["sampling_Hz"] is None for row in usable)
+    if unstated and not any(row["fault"] for row in usable):
         missing.append("sampling_Hz: the file does not say the sampling rate")
     faults = [fault for fault in dict.fromkeys(row.pop("fault") for row in rows) if fault]
     missing += faults
-    if any(row["unit"] is None for row in sound):
+    if any(row["unit"] is None for row in usable):
         missing.append("unit of the sensors: the file does not say the unit of every channel")
     part = time_part(rows, source.name, asked, faults, places)
     return {

@@ -24,7 +24,7 @@ Places = Mapping[int, tuple[float, float, float]]
 def time_part(
     rows: Sequence[Mapping[str, Any]], file: str, asked: Asked, faults: Sequence[str], places: Places
 ) -> str:
-    """Sensors and a record for the channels of a record in time; what cannot be used is left out, and said."""
+    """Sensors and a record for the channels of a record in time; what cannot be used is left out, and stated."""
     lines: list[str] = []
     channels: dict[str, str] = {}
     stated: dict[str, str] = {}
@@ -59,8 +59,8 @@ def time_part(
         f"channels = {_table(channels)}",
     ]
     if common is None or asked.sampling_Hz is not None:
-        said = "0.0              # Hz: the file does not say it" if common is None else repr(float(common))
-        lines.insert(-1, f"sampling_Hz = {said}")
+        expected = "0.0              # Hz: the file does not say it" if common is None else repr(float(common))
+        lines.insert(-1, f"sampling_Hz = {expected}")
     return "\n".join(lines)
 
 
@@ -158,7 +158,7 @@ def _sensor(name: str, quantity: str, unit: str, place: str, *, known: bool) -> 
 
 
 def _motion(unit: str | None) -> tuple[str, str] | None:
-    """Quantity and unit of a sensor; an acceleration where the file says none. None if no sensor has it."""
+    """Quantity and unit of a sensor; an acceleration where the file states none. None if no sensor has it."""
     if unit is None:
         return "acceleration", "m/s2"
     try:

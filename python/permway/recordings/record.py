@@ -33,11 +33,11 @@ class TimeRecord:
     units : tuple of (str or None)
         As found in the file; None where the file has none.
     values : ndarray, shape (channel, sample)
-        As found, float64. Samples that are not finite are there only if the reader was told to keep them.
+        As found, float64. Samples that are not finite are there only if the reader was reported to keep them.
     sampling_Hz : float or None
         None if the file has none.
     start_s : float or None
-        Time of the first sample, if the file says it.
+        Time of the first sample, if the file states it.
     source : str
         File, for messages.
     notes : tuple of str

@@ -1,4 +1,4 @@
-"""What is wrong with raw samples, told with its place. Nothing is altered."""
+"""What is wrong with raw samples, reported with its place. Nothing is altered."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def screen(
     Parameters
     ----------
     record : TimeRecord
-        Raw; read it with `keep_nonfinite=True` to have such samples told rather than refused.
+        Raw; read it with `keep_nonfinite=True` to have such samples reported rather than refused.
     sampling_Hz : float, optional
         What the rate should be.
     mains_Hz : sequence of float
@@ -38,7 +38,7 @@ def screen(
     -------
     Screening
         Channels in their order, the record as a whole first. At most twenty places of a kind in a channel; the
-        last says how many more.
+        last states how many more.
     """
     findings = list(_sampling(record, sampling_Hz))
     for name, values in zip(record.channels, record.values, strict=True):
@@ -54,19 +54,19 @@ def _channel(name: str, values: Reals, rate: float | None, mains: Sequence[float
         Finding("not finite", "error", name, f"{b - a} sample(s) not finite", a, b - 1, value=float(values[a]))
         for a, b in runs(~finite)
     ]
-    sound = values[finite]
-    if not sound.size:
+    finite_values = values[finite]
+    if not finite_values.size:
         return
-    if sound.min() == sound.max():
-        what = f"all {sound.size} samples are {sound[0]:.6g}"
-        yield [Finding("dead", "error", name, what, value=float(sound[0]))]
+    if finite_values.min() == finite_values.max():
+        what = f"all {finite_values.size} samples are {finite_values[0]:.6g}"
+        yield [Finding("dead", "error", name, what, value=float(finite_values[0]))]
         return
-    step = _quantum(sound)
+    step = _quantum(finite_values)
     clipped, found = clipping(name, values, step)
     yield found
     held, found = dropouts(name, values, finite & ~clipped, step)
     yield found
-    # What was told already is no measurement of level, noise and lines.
+    # What was reported already is no measurement of level, noise and lines.
     usable = finite & ~held
     if usable.sum() < 256:
         return
@@ -77,10 +77,10 @@ def _channel(name: str, values: Reals, rate: float | None, mains: Sequence[float
         yield mains_lines(name, np.where(usable, values, np.median(values[usable])), rate, mains)
 
 
-def _quantum(sound: Reals) -> float:
+def _quantum(finite_values: Reals) -> float:
     """The step of which all samples are multiples apart, 0 if there is none to see."""
-    levels = np.unique(sound)
-    if levels.size < 3 or levels.size > sound.size // 2:
+    levels = np.unique(finite_values)
+    if levels.size < 3 or levels.size > finite_values.size // 2:
         return 0.0
     steps = np.diff(levels)
     least = float(steps.min())

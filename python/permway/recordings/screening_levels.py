@@ -12,11 +12,11 @@ from permway.recordings.finding import Finding, Severity
 from permway.recordings.screening_runs import Flags
 
 FALSE_ALARMS = 1e-5
-"""Probability that any line of the mains is told of a record of white noise, a channel."""
+"""Probability that any line of the mains is reported of a record of white noise, a channel."""
 
 
 OFFSET_SCALES = 0.5
-"""An offset or a drift is told from so many standard deviations of the channel on."""
+"""An offset or a drift is determined from so many standard deviations of the channel on."""
 
 
 _MAINS_OFF_HZ = 0.15
@@ -44,11 +44,11 @@ def offset_and_drift(name: str, values: Reals, usable: Flags) -> list[Finding]:
     return found
 
 
-def coarse_steps(name: str, sound: Reals, step: float) -> list[Finding]:
+def coarse_steps(name: str, usable: Reals, step: float) -> list[Finding]:
     """A step of quantisation that shows in the noise: it adds step^2/12 to the variance."""
     if step == 0.0:
         return []
-    rms = float(sound.std())
+    rms = float(usable.std())
     if rms > 100.0 * step:
         return []
     severity: Severity = "warning" if rms < 4.0 * step else "note"
@@ -72,7 +72,7 @@ def mains_lines(name: str, values: Reals, rate: float, mains: Sequence[float]) -
         for n in range(1, int(0.49 * rate / base) + 1)
         if (at := round(n * base / spacing)) > reach + 3
         and at + reach + 3 < frequency.size
-        # Multiples of 50 Hz are multiples of 16.7 Hz as well, and told once.
+        # Multiples of 50 Hz are multiples of 16.7 Hz as well, and reported once.
         and not any(other > base and abs(n * base / other - round(n * base / other)) < 1e-3 for other in mains)
     ]
     found = []

@@ -1,4 +1,4 @@
-"""A campaign file and a model file begun from a folder of lab exports: what was found, and questions."""
+"""A campaign file and a model file started from a folder of lab exports: what was found, and questions."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ NO_SAYING = "question: the file does not say it"
 def write_skeleton(folder: Path) -> dict[str, Any]:
     """Write `campaign.toml` and `model.toml` into a folder of lab exports; nothing is written before all is read.
 
-    What nobody but the owner knows is left out, as a comment that begins with "question": where sensors stand,
+    What nobody but the user knows is left out, as a comment that begins with "question": where sensors stand,
     speeds, numbers of blows. Until they are answered the campaign is refused, each time with what is missing.
 
     Parameters
@@ -45,16 +45,16 @@ def write_skeleton(folder: Path) -> dict[str, Any]:
         if (folder / name).exists():
             raise InputError("is there already", where=str(folder / name), remedy="move it away, or go on with it")
     exports = read_folder(folder)
-    begun = Begun(exports)
-    campaign, model = begun.text(folder.resolve().name), model_text()
+    started = Begun(exports)
+    campaign, model = started.text(folder.resolve().name), model_text()
     prepare_folder(folder, (CAMPAIGN, MODEL))
     return {
         "campaign": str(write_text(folder / CAMPAIGN, campaign)),
         "model": str(write_text(folder / MODEL, model)),
         "files": [{"file": str(one.path), "format": one.format or "unknown", **one.shows} for one in exports],
-        "sensors": len(begun.sensors),
-        "points": len(begun.forces),
-        "records": len(begun.records),
+        "sensors": len(started.sensors),
+        "points": len(started.forces),
+        "records": len(started.records),
         "questions": campaign.count("# question") + model.count("# question"),
     }
 
@@ -81,12 +81,12 @@ class Begun:
                     if key in renamed:
                         renamed[key] = {label: known.get(name, name) for label, name in renamed[key].items()}
                 name = self._record_name(export, record.table)
-                self.records.append((name, Found(renamed, record.unsaid), export))
+                self.records.append((name, Found(renamed, record.unstated), export))
 
     def text(self, title: str) -> str:
         """The campaign file."""
         lines = [
-            '# Begun by `permway new`. Answer what begins with "question"; then: permway check campaign.toml',
+            '# Started by `permway new`. Answer what begins with "question"; then: permway check campaign.toml',
             "format = 1",
             f"title = {_quoted(title)}",
             f"model = {_quoted(MODEL)}",
@@ -139,8 +139,8 @@ def _named(
         other = known.get(name)
         if other is not None and any(other.table.get(key) != one.table.get(key) for key in alike):
             name = f"{name} ({export.path})"
-        # A file that says the unit answers for those that do not.
-        if name not in known or len(one.unsaid) < len(known[name].unsaid):
+        # A file that states the unit answers for those that do not.
+        if name not in known or len(one.unstated) < len(known[name].unstated):
             known[name] = one
         names[str(one.table["name"])] = name
     return names
@@ -160,7 +160,7 @@ def _place(table: Mapping[str, Any], key: str) -> list[str]:
 def _unit(one: Found) -> list[str]:
     keys = [key for key in ("quantity", "unit") if key in one.table]
     lines = [f"{key} = {_quoted(one.table[key])}" for key in keys]
-    if "unit" in one.unsaid:
+    if "unit" in one.unstated:
         return [f"# {line:<33}# {NO_SAYING}" for line in lines]
     return lines
 
@@ -178,10 +178,10 @@ def _condition(name: str, kind: str) -> list[str]:
 def _record(name: str, found: Found, export: Export) -> list[str]:
     record = found.table
     struck = record["statistic"] == "frf"
-    said = ", ".join(value for value in export.shows.values() if value)
+    stated = ", ".join(value for value in export.shows.values() if value)
     lines = [
         "[[records]]",
-        f"# {said}",
+        f"# {stated}",
         *(f"# {remark}" for remark in _plain(export.remarks)),
         f"name = {_quoted(name)}",
         f"file = {_quoted(export.path.as_posix())}",
@@ -191,7 +191,7 @@ def _record(name: str, found: Found, export: Export) -> list[str]:
     for key, value in record.items():
         if key in ("name", "file", "condition", "statistic"):
             continue
-        if key in found.unsaid or (key == "sampling_Hz" and not value):
+        if key in found.unstated or (key == "sampling_Hz" and not value):
             line = f"{key} = {json.dumps(value)}"
             lines.append(f"# {line:<33}# {NO_SAYING}")
         elif isinstance(value, dict):

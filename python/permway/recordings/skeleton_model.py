@@ -1,9 +1,9 @@
-"""A model file that is begun: rail, pads and ground, with what only the owner knows left open."""
+"""A model file that is started: rail, pads and ground, with what only the user knows left open."""
 
 from __future__ import annotations
 
 _TEXT = """\
-# Begun by `permway new`: a rail on pads. Answer what begins with "question". What else a model can hold, and
+# Started by `permway new`: a rail on pads. Answer what begins with "question". What else a model can hold, and
 # presets of whole lines: docs/model-file.md
 format = 1
 

@@ -17,7 +17,7 @@ from permway.checking.check import Checked
 from permway.checking.compared import Compared
 from permway.checking.table import labels, levels_dB, phases_deg
 from permway.files import prepare_folder, write_bytes
-from permway.report.compare.looks import FONT, INK, heat, logarithmic_hertz, name_rows, plain
+from permway.report.compare.looks import FONT, INK, colour_map, logarithmic_hertz, name_rows, plain
 from permway.report.diagnosis.track import HALF, draw, drawing
 
 PICTURE = "check.png"
@@ -81,7 +81,7 @@ def draw_check(checked: Checked, folder: Path, *, dpi: int = 130) -> Path | None
 def _map(axes: Axes, one: Compared, values: Reals, rows: np.ndarray, limit: float) -> Any:
     chosen = np.unique(np.linspace(0, values.shape[0] - 1, min(MOST_ROWS, values.shape[0])).round().astype(int))
     names = np.array(labels(one, rows))[chosen].tolist()
-    found = heat(axes, one.frequency_Hz, values[chosen], limit)
+    found = colour_map(axes, one.frequency_Hz, values[chosen], limit)
     logarithmic_hertz(axes, float(one.frequency_Hz[0]), float(one.frequency_Hz[-1]))
     plain(axes)
     name_rows(axes, names)

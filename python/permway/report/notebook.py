@@ -4,26 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.model.bodies import Mass
 from permway.model.line import Line
-
-if TYPE_CHECKING:
-    from permway.model.file import Model
-    from permway.recordings.campaign import Campaign
+from permway.problem.model import Model
 
 WIDTH, LEFT, RIGHT, ROW, TOP = 860.0, 110.0, 20.0, 46.0, 26.0
 MOST_DRAWN = 400
 """Joints of a layer, or masses of a row, that are drawn; of more every second, third and on."""
 
-Spot = tuple[str, float]
+Location = tuple[str, float]
 """Name of a body, or of one of a row, and x, m."""
 
 
-def line_svg(line: Line, *, forces: Sequence[Spot] = (), sensors: Sequence[Spot] = ()) -> str:
+def line_svg(line: Line, *, forces: Sequence[Location] = (), sensors: Sequence[Location] = ()) -> str:
     """A line as a drawing: bodies from above downwards, joints between them, forces and sensors.
 
     Parameters
@@ -89,6 +86,18 @@ def line_svg(line: Line, *, forces: Sequence[Spot] = (), sensors: Sequence[Spot]
     )
 
 
+def html(thing: object) -> str:
+    """A line, a model or a campaign as HTML."""
+    match thing:
+        case Line():
+            return line_html(thing)
+        case Model():
+            return model_html(thing)
+        case Campaign():
+            return campaign_html(thing)
+    raise TypeError(f"a {type(thing).__name__} has no drawing")
+
+
 def line_html(line: Line) -> str:
     """A line as a drawing, and its layers."""
     rows = [(f"{j.between[0]} on {j.between[1]}", j.law) for j in line.joints]
@@ -112,12 +121,12 @@ def model_html(model: Model) -> str:
 
 def campaign_html(campaign: Campaign) -> str:
     """A campaign as a drawing of its line with sensors and blows, and how much there is."""
-    said = campaign.said
-    sensors = [(s.body, s.x_m) for s in said.sensors if s.body is not None and s.x_m is not None]
-    drawing = line_svg(campaign.model.line, forces=[(p.body, p.x_m) for p in said.forces], sensors=sensors)
-    rows = [(r.name, f"{r.statistic} of {r.file}, {r.condition}") for r in said.records]
-    rows.append(("parameters", ", ".join(p.name for p in said.parameters) or "none"))
-    return _head(said.title or "Campaign") + drawing + _table(rows)
+    stated = campaign.stated
+    sensors = [(s.body, s.x_m) for s in stated.sensors if s.body is not None and s.x_m is not None]
+    drawing = line_svg(campaign.model.line, forces=[(p.body, p.x_m) for p in stated.forces], sensors=sensors)
+    rows = [(r.name, f"{r.statistic} of {r.file}, {r.condition}") for r in stated.records]
+    rows.append(("parameters", ", ".join(p.name for p in stated.parameters) or "none"))
+    return _head(stated.title or "Campaign") + drawing + _table(rows)
 
 
 def _reach(line: Line, places: Iterable[float]) -> tuple[float, float]:
@@ -129,9 +138,9 @@ def _reach(line: Line, places: Iterable[float]) -> tuple[float, float]:
     return low - margin, high + margin
 
 
-def _on(spots: Sequence[Spot], rows: dict[str, float]) -> list[tuple[str, float, float]]:
+def _on(locations: Sequence[Location], rows: dict[str, float]) -> list[tuple[str, float, float]]:
     """Label, x and height of each spot."""
-    return [(f"{body} at {x:g} m", x, rows[body.partition("[")[0]]) for body, x in spots]
+    return [(f"{body} at {x:g} m", x, rows[body.partition("[")[0]]) for body, x in locations]
 
 
 def _mark(kind: str, path: str, colour: str, label: str) -> str:

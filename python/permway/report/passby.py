@@ -26,7 +26,7 @@ def passage(data: xr.Dataset, sensor: str) -> Figure:
     Parameters
     ----------
     data : Dataset
-        From :func:`permway.response.solve.solve` of a model with a passage, or, its names without `passby_`, from
+        From :func:`permway.problem.solve.solve` of a model with a passage, or, its names without `passby_`, from
         :func:`permway.response.passby.run.passby`.
     sensor : str
         Its label.

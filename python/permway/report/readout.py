@@ -93,10 +93,10 @@ def _looks(line: Line2D) -> tuple[str, str, str]:
 
 
 def _names(figure: Figure) -> Names:
-    """What lines of certain looks are called, in whatever panel it is said."""
+    """What lines of certain looks are called, in whatever panel it is stated."""
     lines = (line for axes in figure.axes for line in axes.lines)
-    said = ((_looks(line), str(line.get_label())) for line in lines)
-    return {looks: " ".join(label.split()) for looks, label in said if not label.startswith("_")}
+    stated = ((_looks(line), str(line.get_label())) for line in lines)
+    return {looks: " ".join(label.split()) for looks, label in stated if not label.startswith("_")}
 
 
 def _axes(axes: Axes, names: Names, bar: str) -> dict[str, Any]:

@@ -33,7 +33,7 @@ def draw_dataset(data: xr.Dataset, folder: Path, *, dpi: int = 150) -> list[Path
     Parameters
     ----------
     data : Dataset
-        From :func:`permway.response.solve.solve`.
+        From :func:`permway.problem.solve.solve`.
     folder : Path
         Made if its parent exists.
     dpi : int

@@ -1,4 +1,4 @@
-"""The call of the core: a line's tables in, arrays out, what fails said in the user's words."""
+"""The call of the core: a line's tables in, arrays out, what fails stated in the user's words."""
 
 from __future__ import annotations
 

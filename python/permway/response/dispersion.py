@@ -181,14 +181,14 @@ class _Waves:
             return found
         # A law that depends on frequency is taken at the wave's own, branch by branch.
         for branch in range(branches):
-            moved = np.inf
+            displaced = np.inf
             for _ in range(_MOST_ROUNDS):
                 once = found[branch]
                 found[branch] = self._solve(kappa, self._laws(float(once)))[branch]
-                moved = abs(found[branch] - once)
-                if moved <= _SAME * found[branch]:
+                displaced = abs(found[branch] - once)
+                if displaced <= _SAME * found[branch]:
                     break
-            if not moved <= _SETTLED * found[branch]:
+            if not displaced <= _SETTLED * found[branch]:
                 raise InputError(
                     f"the law's stiffness jumps, so that no wave of {2.0 * np.pi / kappa:.3g} m settles",
                     where="line.laws",

@@ -10,8 +10,8 @@ from permway.arrays import Reals
 from permway.errors import InputError
 from permway.model.bodies import AnyBody, Mass
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.segments import Segment
-from permway.response.receptance import Place
 
 A_WAVE = 12
 """Places on a wavelength of the free beam; those of a beam on supports are longer."""

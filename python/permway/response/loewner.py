@@ -4,7 +4,7 @@ Lines are "left" and "right" ones in turn, mu and lambda, each with a few direct
 v = l H and the right data w = H r the matrices L = (v r - l w) / (mu - lambda) and Ls = (mu v r - lambda l w) /
 (mu - lambda) are such that H(s) = W (Ls - s L)^-1 V. Source: Mayo and Antoulas (2007), Linear Algebra Appl. 425,
 634-662. Nine equal spans have poles within 1e-4 of each other under damping of 5e-2: no single mixture of
-responses, as in :mod:`permway.response.poles`, tells them apart, but their directions do.
+responses, as in :mod:`permway.response.poles`, distinguishes them, but their directions do.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Pencil:
     motion: Complexes
     force: Complexes
 
-    def moved(self, responses: Complexes) -> Complexes:
+    def displaced(self, responses: Complexes) -> Complexes:
         """Left factors of the residues, (rows, R), of responses (K, rows, columns) at the right lines."""
         data = np.moveaxis(responses @ self.directions, 0, 1)
         return np.asarray(data.reshape(data.shape[0], -1) @ self.motion)

@@ -19,7 +19,7 @@ from permway.response.loewner import Pencil, pencil
 from permway.response.poles import HEAVIEST, SAME
 
 DIRECTIONS = 8
-"""Of every line; poles that lie close together are told apart by these."""
+"""Of every line; poles that lie close together are distinguished by these."""
 
 LINES, UNKNOWNS = 160, 320
 """Lines of a window, margins among them, and the size of a pencil: of fewer directions more lines are taken."""
@@ -117,7 +117,7 @@ def _window(response: Response, low_Hz: float, high_Hz: float, columns: list[int
     second = pencil(omega[1::2], scaled[1::2], directions, seed=2)
     if first.full or second.full:
         return None
-    peak = _peaks(first, first.moved(scaled[::2][first.right]))
+    peak = _peaks(first, first.displaced(scaled[::2][first.right]))
     modulus = np.abs(first.poles)
     off = np.abs(first.poles[:, None] - second.poles).min(axis=1, initial=np.inf) / modulus
     inside = (modulus > 2.0 * np.pi * low_Hz) & (modulus <= 2.0 * np.pi * high_Hz) & (first.poles.real > 0.0)
@@ -127,11 +127,11 @@ def _window(response: Response, low_Hz: float, high_Hz: float, columns: list[int
     loose = modulus[inside & (off >= SAME) & (peak > FAINT)] / (2.0 * np.pi)
     at = frequency[::2][first.right]
     everywhere = response(at if settled.size else at[:1], True)
-    moved = np.zeros((everywhere.shape[1], 0), dtype=np.complex128)
+    displaced = np.zeros((everywhere.shape[1], 0), dtype=np.complex128)
     if settled.size:
         weight = (2.0 * np.pi * at[:, None, None]) ** 2 / size
-        moved = first.moved(everywhere * weight)[:, settled]
-    return _read(first.poles[settled], moved, first.force[settled] * size, columns, np.sort(loose))
+        displaced = first.displaced(everywhere * weight)[:, settled]
+    return _read(first.poles[settled], displaced, first.force[settled] * size, columns, np.sort(loose))
 
 
 def _peaks(fit: Pencil, motion: Complexes) -> Reals:
@@ -141,11 +141,11 @@ def _peaks(fit: Pencil, motion: Complexes) -> Reals:
     return np.asarray(np.nan_to_num(peak, nan=0.0))
 
 
-def _read(omega: Complexes, moved: Complexes, force: Complexes, columns: list[int], loose: Reals) -> Found:
+def _read(omega: Complexes, displaced: Complexes, force: Complexes, columns: list[int], loose: Reals) -> Found:
     """Shapes and modal masses from factors of the residues of accelerance, omega phi_r phi_c / (2 m)."""
-    top = np.abs(moved).argmax(axis=0)
-    largest = moved[top, range(omega.size)]
-    shape = (moved / largest).T
+    top = np.abs(displaced).argmax(axis=0)
+    largest = displaced[top, range(omega.size)]
+    shape = (displaced / largest).T
     known = shape[:, columns]
     alike = np.abs((known.conj() * force).sum(axis=1)) / (
         np.linalg.norm(known, axis=1) * np.linalg.norm(force, axis=1)

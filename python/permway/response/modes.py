@@ -11,13 +11,13 @@ from permway import _core
 from permway.arrays import Complexes, Reals, is_real
 from permway.errors import InputError
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response.everywhere import everywhere
 from permway.response.mode_search import search
 from permway.response.poles import Poles, lines_for, poles_of
 from permway.response.receptance import (
     CONVENTION,
     Formulation,
-    Place,
     between,
     check_line,
     check_places,
@@ -65,7 +65,7 @@ def modes(
         By ascending frequency, over `mode`: `natural_frequency` in Hz, modulus of the pole over 2 pi;
         `damping_ratio`; `modal_mass` in kg, for a shape whose largest entry is 1, or NaN of modes that share one
         frequency, whose shapes are a choice of many. `shape` (mode, place), complex. Attribute `unsettled_Hz`:
-        natural frequencies of poles that overlap too much to be told apart, left out.
+        natural frequencies of poles that overlap too much to be distinguished, left out.
 
     Raises
     ------

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 
 from permway.errors import InputError, must_be
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.roll import Roll, antisymmetric
-from permway.response.receptance import Place, check_line, check_places, receptance
+from permway.response.receptance import check_line, check_places, receptance
 
 
 def both_rails(

@@ -13,39 +13,15 @@ from numpy.typing import ArrayLike
 from permway import _core
 from permway.arrays import Reals, real_numbers
 from permway.errors import InputError, must_be
-from permway.model.bodies import Metres
 from permway.model.joint_table import JointTable
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.segments import find
-from permway.records import FrozenModel
 from permway.response.core import Formulation as Formulation
 from permway.response.core import OnError, Solved, run
 from permway.response.core import Progress as Progress
 
 CONVENTION = "exp(+i omega t), displacement and force positive down"
-
-
-class Place(FrozenModel):
-    """A place on a body, of a unit force or of a sensor.
-
-    Parameters
-    ----------
-    body : str
-        Name of the body; "girder[2]" for the second of a row.
-    x_m : float
-        Place along the line.
-    name : str, optional
-        Label in the dataset; by default "body@x".
-    """
-
-    body: str
-    x_m: Metres
-    name: str | None = None
-
-    @property
-    def label(self) -> str:
-        """The name, or body and place, which differs where places do."""
-        return self.name or f"{self.body}@{self.x_m:.12g}"
 
 
 def receptance(

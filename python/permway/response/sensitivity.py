@@ -19,11 +19,11 @@ from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.model.joint_table import JointTable
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response.core import Progress, Solved, run
 from permway.response.limits import check_answer
 from permway.response.receptance import (
     CONVENTION,
-    Place,
     check_line,
     check_places,
     check_sweep,

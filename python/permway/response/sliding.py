@@ -143,9 +143,9 @@ def _moving(vehicle: Vehicle, speeds: Reals) -> Vehicle:
 
 def _speeds(vehicle: Vehicle, speeds: Reals, frequency_Hz: Reals, motion: Motion) -> Reals:
     """Root mean square of each slider's velocity, the mean over its suspensions, if the sliders moved so fast."""
-    moved = 2.0 * np.pi * frequency_Hz[:, None] * motion(_moving(vehicle, speeds))
+    displaced = 2.0 * np.pi * frequency_Hz[:, None] * motion(_moving(vehicle, speeds))
     power = [
-        np.trapezoid(np.mean(np.abs(moved @ vehicle.stretches(s.suspension).T) ** 2, axis=1), frequency_Hz)
+        np.trapezoid(np.mean(np.abs(displaced @ vehicle.stretches(s.suspension).T) ** 2, axis=1), frequency_Hz)
         for s in sliders_of(vehicle)
     ]
     return np.asarray(np.sqrt(np.array(power)))

@@ -7,25 +7,21 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from pydantic import Field, field_validator
 
 from permway import _core
 from permway.arrays import Complexes, Reals
-from permway.errors import InputError, SolveError, must_be
-from permway.model.bodies import Metres
-from permway.model.contact import ContactStiffness, GivenContact
-from permway.model.faults import fault
+from permway.errors import SolveError, must_be
 from permway.model.irregularity import AnyIrregularity, Conversion
-from permway.model.irregularity_spectra import Irregularity, check_speed
+from permway.model.irregularity_spectra import Irregularity
 from permway.model.line import Line
+from permway.model.place import Place
+from permway.model.train import Train
 from permway.model.vehicle import Vehicle
-from permway.records import FrozenModel, Number
 from permway.response.limits import check_answer
 from permway.response.pseudo import power_spectrum, pseudo_excitation, wheel_rail_forces
 from permway.response.receptance import (
     CONVENTION,
     Formulation,
-    Place,
     Progress,
     check_line,
     check_sweep,
@@ -33,41 +29,6 @@ from permway.response.receptance import (
     receptance,
 )
 from permway.response.sliding import at_work
-
-
-class Train(FrozenModel):
-    """A vehicle standing over a line, the irregularity drawn through under its wheels.
-
-    Parameters
-    ----------
-    vehicle : Vehicle
-    contact : contact stiffness
-        Linearised Hertz contact of one wheel.
-    centre_m : float
-        Where the middle of the train is.
-    speed_m_per_s : float
-    body : str
-        The body that the wheels run on.
-    """
-
-    vehicle: Vehicle
-    contact: ContactStiffness = Field(default_factory=lambda: GivenContact(stiffness_N_per_m=1.3e9))
-    centre_m: Metres
-    speed_m_per_s: Number
-    body: str = "rail"
-
-    @field_validator("speed_m_per_s")
-    @classmethod
-    def _check_speed(cls, speed: float) -> float:
-        try:
-            return check_speed(speed)
-        except InputError as error:
-            raise fault(f"{error.what}: {error.remedy}", value=speed) from error
-
-    def wheels(self) -> list[Place]:
-        """The contact points, leading wheel first."""
-        positions = self.centre_m + self.vehicle.wheel_positions_m()
-        return [Place(body=self.body, x_m=float(x), name=f"wheel{i + 1}") for i, x in enumerate(positions)]
 
 
 def train_response(

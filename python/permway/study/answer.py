@@ -11,9 +11,10 @@ import xarray as xr
 
 from permway import _core
 from permway.errors import InputError, PermwayError
-from permway.model.file import Model, model_from_dict
+from permway.formats.model_file import model_from_dict
+from permway.problem.model import Model
+from permway.problem.solve import solve
 from permway.response.receptance import Progress
-from permway.response.solve import solve
 from permway.study.netcdf import to_netcdf
 
 
@@ -52,7 +53,7 @@ def answer(
     keep : sequence of str, optional
         Variables to keep.
     threads, progress
-        As in :func:`permway.response.solve.solve`.
+        As in :func:`permway.problem.solve.solve`.
     """
     try:
         data = select(solve(model(), threads=threads, progress=progress), keep)

@@ -99,11 +99,11 @@ def _answers(distributed: Any, client: Any, study: Study, cases: Sequence[int]) 
         if status == "finished":
             yield index, result
         elif status == "error":
-            yield index, Answer(error=_said(result))
+            yield index, Answer(error=_stated(result))
         else:
             raise SolveError("the scheduler was lost; run the study again to go on")
 
 
-def _said(result: Any) -> str:
+def _stated(result: Any) -> str:
     error = result[1] if isinstance(result, tuple) and len(result) > 1 else result
     return f"{type(error).__name__}: {error}"

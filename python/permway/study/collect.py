@@ -35,7 +35,7 @@ def open_study(folder: str | Path) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The variables of a case, each with the study's dimensions before its own. `case_status` says "done",
+        The variables of a case, each with the study's dimensions before its own. `case_status` states "done",
         "failed" or "missing" of every case; those without a file are NaN, and attribute `failed` lists the failed
         ones with their errors as JSON. What sets an axis stands along it as a coordinate.
 

@@ -12,8 +12,9 @@ from pydantic import ValidationError
 
 from permway import _core
 from permway.errors import InputError
+from permway.formats.model_file import model_from_dict
 from permway.model.faults import model_error
-from permway.model.file import Model, model_from_dict
+from permway.problem.model import Model
 from permway.reading import LARGEST_TABLE, inside, read_bytes, read_toml
 from permway.records import FrozenModel
 from permway.study.axes import read_axes
@@ -59,7 +60,7 @@ class Study:
         Raises
         ------
         InputError
-            If the case's values make no model; the place says which case.
+            If the case's values make no model; the place states which case.
         """
         try:
             table = self.table
@@ -67,7 +68,7 @@ class Study:
                 table = replaced(table, place, value)
             return model_from_dict(table, folder=self.folder)
         except InputError as error:
-            values = ", ".join(f"{k} = {_short(v)}" for k, v in self.plan.said(index).items())
+            values = ", ".join(f"{k} = {_short(v)}" for k, v in self.plan.stated(index).items())
             raise InputError(
                 error.what, where=f"case {index} ({values}): {error.where}", value=error.value, remedy=error.remedy
             ) from error

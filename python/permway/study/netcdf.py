@@ -14,7 +14,7 @@ from typing import Any
 import h5py
 import xarray as xr
 
-from permway.response.solve import netcdf_bytes
+from permway.problem.solve import netcdf_bytes
 
 MOST_STRUCTURES = 8
 
@@ -23,7 +23,7 @@ _lock = Lock()
 
 
 def to_netcdf(data: xr.Dataset) -> bytes:
-    """A dataset as the content of a NetCDF file, as :func:`permway.response.solve.write_dataset` writes it.
+    """A dataset as the content of a NetCDF file, as :func:`permway.problem.solve.write_dataset` writes it.
 
     The same dataset gives the same numbers, names and attributes; within a process, the same bytes.
     """

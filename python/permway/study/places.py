@@ -42,7 +42,7 @@ def parse_place(path: object, where: str) -> Steps:
 def replaced(table: Any, steps: Steps, value: Any) -> Any:
     """A copy of a table with one value set; what lies beside the path is shared, not copied.
 
-    Tables on the way that the file leaves out are made: whether the keys in them mean anything, the model says.
+    Tables on the way that the file leaves out are made: whether the keys in them mean anything, the model states.
 
     Raises
     ------

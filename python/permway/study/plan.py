@@ -100,7 +100,7 @@ class Plan:
             for place, value in zip(axis.places, axis.rows[int(i)], strict=True)
         ]
 
-    def said(self, index: int) -> dict[str, Any]:
+    def stated(self, index: int) -> dict[str, Any]:
         """A case's values by their paths, for people."""
         return {written(place): value for place, value in self.settings(index)}
 

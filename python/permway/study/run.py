@@ -14,10 +14,10 @@ import numpy as np
 
 from permway.errors import InputError, SolveError, must_be
 from permway.interrupt import interruptible
-from permway.model.file import Frequencies
+from permway.problem.model import Frequencies
+from permway.problem.solve import solve
 from permway.response.limits import check_threads
 from permway.response.receptance import Progress
-from permway.response.solve import solve
 from permway.study.answer import select
 from permway.study.file import Study
 from permway.study.local import solve_locally
@@ -103,7 +103,7 @@ def run_study(
             from permway.study.cluster import solve_on_cluster
 
             answers = solve_on_cluster(study, missing, scheduler)
-        told: set[str] = set()
+        reported: set[str] = set()
         saved = time.monotonic()
         with closing(answers):  # type: ignore[type-var]
             for index, got in answers:
@@ -111,8 +111,8 @@ def run_study(
                     store.fail(index, got.error)
                 else:
                     store.put(index, got.content)
-                for note in set(got.notes) - told:
-                    told.add(note)
+                for note in set(got.notes) - reported:
+                    reported.add(note)
                     warnings.warn(note, stacklevel=2)
                 if store.failed and time.monotonic() - saved > SAVED_EVERY_S:
                     store.save()

@@ -75,7 +75,7 @@ class Store:
     def save(self) -> None:
         """Write the manifest."""
         plan = self.study.plan
-        failed = [{"case": i, "set": plan.said(i), "error": e} for i, e in sorted(self.failed.items())]
+        failed = [{"case": i, "set": plan.stated(i), "error": e} for i, e in sorted(self.failed.items())]
         content = {
             "format": 1,
             "permway_version": _core.__version__,

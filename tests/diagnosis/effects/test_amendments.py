@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from permway.campaign.campaign import Campaign
+from permway.campaign.factors import model_under
 from permway.diagnosis.catalogue import support_gradient
 from permway.diagnosis.catalogue._pads import STIFFNESS, factors, keys_of
 from permway.diagnosis.catalogue._relaxing import REFERENCE_HZ, relaxing, relaxing_once
@@ -13,8 +15,6 @@ from permway.diagnosis.hypothesis import Hypothesis, Where, between_free, log_fr
 from permway.diagnosis.quick import weaker
 from permway.laws import Hysteretic, Scaled
 from permway.laws.checks import check_law
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_factors import model_under
 from simulated import simulate
 
 FREQUENCY = np.geomspace(1.0, 1000.0, 200)

@@ -7,19 +7,20 @@ from dataclasses import replace
 import numpy as np
 import passages
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.predict import predict
 from permway.diagnosis.catalogue import bearing_rotation
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.model.bodies import Beam
+from permway.model.place import Place
 from permway.posterior.covariance import Frame
 from permway.posterior.fit import Fitter
 from permway.posterior.masses import Masses
 from permway.posterior.search import explored
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.predict import predict
-from permway.response.receptance import Place, receptance
+from permway.response.receptance import receptance
 
 LENGTH, BENDING = passages.LENGTH_M, passages.BENDING_NM2
 TYPICAL = BENDING / LENGTH

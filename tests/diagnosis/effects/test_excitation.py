@@ -10,6 +10,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
+from permway.campaign.excitation import Dips, Push, RoughBand, TrackLines, WheelLines
+from permway.campaign.predict import predict
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._excite import chain_with, with_irregularity, with_speed
@@ -20,10 +23,7 @@ from permway.diagnosis.quick import Quick
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.refit import relearnt
 from permway.model.contact import GivenContact
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import Dips, Push, RoughBand, TrackLines, WheelLines
 from permway.recordings.channel import Mains
-from permway.recordings.predict import predict
 from simulated import simulate
 from trains import blank, campaign_in, situation_of
 

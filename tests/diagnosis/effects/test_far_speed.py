@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
 from permway.diagnosis.catalogue import speed_error
 from permway.diagnosis.catalogue._excite import with_speed
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import Campaign, read_campaign
 from trains import CAMPAIGN, campaign_in, situation_of
 
 RUNS = ("slow", "fast")

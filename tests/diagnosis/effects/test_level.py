@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from permway.campaign.campaign import read_campaign
 from permway.diagnosis.catalogue._excite import with_irregularity
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.level import beyond
 from permway.diagnosis.recalibrate import UNFIT, recalibrate
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import read_campaign
 from trains import CAMPAIGN, campaign_in, drawn
 
 THRESHOLD = 10.0

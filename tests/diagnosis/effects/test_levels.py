@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 from permway.arrays import Complexes, Reals
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.predict import predict
 from permway.diagnosis.catalogue import level_friction, level_stiffness
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Hypothesis, Situation
@@ -16,8 +18,6 @@ from permway.diagnosis.recalibrate import recalibrate
 from permway.errors import InputError
 from permway.laws.toml import to_toml
 from permway.posterior.diagnose import diagnose
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.predict import predict
 
 MASS, STIFFNESS, DAMPING = 2.0, 8.0e4, 24.0
 LEVELS = (1.0, 2.0, 4.0)

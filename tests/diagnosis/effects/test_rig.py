@@ -6,6 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.compare import NEPER_DB
+from permway.campaign.importers.rubber_rig import RIG, WITHIN_DB, import_rubber_rig
 from permway.diagnosis.catalogue import pad_frequency
 from permway.diagnosis.catalogue._roles import rubbers
 from permway.diagnosis.diagnose import diagnose
@@ -15,9 +18,6 @@ from permway.diagnosis.learning import TRUSTED
 from permway.diagnosis.recalibrate import recalibrate
 from permway.errors import InputError
 from permway.model.presets import slab_track_viaduct_32m
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.compare import NEPER_DB
-from permway.recordings.importers.rubber_rig import RIG, WITHIN_DB, import_rubber_rig
 
 ORDER, SHARE = 0.4, 0.5
 """Of the springpot, and its share of the stiffness at 60 Hz."""
@@ -61,7 +61,7 @@ def test_a_data_sheet_knows_no_frequency_and_the_dma_is_withheld(campaign: Campa
     law = campaign.model.line.laws["rubber"].complex([10.0, 500.0])
     expected = complex(0.5 * RIG.shape_factor_m * modulus(np.array(10.0)))
     assert law == pytest.approx([expected] * 2, rel=1e-9)
-    assert {record.statistic for record in campaign.said.records} == {"transmissibility"}
+    assert {record.statistic for record in campaign.stated.records} == {"transmissibility"}
     assert not (campaign.folder / "tf_015p.csv").exists()
 
 
@@ -110,7 +110,7 @@ def test_instruments_get_no_more_wrong_than_is_stated(campaign: Campaign) -> Non
     stated = 0.5 * WITHIN_DB / NEPER_DB
     known = recalibrate(gather(campaign, threads=1)).evidence.sizes
     assert max(known.values()) == pytest.approx(TRUSTED * stated)
-    records = tuple(r.model_copy(update={"within_dB": None}) for r in campaign.said.records)
-    said = campaign.said.model_copy(update={"records": records})
+    records = tuple(r.model_copy(update={"within_dB": None}) for r in campaign.stated.records)
+    said = campaign.stated.model_copy(update={"records": records})
     free = Campaign(said, campaign.model, campaign.folder, campaign.parameters)
     assert max(recalibrate(gather(free, threads=1)).evidence.sizes.values()) > 1.5 * TRUSTED * stated

@@ -8,6 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.excitation import Rolling
+from permway.campaign.predict import predict
+from permway.campaign.predict import rolling as rolling_predicted
 from permway.diagnosis.bases import bases
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._excite import with_irregularity, with_speed
@@ -18,10 +22,6 @@ from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.refit import relearnt
 from permway.errors import InputError
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_excitation import Rolling
-from permway.recordings.predict import predict
-from permway.recordings.predict import rolling as rolling_predicted
 from trains import CAMPAIGN, blank, campaign_in, drawn, situation_of
 
 SPACING_M = 0.6
@@ -54,7 +54,7 @@ def said(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
 
 def test_a_campaign_file_lets_its_train_roll(owner: Campaign, said: Campaign) -> None:
     """Lines of its weight at V over the spacing, and little else far below."""
-    known = said.said.irregularity.rolling
+    known = said.stated.irregularity.rolling
     assert known is not None
     assert known.model_copy(update={"about": None}) == Rolling(spacing_m=SPACING_M)
     runs = [one for one in blank(owner) if one.record.statistic == "csd"]
@@ -74,7 +74,7 @@ def test_a_train_that_is_said_to_roll_does_so_over_the_line_that_is_found(said: 
     truth = said.with_values(right)
     evidence = gather(said, drawn(truth.rolling_about(truth), 24), threads=1)
     base, _ = bases(evidence, Clock(None))
-    rolling = base.campaign.said.irregularity.rolling
+    rolling = base.campaign.stated.irregularity.rolling
     assert rolling is not None
     assert rolling.about is not None
     assert rolling.about.line.laws["pad"].stiffness == pytest.approx(6.9e7, rel=0.02)  # type: ignore[union-attr]
@@ -99,8 +99,8 @@ def test_speeds_and_temperatures_that_differ_little_ask_for_nothing_new(
     monkeypatch.setattr(rolling_predicted, "kernel", counted)
     predict(with_speed(said, 1.03), runs)
     assert made == []
-    warmer = tuple(c.model_copy(update={"temperature_C": 17.0}) for c in said.said.conditions)
-    predict(replace(said, said=said.said.model_copy(update={"conditions": warmer})), runs)
+    warmer = tuple(c.model_copy(update={"temperature_C": 17.0}) for c in said.stated.conditions)
+    predict(replace(said, stated=said.stated.model_copy(update={"conditions": warmer})), runs)
     assert made == []
     predict(with_speed(said, 1.08), runs)
     assert made == pytest.approx([54.0, 76.68])
@@ -135,7 +135,7 @@ def test_every_share_of_its_range_can_be(rolls: Situation) -> None:
     for free in rolling.free:
         for z in free.limits:
             amended = rolling.amend(rolls.campaign, {"share": 1.0, free.name: free.value(z)})
-            assert amended.said.irregularity.rolling is not None
+            assert amended.stated.irregularity.rolling is not None
 
 
 def test_a_profile_that_is_not_as_said_is_told_beside_it(owner: Campaign) -> None:
@@ -158,7 +158,7 @@ def test_what_its_owner_says_of_a_profile_stays(rolls: Situation, owner: Campaig
     """A shape is added to his own, and differs from a spectrum that he knows by next to nothing."""
     rolling = forms(rolls)["rolling"]
     his = with_irregularity(owner, shape_dB=((0.3, 2.0), (0.5, -1.0)))
-    shaped = rolling.amend(his, {"share": 1.0, "shape_0.4_m_dB": 0.5}).said.irregularity
+    shaped = rolling.amend(his, {"share": 1.0, "shape_0.4_m_dB": 0.5}).stated.irregularity
     at_m = np.array([0.1, 0.3, 0.4, 0.5, 0.8, 20.0])
     between = np.interp(np.log(0.4), np.log([0.3, 0.5]), [2.0, -1.0])
     own = 0.5 * np.interp(np.log(at_m), np.log([0.2, 0.4, 0.8]), [0.0, 1.0, 0.0])

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue import entries, slab_joints
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.gather import gather
@@ -16,7 +17,6 @@ from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.locate import scan
 from permway.diagnosis.recalibrate import recalibrate
 from permway.model.segments import Segment
-from permway.recordings.campaign import Campaign
 from simulated_track import SPAN_M, campaign, viaduct
 from simulated_train import measured, written
 

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
+from permway.campaign.predict import predict
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.compete import Ring
@@ -18,8 +20,6 @@ from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation
 from permway.diagnosis.locate import scan
 from permway.diagnosis.recalibrate import recalibrate
-from permway.recordings.campaign import Campaign
-from permway.recordings.predict import predict
 from simulated_track import ballasted, campaign, embedded, viaduct
 from simulated_train import blank, measured, written
 

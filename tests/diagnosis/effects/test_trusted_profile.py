@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._excite import with_irregularity
 from permway.diagnosis.gather import gather
 from permway.diagnosis.learning import TRUSTED
 from permway.diagnosis.recalibrate import recalibrate
-from permway.recordings.campaign import Campaign
 from trains import campaign_in, drawn
 
 WITHIN_DB = 2.0

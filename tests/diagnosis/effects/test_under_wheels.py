@@ -22,7 +22,7 @@ def test_levels_hold_every_fastener_once(tmp_path: Path, monkeypatch: pytest.Mon
         return np.linspace(1.0, least, 21)
 
     monkeypatch.setattr(_under_wheels, "share_of_load", share)
-    (condition,) = campaign.said.conditions
+    (condition,) = campaign.stated.conditions
     changed, levels = _under_wheels.levelled(cast(Any, campaign), ["pad"], [condition.name])
     table, before = changed.model.line.joint_table(), line.joint_table()
     np.testing.assert_array_equal(np.sort(table.x), np.sort(before.x))

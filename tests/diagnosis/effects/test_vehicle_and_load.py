@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.campaign import Campaign
+from permway.campaign.predict import predict
 from permway.diagnosis.compete import Ring
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
 from permway.diagnosis.recalibrate import recalibrate
-from permway.recordings.campaign import Campaign
-from permway.recordings.predict import predict
 from simulated_train import blank, measured, tables, written
 
 INJECTED: dict[str, tuple[str, tuple[float, float, float], dict[str, float]]] = {

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from permway.campaign.predict.grid import grid_of
 from permway.diagnosis.blocks_spectra import TORN, SpectraBlock
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.gather import gather
-from permway.recordings.predict.grid import grid_of
 from trains import campaign_in, drawn
 
 DELAY_S = 1e-5

@@ -13,14 +13,14 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.load import Dataset, log_variance
+from permway.campaign.predict import predict
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.laws.toml import to_toml
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.campaign_load import Dataset, log_variance
-from permway.recordings.predict import predict
 
 AVERAGES, BLOWS, DURATION_S = 120, 16, 60.0
 HAMMER_HZ = np.geomspace(8.0, 160.0, 30)
@@ -140,7 +140,7 @@ def campaign_in(folder: Path) -> Campaign:
 def blank(campaign: Campaign) -> list[Dataset]:
     """Datasets of ones, of which only the coordinates count."""
     found = []
-    for record in campaign.said.records:
+    for record in campaign.stated.records:
         if record.statistic == "frf":
             names = {"sensor": list(ON_TRACK), "force": ["hit", "hit far"], "frequency": HAMMER_HZ}
             data = _ones("frf", names)

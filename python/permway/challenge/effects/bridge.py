@@ -17,7 +17,7 @@ from permway.challenge.track import Link, grounded
 
 @dataclass(frozen=True)
 class DeckAttachment(Effect):
-    """A mass on a spring, hung on the girder."""
+    """A mass on a spring, attached to the girder."""
 
     KIND = "attached_resonator"
     ID = "deck_attachment"
@@ -31,7 +31,7 @@ class DeckAttachment(Effect):
 
     @classmethod
     def draw(cls, random: np.random.Generator, strength: Strength, site: Site) -> Self:
-        """Mass by strength; away from supports, where nothing would be felt."""
+        """Mass by strength; away from supports, where there would be no effect."""
         layout = site.layout
         span = int(random.integers(layout.spans)) + float(random.uniform(0.15, 0.85))
         x = layout.station(round(layout.bays * span / layout.spans))

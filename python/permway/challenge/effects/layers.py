@@ -93,7 +93,7 @@ class ViscousLayer(Effect):
 
     @classmethod
     def draw(cls, random: np.random.Generator, strength: Strength, site: Site) -> Self:
-        """Where the loss equals the owner's by strength: the lower, the more is lost above."""
+        """Where the loss equals the nominal by strength: the lower, the more is lost above."""
         return cls(size(random, strength, 160.0, 90.0, 40.0))
 
     def apply(self, plan: Plan) -> None:

@@ -87,8 +87,8 @@ class AxleboxAbsorber(Effect):
         """Hang it on."""
         plan.vehicle.laws["absorber"] = hysteretic_tie(self.mass_kg, self.tuned_Hz, self.loss)
         for wheelset in self.wheelsets:
-            hung = plan.vehicle.add(self.mass_kg)
-            plan.vehicle.ties.append(({WHEELS[wheelset - 1]: 1.0, hung: -1.0}, "absorber"))
+            attached = plan.vehicle.add(self.mass_kg)
+            plan.vehicle.ties.append(({WHEELS[wheelset - 1]: 1.0, attached: -1.0}, "absorber"))
 
     @property
     def place(self) -> dict[str, Any]:
@@ -179,16 +179,16 @@ class WheelsetBending(Effect):
         boxes = self.share * whole
         joint = boxes * (whole - boxes) / whole
         vehicle.laws["axle"] = hysteretic_tie(joint, self.frequency_Hz, self.loss)
-        moved = {}
+        displaced = {}
         for index, wheel in enumerate(WHEELS):
             vehicle.masses[wheel] = whole - boxes
-            moved[wheel] = vehicle.add(boxes)
-            vehicle.channels[f"axlebox{index + 1}"] = {moved[wheel]: 1.0}
+            displaced[wheel] = vehicle.add(boxes)
+            vehicle.channels[f"axlebox{index + 1}"] = {displaced[wheel]: 1.0}
         vehicle.ties = [
-            ({moved.get(number, number): factor for number, factor in arm.items()}, name)
+            ({displaced.get(number, number): factor for number, factor in arm.items()}, name)
             for arm, name in vehicle.ties
         ]
-        vehicle.ties += [({wheel: 1.0, boxes_at: -1.0}, "axle") for wheel, boxes_at in moved.items()]
+        vehicle.ties += [({wheel: 1.0, boxes_at: -1.0}, "axle") for wheel, boxes_at in displaced.items()]
 
     @property
     def place(self) -> dict[str, Any]:

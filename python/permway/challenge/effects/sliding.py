@@ -66,7 +66,7 @@ class BlowOffDamper(Effect):
         return cls(size(random, strength, 900.0, 450.0, 150.0))
 
     def apply(self, plan: Plan) -> None:
-        """Replace the dampers: as the owner says at rest, bounded in motion."""
+        """Replace the dampers: as the campaign file states at rest, bounded in motion."""
         v = plan.values["vehicle"]
 
         def force(velocity: Reals) -> Reals:

@@ -11,7 +11,7 @@ from permway.challenge.effects.base import Effect
 
 @dataclass(frozen=True)
 class TakenOut:
-    """What a diagnosis is told that it cannot be.
+    """Effects that a diagnosis is asked to exclude.
 
     Attributes
     ----------
@@ -40,4 +40,4 @@ TAKEN_OUT: Mapping[type[Effect], TakenOut] = {
     bridge.DeckAttachment: TakenOut(HUNG, ("resonator",)),
     bridge.BearingStiffness: TakenOut(HELD, ("spring of",)),
 }
-"""By kind of effect; those of which one element of few constants says what they do."""
+"""By kind of effect; those of which one element of few constants states what they do."""

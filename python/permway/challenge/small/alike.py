@@ -14,7 +14,7 @@ ALIKE: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("ballast_frequency", "pad_frequency", ("rig",)),
     ("pad_frequency", "ballast_frequency", ("rig",)),
 )
-"""What is concealed, what may be said instead, and on which layouts."""
+"""What is concealed, what may be stated instead, and on which layouts."""
 
 
 def right_names(truth: Mapping[str, Any]) -> set[str]:

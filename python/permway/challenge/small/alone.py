@@ -17,7 +17,9 @@ import signal
 import sys
 import time
 import traceback
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 
 class TimeUp(BaseException):
@@ -45,8 +47,7 @@ def _up(*_: object) -> None:
 
 def _diagnosed(campaign: Path, out: Path, limit: float, module: str) -> str:
     """Write the verdict, or why there is none, and what it cost."""
-    from permway.recordings.campaign import read_campaign
-
+    read_campaign = _reader()
     out.mkdir(parents=True, exist_ok=True)
     began, processor, failure = time.perf_counter(), _processor(), ""
     _forget_peak()
@@ -71,6 +72,16 @@ def _diagnosed(campaign: Path, out: Path, limit: float, module: str) -> str:
     if failure:
         _whole(out / "failed.txt", failure + "\n")
     return "failed" if failure else "verdict"
+
+
+def _reader() -> Callable[[Path], Any]:
+    """The function that reads a campaign: its module has another name in the frozen version b291bce."""
+    try:
+        from permway.campaign.campaign import read_campaign
+    except ModuleNotFoundError:
+        older: Callable[[Path], Any] = importlib.import_module("permway.recordings.campaign").read_campaign
+        return older
+    return read_campaign
 
 
 def _whole(path: Path, text: str) -> None:

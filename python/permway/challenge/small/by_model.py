@@ -12,8 +12,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.load import Dataset
+from permway.campaign.parameters import Parameter
+from permway.campaign.predict import predict
+from permway.campaign.values import ParameterSet
 from permway.challenge.beams import Complexes, Reals
-from permway.challenge.small.concealed import Concealed, moved
+from permway.challenge.small.concealed import Concealed, displaced
 from permway.challenge.small.layouts import Layout
 from permway.challenge.small.outside_model import outside
 from permway.challenge.small.places import BLOWS, RUN_BAND_HZ, RUN_S, Tests
@@ -24,11 +29,6 @@ from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.spot import Found, Spot
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_load import Dataset
-from permway.recordings.campaign_values import ParameterSet
-from permway.recordings.parameters import Parameter
-from permway.recordings.predict import predict
 
 STEP = 1e-3
 """Of slopes, in standard deviations of a prior."""
@@ -62,7 +62,7 @@ class ByModel:
         self.campaign, self.tests, self.layout = campaign, tests, layout
         self.true = campaign.with_values(values)
         self.values = dict(values)
-        self._blank = [_blank(campaign, index, tests) for index in range(len(campaign.said.records))]
+        self._blank = [_blank(campaign, index, tests) for index in range(len(campaign.stated.records))]
         self.base = self._predicted(self.true)
 
     def responses(self, effects: Sequence[tuple[Concealed, float]]) -> list[Complexes]:
@@ -87,7 +87,7 @@ class ByModel:
 
     def in_detail(self, effects: Sequence[tuple[Concealed, float]]) -> tuple[Reals, Complexes]:
         """Lines and densities of the run from which it can be made in time."""
-        (index,) = [i for i, r in enumerate(self.campaign.said.records) if r.statistic == "csd"]
+        (index,) = [i for i, r in enumerate(self.campaign.stated.records) if r.statistic == "csd"]
         record = self._blank[index].record.model_copy(update={"segment_s": FINE_S})
         names = list(record.channels.values())
         fine = Dataset(record, self._blank[index].condition, _spectra(names, FINE_HZ))
@@ -119,7 +119,7 @@ class ByModel:
         nothing = {name: none for name in largest if (none := _nothing(chosen, name)) is not None}
 
         def at(share: float) -> dict[str, float]:
-            return {n: moved(v, nothing[n], share) if n in nothing else v for n, v in largest.items()}
+            return {n: displaced(v, nothing[n], share) if n in nothing else v for n, v in largest.items()}
 
         def place(share: float) -> dict[str, Any]:
             where = chosen.locate(at(share))
@@ -134,7 +134,7 @@ class ByModel:
 
         def noise(share: float) -> dict[str, float]:
             changed = chosen.amend(self.true, at(share))
-            return {s.name: s.chain.noise_factor for s in changed.said.sensors if s.chain.noise_factor != 1.0}
+            return {s.name: s.chain.noise_factor for s in changed.stated.sensors if s.chain.noise_factor != 1.0}
 
         return Concealed(
             id=chosen.entry,
@@ -182,7 +182,7 @@ class ByModel:
             return campaign
         law = next(iter(campaign.model.line.laws))
         one = Parameter(name="k", paths=(f"line.laws.{law}.stiffness",), tolerance_2sigma=0.1)
-        said = campaign.said.model_copy(update={"parameters": (one,)})
+        said = campaign.stated.model_copy(update={"parameters": (one,)})
         known = ParameterSet(said.parameters, campaign.model, self.tests.model, said, campaign.folder)
         return Campaign(said, campaign.model, campaign.folder, known)
 
@@ -251,7 +251,7 @@ def _away(value: float, none: float) -> float:
 
 
 def _blank(campaign: Campaign, index: int, tests: Tests) -> Dataset:
-    record = campaign.said.records[index]
+    record = campaign.stated.records[index]
     condition = campaign.condition(record.condition)
     if record.statistic == "csd":
         return Dataset(record, condition, _spectra(list(record.channels.values()), LINES_HZ))

@@ -1,4 +1,4 @@
-"""A concealed effect of any size between nothing and its largest, and what a truth says of it."""
+"""A concealed effect of any size between nothing and its largest, and what a truth states about it."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Concealed:
         }
 
 
-def moved(value: float, none: float, share: float) -> float:
+def displaced(value: float, none: float, share: float) -> float:
     """A size moved towards the value at which there is nothing.
 
     Parameters

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from permway.challenge.beams import Complexes, Reals
-from permway.challenge.small.concealed import Concealed, moved
+from permway.challenge.small.concealed import Concealed, displaced
 from permway.challenge.small.draws import log_between
 from permway.challenge.small.elements_line import Line
 
@@ -35,7 +35,7 @@ def fault(random: np.random.Generator, name: str, sensor: str, top_Hz: float) ->
     values, size, none = _drawn(random, name, top_Hz)
 
     def at(share: float) -> dict[str, float]:
-        return {**values, size: moved(values[size], none, share)} if size else dict(values)
+        return {**values, size: displaced(values[size], none, share)} if size else dict(values)
 
     def change(line: Line, share: float) -> Line:
         before, now = line.chains.get(sensor), _TRANSFER[name](at(share))

@@ -41,7 +41,7 @@ class Line:
         Complex stiffness of each law, N/m.
     masses : dict of str to float
         Of a rig, kg.
-    hung : dict of str to list of Scalar
+    attached : dict of str to list of Scalar
         What else holds a mass of a rig, N/m.
     chains : dict of str to Transfer
         Faults of sensors, by name.
@@ -52,7 +52,7 @@ class Line:
     springs: dict[str, Scalar]
     joints: list[dict[str, Any]]
     masses: dict[str, float] = field(default_factory=dict)
-    hung: dict[str, list[Scalar]] = field(default_factory=dict)
+    attached: dict[str, list[Scalar]] = field(default_factory=dict)
     chains: dict[str, Transfer] = field(default_factory=dict)
 
     def receptance(
@@ -73,7 +73,7 @@ class Line:
         omega2 = (2.0 * np.pi * frequency_Hz) ** 2
         for i, name in enumerate(names):
             matrix[:, i, i] = -omega2 * self.masses[name]
-            for law in self.hung.get(name, []):
+            for law in self.attached.get(name, []):
                 matrix[:, i, i] += law(frequency_Hz, temperature_C)
         for joint in self.joints:
             upper, lower = joint["between"]
@@ -155,7 +155,7 @@ def scaled(line: Line, law: str, factor: Callable[[int, float], complex]) -> Non
 def hang(line: Line, body: str, law: Scalar, name: str, places: Sequence[float], shares: Sequence[float]) -> None:
     """Put something between a body and the ground, or hang it on, at some places."""
     if line.track is None:
-        line.hung.setdefault(body, []).append(law)
+        line.attached.setdefault(body, []).append(law)
         return
     line.track.laws[name] = grounded(law)
     line.track.links += [

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from permway.challenge.effects.fasteners import resonator
-from permway.challenge.small.concealed import Concealed, moved
+from permway.challenge.small.concealed import Concealed, displaced
 from permway.challenge.small.elements_line import Line, line_of
 from permway.challenge.small.layouts import Layout
 from permway.challenge.track import Scalar
@@ -62,7 +62,7 @@ def made(
 
 def sized(values: Mapping[str, float], size: str, none: float) -> Number:
     """Parameters of which one is the size, moved towards nothing."""
-    return lambda share: {**values, size: moved(values[size], none, share)}
+    return lambda share: {**values, size: displaced(values[size], none, share)}
 
 
 def pad_of(layout: Layout) -> str | None:

@@ -1,4 +1,4 @@
-"""Errors of measurement: smooth errors of gain and phase, noise blow by blow, and rounding."""
+"""Errors of measurement: calibration errors of gain and phase, noise blow by blow, and rounding."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from permway.challenge.small.draws import log_between
 NEPER_PER_DB = float(np.log(10.0) / 20.0)
 
 SHARE = {"sensor": 0.8, "force": 0.6}
-"""Of the smooth errors: those of a sensor and of a hammer point; the squares add to one."""
+"""Of the calibration errors: those of a sensor and of a hammer point; the squares add to one."""
 
 ROUGH_OCTAVES = 0.5
 """Correlation length below which errors count as rough, octaves."""
 
 ROUNDING = 0.002
-"""Relative error of every line that no coherence tells of: real part and imaginary part each, 0.017 dB. At a tenth
-of it clean campaigns would tell of changes that no mesh is fine enough for; at ten times as much none is clean."""
+"""Relative error of every line that no coherence constrains: real part and imaginary part each, 0.017 dB. At a
+tenth of it clean campaigns would show changes that no mesh is fine enough for; at ten times of it none is."""
 
 IDEAL = 0.003
 """Relative error of every line by which a truth states deviances, real part and imaginary part each, 0.026 dB: no
@@ -27,7 +27,7 @@ model is free of as much. At a third of it effects of a thousandth count as easy
 as much, deviances of clean campaigns are a ninth."""
 
 KEPT = 1e-6
-"""Share of the largest eigenvalue below which a function of smooth errors is left out."""
+"""Share of the largest eigenvalue below which a function of calibration errors is left out."""
 
 BLOWS_NOISE = (0.002, 0.6)
 """Between which the noise of a blow lies, over the median modulus of its pair: from clean to hidden."""
@@ -40,8 +40,8 @@ class Errors:
     Attributes
     ----------
     size_dB : float
-        Standard deviation of the smooth errors of sensor and hammer point together, of level; of phase as many
-        neper in rad.
+        Standard deviation of the calibration errors of sensor and hammer point together, of level; of phase as
+        many neper in rad.
     length_octaves : float
         Over which they correlate: squared exponential in log2 f.
     noise : float
@@ -69,7 +69,7 @@ def draw_errors(random: np.random.Generator) -> Errors:
 
 
 def root(frequency_Hz: Reals, length_octaves: float) -> Reals:
-    """Functions whose sum with unit normal coefficients is a smooth error of unit size, shape (F, functions)."""
+    """Functions whose sum with unit normal coefficients is a calibration error of size 1, shape (F, functions)."""
     at = np.log2(frequency_Hz)
     values, vectors = np.linalg.eigh(np.exp(-0.5 * ((at[:, None] - at) / length_octaves) ** 2))
     keep = values > KEPT * values[-1]

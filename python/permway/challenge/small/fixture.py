@@ -1,6 +1,6 @@
 """A fixture in the tool's own model: a rail on a deck of 12 m, struck by a hammer, three pads at the point struck.
 
-Truth is drawn from the priors, the smooth errors of sensors and hammer from theirs, noise blow by blow.
+Truth is drawn from the priors, the calibration errors of sensors and hammer from theirs, noise blow by blow.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign, read_campaign
+from permway.campaign.predict import predict
 from permway.challenge.small.write import write_arrays, write_tables, write_truth
 from permway.diagnosis.catalogue._interval import weakened
 from permway.errors import InputError
-from permway.recordings.campaign import Campaign, read_campaign
-from permway.recordings.predict import predict
 
 FIXTURE = "fixture"
 
@@ -135,7 +135,7 @@ def simulate(
     noise : float
         Standard deviation of a blow's noise, real and imaginary, over the median modulus of its pair.
     smooth : float
-        Standard deviation of sensors' and points' smooth errors, neper and rad, at each knot.
+        Standard deviation of sensors' and points' calibration errors, neper and rad, at each knot.
     octaves : float
         From knot to knot.
     amend : callable

@@ -30,7 +30,7 @@ class Judged:
     name, tier, maker, layout, kind, family : str
         Kind of what is concealed: "null", "outside", "several", "fault" or "single".
     rough : bool
-        Whether its smooth errors vary within half an octave.
+        Whether its calibration errors vary within half an octave.
     deviance, change_dB : float or None
         See :class:`permway.challenge.small.stated.Small`.
     status : str
@@ -40,17 +40,17 @@ class Judged:
     called : bool
         Whether something is called missing.
     found, placed, first, in_class : bool or None
-        Called where something is; at its place; its name said first; the name, or a class of at most three, holds
-        it.
+        Called where something is; at its place; its name stated first; the name, or a class of at most three,
+        holds it.
     false_name : bool
     insufficient : bool or None
         Whether the right name is suspected, and then not called.
     sure : tuple of bool
-        Of every name that is said with 0.9 or more, whether it is true.
+        Of every name that is stated with 0.9 or more, whether it is true.
     nominal, effect : tuple of bool
         Of every parameter of the model, and of what is concealed: whether its 90 % interval holds the truth.
     claims : tuple of Claim
-    said : str
+    stated : str
     truth : str
     seconds, peak_MB : float
     """

@@ -31,7 +31,7 @@ class Layout:
     name : str
         "deck", "ballast", "slab", "beam" or "rig".
     variant : str
-        What tells forms of one layout apart.
+        What states forms of one layout apart.
     line : dict
         The table `line` of a model file.
     spots : mapping of str to tuple of (low, high)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign, read_campaign
 from permway.challenge.beams import Complexes
 from permway.challenge.small import errors as measured
 from permway.challenge.small.by_elements import STEP, ByElements
@@ -21,7 +22,6 @@ from permway.challenge.small.write import write_arrays, write_tables, write_trut
 from permway.challenge.weigh import keep
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.side_by_side import one_thread_of_blas
-from permway.recordings.campaign import Campaign, read_campaign
 
 
 def name_of(seed: int, index: int) -> str:
@@ -109,11 +109,11 @@ def _noise_tells(tests: Tests) -> NoiseTells:
     count = 2 * (BLOWS - 1) * tests.frequency_Hz.size * len(tests.forces) * len(tests.temperatures_C)
     on_line = {sensor["name"] for sensor in tests.sensors}
 
-    def tells(factors: dict[str, float]) -> float:
+    def states(factors: dict[str, float]) -> float:
         known = [q for name, q in factors.items() if name in on_line]
         return float(sum(0.5 * count * (q - 1.0 - np.log(q)) for q in known))
 
-    return tells
+    return states
 
 
 def _measure(small: Small, random: np.random.Generator, folder: Path) -> None:

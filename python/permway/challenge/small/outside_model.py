@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.challenge.small.concealed import Concealed
 from permway.challenge.small.draws import log_between
 from permway.challenge.small.layouts import Layout
@@ -13,7 +14,6 @@ from permway.diagnosis.catalogue._change import fixed_mass, with_joints
 from permway.laws import Hysteretic, Springpot
 from permway.laws.base import Law
 from permway.model.joints import GROUND, Joints
-from permway.recordings.campaign import Campaign
 
 BODIES = {"deck": ("rail", "deck"), "slab": ("slab", "girder"), "ballast": ("rail",), "beam": ("beam",)}
 """Bodies on which something may act that nobody knows of."""

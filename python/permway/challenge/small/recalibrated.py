@@ -27,7 +27,7 @@ ROUNDS, STEPS, CUTS = 4, 4, (1.0, 0.5, 0.2, 0.05)
 deviances of effects that shift sharp resonances come out up to a fifth higher."""
 
 ENOUGH = 0.02
-"""Share of the deviance below which a gain is none: deviances are told by classes that are three times as wide."""
+"""Share of the deviance below which a gain is none: deviances have classes three times as wide."""
 
 FARTHEST = 8.0
 """Standard deviations from the truth within which parameters are sought, as a diagnosis does."""
@@ -51,12 +51,12 @@ def best_deviance(
     goal = [p.difference(r) for p, r in zip(parts, concealed, strict=True)]
     zero = [p.difference(r) for p, r in zip(parts, predicted(np.zeros(parameters)), strict=True)]
 
-    def moved(z: Reals) -> list[Reals]:
+    def displaced(z: Reals) -> list[Reals]:
         return [p.difference(r) - o for p, r, o in zip(parts, predicted(z), zero, strict=True)]
 
     def value(z: Reals) -> tuple[float, list[Reals]]:
         try:
-            off = [p.wrapped(g - m) for p, g, m in zip(parts, goal, moved(z), strict=True)]
+            off = [p.wrapped(g - m) for p, g, m in zip(parts, goal, displaced(z), strict=True)]
         except (InputError, SolveError):
             return np.inf, []
         found = sum(_inner(p, o[:, None], o[:, None])[0, 0] for p, o in zip(parts, off, strict=True))
@@ -65,8 +65,8 @@ def best_deviance(
     z = np.zeros(parameters)
     least, off = value(z)
     for _ in range(ROUNDS if parameters else 0):
-        begun = least
-        slopes = _slopes(moved, z)
+        started = least
+        slopes = _slopes(displaced, z)
         normal = np.eye(parameters)
         for part, slope in zip(parts, slopes, strict=True):
             normal += _inner(part, slope, slope)
@@ -84,20 +84,20 @@ def best_deviance(
                     break
             if before - least < ENOUGH * least:
                 break
-        if begun - least < ENOUGH * least:
+        if started - least < ENOUGH * least:
             break
     return least
 
 
 def _inner(part: Part, one: Reals, other: Reals) -> Reals:
-    """By the inverse of the covariance of noise and smooth errors."""
+    """By the inverse of the covariance of noise and calibration errors."""
     return np.asarray(one.T @ other - part.reduced(one).T @ part.reduced(other))
 
 
-def _slopes(moved: Callable[[Reals], list[Reals]], z: Reals) -> list[Reals]:
-    here, columns = moved(z), []
+def _slopes(displaced: Callable[[Reals], list[Reals]], z: Reals) -> list[Reals]:
+    here, columns = displaced(z), []
     for index in range(z.size):
         beyond = z.copy()
         beyond[index] += STEP
-        columns.append([(b - h) / STEP for b, h in zip(moved(beyond), here, strict=True)])
+        columns.append([(b - h) / STEP for b, h in zip(displaced(beyond), here, strict=True)])
     return [np.column_stack([column[i] for column in columns]) for i in range(len(here))]

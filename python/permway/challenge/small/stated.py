@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.challenge.beams import Complexes, Reals
 from permway.challenge.small import errors as measured
 from permway.challenge.small.by_model import LINES_HZ, ByModel
@@ -19,7 +20,6 @@ from permway.challenge.small.layouts import Layout
 from permway.challenge.small.places import BLOWS, RUN_S, Tests
 from permway.challenge.small.recalibrated import best_deviance
 from permway.challenge.small.strength import Blows, Part, Ride, Scale
-from permway.recordings.campaign import Campaign
 
 FEWEST_SENSORS, LEAST_SCATTER = 5, 0.7
 """Sensors of which one can stand out by its noise, and how far the logarithm of their noise, of power, differs at

@@ -31,7 +31,7 @@ class Part(Protocol):
         """Standardised difference to the base, shape (n,)."""
 
     def reduced(self, values: Reals) -> Reals:
-        """Of columns (n, k), what smooth errors explain, shape (c, k): squares are taken off."""
+        """Of columns (n, k), what calibration errors explain, shape (c, k): squares are taken off."""
 
     def wrapped(self, values: Reals) -> Reals:
         """A difference of differences, its phases within half a turn."""
@@ -48,7 +48,7 @@ class Blows:
     sigma : ndarray, same shape
         Standard deviation of real part and of imaginary part.
     functions : ndarray, shape (F, k)
-        Of smooth errors.
+        Of calibration errors.
     sizes : (float, float)
         Of sensors and of points.
     """
@@ -120,7 +120,7 @@ class Ride:
         Independent segments.
     functions : ndarray, shape (F, k)
     size : float
-        Of each channel's smooth errors.
+        Of each channel's calibration errors.
     """
 
     base: Complexes
@@ -163,9 +163,9 @@ class Ride:
         for index in range(channels):
             one = np.zeros((channels, channels))
             one[index, index] = 1.0
-            moved = inverse @ one @ half
+            displaced = inverse @ one @ half
             for turn in (1.0, 1j):
-                each = self._rows(turn * moved + np.conj(turn) * moved.conj().swapaxes(1, 2))
+                each = self._rows(turn * displaced + np.conj(turn) * displaced.conj().swapaxes(1, 2))
                 columns = each[:, :, None] * self.functions[:, None, :] * self.size
                 found.append(columns.reshape(-1, self.functions.shape[1]))
         return np.concatenate(found, axis=1)
@@ -182,7 +182,7 @@ class Ride:
 
 
 class Scale:
-    """Weighs changes of responses against what parameters and smooth errors may take up.
+    """Weighs changes of responses against what parameters and calibration errors may take up.
 
     Parameters
     ----------
@@ -214,6 +214,6 @@ class Scale:
             if slope is not None and reduced is not None:
                 along += slope.T @ off - reduced.T @ explained
         if along.size:
-            moved = linalg.solve_triangular(self._inner, along, lower=True)
-            total -= float(moved @ moved)
+            displaced = linalg.solve_triangular(self._inner, along, lower=True)
+            total -= float(displaced @ displaced)
         return total

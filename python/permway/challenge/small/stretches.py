@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from permway.challenge.small.concealed import Concealed, moved
+from permway.campaign.campaign import Campaign
+from permway.challenge.small.concealed import Concealed, displaced
 from permway.challenge.small.draws import log_between
 from permway.diagnosis.catalogue._interval import span_of, stations_of, weakened
 from permway.diagnosis.catalogue._roles import beds, carriers, laws_of, pads, spacing
-from permway.recordings.campaign import Campaign
 
 FAMILY = "local loss of support"
 
@@ -41,7 +41,7 @@ def lost(random: np.random.Generator, campaign: Campaign, name: str, place_m: fl
     centre, length = float(x[first] + x[last]) / 2.0, float(x[last] - x[first])
 
     def at(share: float) -> dict[str, float]:
-        return {"centre_m": centre, "length_m": length, "factor": moved(factor, 1.0, share)}
+        return {"centre_m": centre, "length_m": length, "factor": displaced(factor, 1.0, share)}
 
     def place(_: float) -> dict[str, Any]:
         low, high = span_of(x, centre, length, spacing(x))

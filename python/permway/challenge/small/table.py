@@ -42,7 +42,7 @@ SEVERAL: dict[str, Callable[[Judged], Sequence[bool]]] = {
     "nominal": lambda j: j.nominal,
     "effect": lambda j: j.effect,
 }
-"""Of which a campaign has several: names said with 0.9 or more that are true, and intervals that hold."""
+"""Of which a campaign has several: names stated with 0.9 or more that are true, and intervals that hold."""
 
 
 def table(found: Sequence[Judged]) -> dict[str, Any]:
@@ -106,7 +106,7 @@ def _count(values: Sequence[bool]) -> Count:
 
 
 def _reliability(found: Iterable[Judged]) -> list[dict[str, Any]]:
-    """Of all names, "novel" left out, by the probability that was said: how many are true."""
+    """Of all names, "novel" left out, by the probability that was stated: how many are true."""
     claims = [c for j in found for c in j.claims if c.name != NOVEL]
     rows = []
     for low, high in pairwise(PROBABILITIES):
@@ -193,8 +193,8 @@ def _cell(key: str, value: Any) -> str:
 
 
 def reliability_markdown(found: dict[str, Any]) -> str:
-    """What was said against what is true."""
-    lines = ["| probability said | mean | true |", "|---|---|---|"]
+    """What was stated against what is true."""
+    lines = ["| probability stated | mean | true |", "|---|---|---|"]
     for row in found["reliability"]:
         lines.append(f"| {row['from']:g} to {row['to']:g} | {row['said']:g} | {_cell('true', row['true'])} |")
     return "\n".join(lines) + "\n"
@@ -202,7 +202,7 @@ def reliability_markdown(found: dict[str, Any]) -> str:
 
 def worst_markdown(found: dict[str, Any]) -> str:
     """The worst cases by the names of their folders."""
-    lines = ["| case | concealed | deviance | said |", "|---|---|---|---|"]
+    lines = ["| case | concealed | deviance | stated |", "|---|---|---|---|"]
     for row in found["worst"]:
         deviance = "" if row["deviance"] is None else f"{row['deviance']:g}"
         lines.append(f"| {row['case']} | {row['truth']} | {deviance} | {row['said']} |")

@@ -7,10 +7,10 @@ from typing import Literal
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._vehicle import loudest_Hz, sensors_on, vehicle_of, with_addition
 from permway.diagnosis.hypothesis import Hypothesis, Situation, Where, linear_free, log_free
 from permway.model.vehicle_additions import FlexibleMode
-from permway.recordings.campaign import Campaign
 
 
 def bending(

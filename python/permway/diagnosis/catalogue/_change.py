@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.laws import Hysteretic, Measured, Series, StorageLossPair
 from permway.laws.base import Law
 from permway.model.bodies import AnyBody
 from permway.model.changes import Change
 from permway.model.joints import Joints
 from permway.model.line import Line
-from permway.recordings.campaign import Campaign
 from permway.recordings.channel import Chain
 
 REACH_M = 1e-6
@@ -109,10 +109,10 @@ def _changes(x: Reals, factors: Reals) -> list[Change]:
 
 def with_chain(campaign: Campaign, sensor: str, chain: Chain) -> Campaign:
     """The campaign with another measuring chain of a sensor."""
-    said = campaign.said
+    said = campaign.stated
     sensors = tuple(s.model_copy(update={"chain": chain}) if s.name == sensor else s for s in said.sensors)
     changed = said.model_copy(update={"sensors": sensors})
-    return replace(campaign, said=changed)
+    return replace(campaign, stated=changed)
 
 
 def hung_mass(mass_kg: float, frequency_Hz: float, loss_factor: float) -> Law:

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.parts import IrregularityKnown
 from permway.diagnosis.hypothesis import Where
 from permway.model.line import Line
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_parts import IrregularityKnown
 from permway.recordings.channel import Chain
 
 END_M = 0.01
@@ -20,15 +20,15 @@ END_M = 0.01
 
 def with_irregularity(campaign: Campaign, **parts: Any) -> Campaign:
     """The campaign with other numbers of what it says of the irregularity, checked again."""
-    known = campaign.said.irregularity
+    known = campaign.stated.irregularity
     changed = IrregularityKnown(**{**dict(known), **parts})
-    said = campaign.said.model_copy(update={"irregularity": changed})
-    return replace(campaign, said=said)
+    said = campaign.stated.model_copy(update={"irregularity": changed})
+    return replace(campaign, stated=said)
 
 
 def with_speed(campaign: Campaign, factor: float, condition: str | None = None) -> Campaign:
     """The campaign with the speed of one train, or of all, times a factor."""
-    said = campaign.said
+    said = campaign.stated
     conditions = tuple(
         c.model_copy(update={"speed_m_per_s": c.speed_m_per_s * factor})
         if c.speed_m_per_s is not None and condition in (None, c.name)
@@ -36,7 +36,7 @@ def with_speed(campaign: Campaign, factor: float, condition: str | None = None) 
         for c in said.conditions
     )
     changed = said.model_copy(update={"conditions": conditions})
-    return replace(campaign, said=changed)
+    return replace(campaign, stated=changed)
 
 
 def stays(

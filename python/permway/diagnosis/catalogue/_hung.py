@@ -6,11 +6,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import fresh, with_joints
 from permway.diagnosis.catalogue._roles import reaches
 from permway.laws.base import Law
 from permway.model.joints import GROUND, Joints
-from permway.recordings.campaign import Campaign
 
 STEP_M = 1.0
 """Between the joints that stand for a spread mass, at most."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_factors
 from permway.diagnosis.catalogue._roles import spacing
 from permway.model.line import Line
-from permway.recordings.campaign import Campaign
 
 WHOLE, OUTSIDE = 0.25, 0.75
 """Spacings outside the stretch up to which a joint is changed wholly, and from which it is not."""

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._pads import STIFFNESS, factors, keys_of, measured_under, with_factors
 from permway.diagnosis.catalogue._roles import laws_of, layers
 from permway.diagnosis.hypothesis import Situation
-from permway.recordings.campaign import Campaign
 
 Law = Callable[[float], tuple[float, float]]
 """From a level over the largest to factors on stiffness, and on loss over stiffness."""

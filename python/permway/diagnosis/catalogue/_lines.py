@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.excitation import TrackLines
 from permway.diagnosis.catalogue._excite import with_irregularity
 from permway.diagnosis.hypothesis import Amend
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import TrackLines
 
 FACTOR = 3.0
 """To which amplitudes are known beforehand."""
@@ -30,6 +30,6 @@ def repeats(length_m: float | None = None, harmonics: int | None = None) -> Amen
             decay=values["decay"],
             harmonics=harmonics,
         )
-        return with_irregularity(campaign, series=(*campaign.said.irregularity.series, added))
+        return with_irregularity(campaign, series=(*campaign.stated.irregularity.series, added))
 
     return amend

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._interval import span_of, stations_of, weakened
 from permway.diagnosis.catalogue._roles import spacing
 from permway.diagnosis.fit import Free
@@ -16,7 +17,6 @@ from permway.diagnosis.glance import Glance
 from permway.diagnosis.hypothesis import Hypothesis, Situation, Where, between_free, linear_free
 from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.spot import Found
-from permway.recordings.campaign import Campaign
 
 LONGEST = 12.0
 """Of a stretch, in spacings."""

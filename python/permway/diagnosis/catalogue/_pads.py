@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.factors import model_under
+from permway.campaign.parts import Condition
 from permway.diagnosis.catalogue._roles import rubbers
 from permway.laws import AnyLaw, Parallel, Scaled
 from permway.model.line import Line
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_factors import model_under
-from permway.recordings.campaign_parts import Condition
 
 Keys = tuple[str, ...]
 
@@ -81,16 +81,16 @@ def scaled(campaign: Campaign, laws: Iterable[str], stiffness: float) -> Campaig
 
 def measured_under(campaign: Campaign) -> list[Condition]:
     """Conditions that some record of line or train was taken under."""
-    used = {record.condition for record in campaign.said.records}
-    return [c for c in campaign.said.conditions if c.name in used and c.kind != "table"]
+    used = {record.condition for record in campaign.stated.records}
+    return [c for c in campaign.stated.conditions if c.name in used and c.kind != "table"]
 
 
 def with_factors(campaign: Campaign, by_condition: Mapping[str, Mapping[str, float]]) -> Campaign:
     """The campaign with further factors under some conditions, by their names."""
     changed = []
-    for condition in campaign.said.conditions:
+    for condition in campaign.stated.conditions:
         new = by_condition.get(condition.name, {})
         merged = {**condition.factors, **{p: condition.factors.get(p, 1.0) * f for p, f in new.items()}}
         changed.append(condition.model_copy(update={"factors": merged}) if new else condition)
-    said = campaign.said.model_copy(update={"conditions": tuple(changed)})
-    return replace(campaign, said=said)
+    said = campaign.stated.model_copy(update={"conditions": tuple(changed)})
+    return replace(campaign, stated=said)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_law
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import between_free, log_free
 from permway.laws import Hysteretic, Maxwell, Parallel, Scaled, Springpot
 from permway.laws.base import Law
-from permway.recordings.campaign import Campaign
 
 REFERENCE_HZ = 60.0
 """Where the stiffness is told."""

@@ -11,11 +11,11 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from permway.arrays import Reals
+from permway.campaign.parts import Condition
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Situation
 from permway.model.irregularity_spectra import RangeWarning
-from permway.recordings.campaign_parts import Condition
 from permway.recordings.channel import Sensor
 
 AROUND_LINES = 8
@@ -139,7 +139,7 @@ def _found(situation: Situation) -> list[Excess]:
 
 
 def _profile(situation: Situation, frequency_Hz: Reals, speed: float) -> Reals:
-    model, known = situation.campaign.model, situation.campaign.said.irregularity
+    model, known = situation.campaign.model, situation.campaign.stated.irregularity
     assert model.irregularity is not None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RangeWarning)
@@ -235,7 +235,7 @@ def on_board(situation: Situation) -> list[Sensor]:
     """Sensors on the vehicle that a run was read by."""
     campaign = situation.campaign
     used = [n for b in situation.fit.evidence.blocks for n in b.dataset.record.channels.values()]
-    return [sensor for sensor in campaign.said.sensors if sensor.degree is not None and sensor.name in used]
+    return [sensor for sensor in campaign.stated.sensors if sensor.degree is not None and sensor.name in used]
 
 
 def suspects(situation: Situation, names: Iterable[str], most: int) -> list[str]:
@@ -251,7 +251,7 @@ def suspects(situation: Situation, names: Iterable[str], most: int) -> list[str]
 
 def likely(situation: Situation, most: int = 12) -> list[str]:
     """Sensors that may be at fault: the worst on the line, and the worst on the vehicle."""
-    sensors = situation.campaign.said.sensors
+    sensors = situation.campaign.stated.sensors
     line = suspects(situation, [s.name for s in sensors if s.body is not None], most)
     return line + suspects(situation, [s.name for s in sensors if s.degree is not None], most)
 

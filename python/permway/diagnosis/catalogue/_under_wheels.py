@@ -9,15 +9,15 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.parts import Condition
+from permway.campaign.predict.motion import wheels_of
 from permway.diagnosis.catalogue._change import REACH_M, fresh, with_line
 from permway.diagnosis.catalogue._pads import with_factors
 from permway.diagnosis.catalogue._roles import LOW_HZ, ROOM_C, Layer, fasteners, spacing
 from permway.errors import SolveError
 from permway.model.bodies import Beam
 from permway.model.changes import Change
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_parts import Condition
-from permway.recordings.predict.motion import wheels_of
 
 LEAST = 0.02
 """Share of a wheel's load below which a fastener is as without a train."""

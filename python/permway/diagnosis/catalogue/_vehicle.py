@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._runs import on_board
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.locate import FITS
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_additions import AnyAddition
-from permway.recordings.campaign import Campaign
 
 WIDTH_OCTAVES = 0.1
 """Over which deviations are added up to find where an effect is strongest."""
@@ -22,8 +22,8 @@ APART_OCTAVES = 0.7
 
 def vehicle_of(campaign: Campaign) -> Vehicle | None:
     """The vehicle that passes in some record, if any does."""
-    kinds = {c.name: c.kind for c in campaign.said.conditions}
-    runs = any(kinds[record.condition] == "train" for record in campaign.said.records)
+    kinds = {c.name: c.kind for c in campaign.stated.conditions}
+    runs = any(kinds[record.condition] == "train" for record in campaign.stated.records)
     return campaign.model.train.vehicle if campaign.model.train is not None and runs else None
 
 

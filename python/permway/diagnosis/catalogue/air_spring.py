@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._vehicle import vehicle_of, with_addition
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.model.vehicle_additions import AirSpring
-from permway.recordings.campaign import Campaign
 
 ID = "air_spring"
 DOMAIN: Domain = "vehicle"

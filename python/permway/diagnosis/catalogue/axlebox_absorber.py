@@ -8,10 +8,10 @@ from typing import cast
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._vehicle import loudest_Hz, rows_of, sensors_on, vehicle_of, with_addition
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.model.vehicle_additions import Part, Resonator
-from permway.recordings.campaign import Campaign
 
 ID = "axlebox_absorber"
 DOMAIN: Domain = "vehicle"

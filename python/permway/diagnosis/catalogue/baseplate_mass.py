@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import fresh, with_line
 from permway.diagnosis.catalogue._roles import fasteners, laws_of
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, between_free, log_free
 from permway.model.bodies import Mass
-from permway.recordings.campaign import Campaign
 
 ID = "baseplate_mass"
 DOMAIN: Domain = "path"

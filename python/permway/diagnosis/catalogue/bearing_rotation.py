@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import fresh, with_fields, with_line
 from permway.diagnosis.catalogue._roles import is_rail
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.laws import Hysteretic
 from permway.model.bodies import Beam
-from permway.recordings.campaign import Campaign
 
 ID = "bearing_rotation"
 DOMAIN: Domain = "path"

@@ -7,13 +7,13 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import REACH_M, fresh, with_factors, with_joints
 from permway.diagnosis.catalogue._roles import Layer, bearings
 from permway.diagnosis.hypothesis import Amend, Domain, Hypothesis, Situation, Where, log_free
 from permway.laws import Scaled
 from permway.model.joints import Joints
 from permway.model.line import Line
-from permway.recordings.campaign import Campaign
 
 ID = "bearing_stiffness"
 DOMAIN: Domain = "path"

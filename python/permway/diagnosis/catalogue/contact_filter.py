@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._excite import stays, with_irregularity
 from permway.diagnosis.catalogue._runs import excesses
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, log_free
-from permway.recordings.campaign import Campaign
 
 ID = "contact_filter"
 DOMAIN: Domain = "irregularity"
@@ -32,7 +32,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         return with_irregularity(
-            campaign, contact_patch_m=campaign.said.irregularity.contact_patch_m + values["half_length_m"]
+            campaign, contact_patch_m=campaign.stated.irregularity.contact_patch_m + values["half_length_m"]
         )
 
     yield Hypothesis(

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._excite import stays
 from permway.diagnosis.catalogue._runs import excesses
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, log_free
 from permway.model.contact import GivenContact
-from permway.recordings.campaign import Campaign
 
 ID = "contact_nonlinear"
 DOMAIN: Domain = "irregularity"

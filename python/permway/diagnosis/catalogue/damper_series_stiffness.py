@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import Literal
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._vehicle import vehicle_of, with_addition
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.model.vehicle_additions import DamperSeries, Slider
-from permway.recordings.campaign import Campaign
 
 ID = "damper_series_stiffness"
 DOMAIN: Domain = "vehicle"

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import fresh, hung_mass, with_joints
 from permway.diagnosis.catalogue._roles import girders
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free, log_free
 from permway.model.joints import GROUND, Joints
-from permway.recordings.campaign import Campaign
 
 ID = "deck_attachment"
 DOMAIN: Domain = "path"

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.excitation import Dips
 from permway.diagnosis.catalogue._excite import stays, with_irregularity
 from permway.diagnosis.catalogue._lines import coordinate
 from permway.diagnosis.catalogue._runs import excesses
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, log_free
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import Dips
 
 ID = "dipped_welds"
 DOMAIN: Domain = "irregularity"
@@ -46,7 +46,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         added = Dips(depth_m=values["depth_m"], length_m=values["length_m"], every_m=EVERY_M)
-        return with_irregularity(campaign, dips=(*campaign.said.irregularity.dips, added))
+        return with_irregularity(campaign, dips=(*campaign.stated.irregularity.dips, added))
 
     for begun in BEGUN_M:
         yield Hypothesis(

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_line
 from permway.diagnosis.catalogue._roles import DENSE_M, Layer, pads, spacing
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, between_free, linear_free
 from permway.model.joints import Joints
-from permway.recordings.campaign import Campaign
 
 ID = "discrete_support"
 DOMAIN: Domain = "path"

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_fields
 from permway.diagnosis.catalogue._roles import girders, reaches
 from permway.diagnosis.hypothesis import (
@@ -19,7 +20,6 @@ from permway.diagnosis.hypothesis import (
 )
 from permway.model.bodies import Beam, BeamChange
 from permway.model.segments import Segment
-from permway.recordings.campaign import Campaign
 
 ID = "girder_crack"
 DOMAIN: Domain = "path"

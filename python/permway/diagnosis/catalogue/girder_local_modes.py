@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import hung_mass
 from permway.diagnosis.catalogue._hung import spread_over
 from permway.diagnosis.catalogue._roles import girders
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.model.bodies import Beam
-from permway.recordings.campaign import Campaign
 
 ID = "girder_local_modes"
 DOMAIN: Domain = "path"

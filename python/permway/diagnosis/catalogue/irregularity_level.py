@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._excite import stays, with_irregularity
 from permway.diagnosis.catalogue._runs import excesses
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, linear_free
-from permway.recordings.campaign import Campaign
 
 ID = "irregularity_level"
 DOMAIN: Domain = "irregularity"
@@ -33,7 +33,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         return
 
     def tilted(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
-        known = campaign.said.irregularity
+        known = campaign.stated.irregularity
         return with_irregularity(
             campaign,
             level_dB=known.level_dB + values["level_dB"],
@@ -56,7 +56,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     for name in names[:3] if len(names) > 1 else ():
 
         def shifted(campaign: Campaign, values: Mapping[str, float], name: str = name) -> Campaign:
-            levels = campaign.said.irregularity.level_by_condition_dB
+            levels = campaign.stated.irregularity.level_by_condition_dB
             changed = {**levels, name: levels.get(name, 0.0) + values["level_dB"]}
             return with_irregularity(campaign, level_by_condition_dB=changed)
 

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import constant_loss, with_loss
 from permway.diagnosis.catalogue._roles import laws_of, layers, pads
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, between_free, log_free
 from permway.laws import Hysteretic, KelvinVoigt
 from permway.laws.base import Law
-from permway.recordings.campaign import Campaign
 
 ID = "layer_damping"
 DOMAIN: Domain = "path"

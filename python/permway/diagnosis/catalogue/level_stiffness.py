@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._levels import answering, driven
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free, log_free
-from permway.recordings.campaign import Campaign
 
 ID = "level_stiffness"
 DOMAIN: Domain = "path"

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._excite import chain_with, stays
 from permway.diagnosis.catalogue._runs import LINE_WIDTH, Excess, excesses, measured_psd, on_board
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, linear_free, log_free
-from permway.recordings.campaign import Campaign
 from permway.recordings.channel import Mains
 
 ID = "mains_lines"

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.excitation import TrackLines
 from permway.diagnosis.catalogue._excite import spans, stays, with_irregularity
 from permway.diagnosis.catalogue._runs import excesses
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, log_free
 from permway.model.bodies import Beam
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import TrackLines
 
 ID = "moving_load"
 DOMAIN: Domain = "irregularity"
@@ -45,7 +45,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             added = TrackLines(
                 length_m=length, amplitude_m=values["factor"] * _first(campaign, body, length), decay=4.0
             )
-            return with_irregularity(campaign, series=(*campaign.said.irregularity.series, added))
+            return with_irregularity(campaign, series=(*campaign.stated.irregularity.series, added))
 
         yield Hypothesis(
             entry=ID,

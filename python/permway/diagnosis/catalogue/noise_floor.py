@@ -7,13 +7,13 @@ from functools import partial
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.blocks_noise import NoiseBlock
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._excite import chain_with
 from permway.diagnosis.catalogue._runs import measured_psd, on_board, suspects
 from permway.diagnosis.catalogue.sensor_mounting import at_sensor
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, log_free
-from permway.recordings.campaign import Campaign
 
 ID = "noise_floor"
 DOMAIN: Domain = "measurement"

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._pads import factors, loss_factor, measured_under, pad_laws, scaled, with_factors
 from permway.diagnosis.catalogue._roles import fasteners, laws_of
 from permway.diagnosis.catalogue._under_wheels import levelled
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, between_free, log_free
-from permway.recordings.campaign import Campaign
 
 ID = "pad_amplitude"
 DOMAIN: Domain = "path"

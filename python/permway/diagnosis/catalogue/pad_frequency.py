@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._relaxing import relaxing, relaxing_once, springpot_free
 from permway.diagnosis.catalogue._roles import rubbers
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, between_free, log_free
 from permway.laws import Hysteretic
-from permway.recordings.campaign import Campaign
 
 ID = "pad_frequency"
 DOMAIN: Domain = "path"

@@ -8,12 +8,12 @@ from functools import partial
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.parts import Condition
 from permway.diagnosis.catalogue._pads import factors, measured_under, pad_laws, scaled, with_factors
 from permway.diagnosis.catalogue._roles import fasteners, laws_of
 from permway.diagnosis.catalogue._under_wheels import pressed
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_parts import Condition
 
 ID = "pad_preload"
 DOMAIN: Domain = "path"

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from permway.arrays import ABSOLUTE_ZERO_C
+from permway.campaign.campaign import Campaign
+from permway.campaign.predict.hammer import temperature
 from permway.diagnosis.catalogue._change import with_law
 from permway.diagnosis.catalogue._pads import factors, measured_under, pad_laws, scaled, with_factors
 from permway.diagnosis.catalogue._relaxing import relaxing, springpot_free
@@ -21,8 +23,6 @@ from permway.diagnosis.hypothesis import (
 )
 from permway.laws import TFDV, Arrhenius, Hysteretic
 from permway.laws.shift import GAS_CONSTANT
-from permway.recordings.campaign import Campaign
-from permway.recordings.predict.hammer import temperature
 
 ID = "pad_temperature"
 DOMAIN: Domain = "path"

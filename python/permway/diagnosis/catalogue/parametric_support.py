@@ -7,6 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.compare import POWER_DB
+from permway.campaign.excitation import Rolling
+from permway.campaign.parts import IrregularityKnown
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue._excite import rail_laws, stays, with_irregularity
 from permway.diagnosis.catalogue._interval import spacing_of
@@ -16,10 +20,6 @@ from permway.diagnosis.gather import first_size
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, linear_free, log_free
 from permway.diagnosis.recalibrate import recalibrate
 from permway.errors import InputError, SolveError
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import Rolling
-from permway.recordings.campaign_parts import IrregularityKnown
-from permway.recordings.compare import POWER_DB
 
 ID = "parametric_support"
 DOMAIN: Domain = "irregularity"
@@ -85,7 +85,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             law=lambda v: f"{1e6 * v['amplitude_m']:.3g} um at V over the fasteners' spacing",
             size="amplitude_m",
         )
-        if _pass(runs, spacing) and situation.campaign.said.irregularity.rolls is None:
+        if _pass(runs, spacing) and situation.campaign.stated.irregularity.rolls is None:
             yield from _rolling(situation, law, spacing)
 
 
@@ -102,12 +102,12 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
     except (InputError, SolveError):
         return
     rolls = with_irregularity(situation.campaign, rolling=Rolling(spacing_m=spacing))
-    known = dict(rolls.rolling_about(still).said.irregularity.rolls or {})
+    known = dict(rolls.rolling_about(still).stated.irregularity.rolls or {})
     shapes = {x: f"shape_{x:g}_m_dB" for x in SHAPE_M}
     sigma = float(POWER_DB) * first_size(situation.campaign, "irregularity")
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
-        own = campaign.said.irregularity
+        own = campaign.stated.irregularity
         further = IrregularityKnown(shape_dB=tuple((x, values.get(name, 0.0)) for x, name in shapes.items()))
         at_m = np.array(sorted({*shapes, *(x for x, _ in own.shape_dB)}))
         shape = zip(at_m.tolist(), (own.shape_at(at_m) + further.shape_at(at_m)).tolist(), strict=True)

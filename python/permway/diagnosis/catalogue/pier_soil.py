@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import fixed_mass, fresh, with_line
 from permway.diagnosis.catalogue._lines import coordinate
 from permway.diagnosis.catalogue._roles import Layer, bearings, reaches
@@ -16,7 +17,6 @@ from permway.model.bodies import Mass
 from permway.model.joints import GROUND, Joints
 from permway.model.line import Line
 from permway.model.stations import Ends
-from permway.recordings.campaign import Campaign
 
 ID = "pier_soil"
 DOMAIN: Domain = "path"

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import fresh, hung_mass, with_factors, with_joints
 from permway.diagnosis.catalogue._roles import Layer, fasteners, spacing
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free, log_free
 from permway.model.joints import GROUND, Joints
-from permway.recordings.campaign import Campaign
 
 ID = "rail_absorber"
 DOMAIN: Domain = "path"

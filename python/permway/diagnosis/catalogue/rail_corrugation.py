@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.excitation import RoughBand
 from permway.diagnosis.catalogue._excite import stays, with_irregularity
 from permway.diagnosis.catalogue._runs import Excess, excesses
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, log_free
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import RoughBand
 
 ID = "rail_corrugation"
 DOMAIN: Domain = "irregularity"
@@ -42,7 +42,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         added = RoughBand(
             wavelength_m=values["wavelength_m"], octaves=values["octaves"], gain_dB=values["gain_dB"]
         )
-        return with_irregularity(campaign, bands=(*campaign.said.irregularity.bands, added))
+        return with_irregularity(campaign, bands=(*campaign.stated.irregularity.bands, added))
 
     yield Hypothesis(
         entry=ID,

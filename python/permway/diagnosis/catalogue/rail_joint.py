@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.excitation import TrackLines
 from permway.diagnosis.catalogue._excite import stays, with_irregularity
 from permway.diagnosis.catalogue._lines import FACTOR, coordinate, repeats
 from permway.diagnosis.catalogue._runs import combs, excesses
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, log_free
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import TrackLines
 
 ID = "rail_joint"
 DOMAIN: Domain = "irregularity"
@@ -133,4 +133,4 @@ def _dips(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         amplitude_m=values["amplitude_m"],
         dip_m=values["dip_m"],
     )
-    return with_irregularity(campaign, series=(*campaign.said.irregularity.series, added))
+    return with_irregularity(campaign, series=(*campaign.stated.irregularity.series, added))

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.excitation import Push
 from permway.diagnosis.catalogue._excite import stays, with_irregularity
 from permway.diagnosis.catalogue._runs import excesses, measured_psd, on_board, suspects
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, log_free
 from permway.model.vehicle import Vehicle
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import Push
 
 ID = "second_source"
 DOMAIN: Domain = "measurement"
@@ -54,7 +54,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
 
         def amend(campaign: Campaign, values: Mapping[str, float], degree: str = degree) -> Campaign:
             added = Push(degree=degree, **values)
-            return with_irregularity(campaign, pushes=(*campaign.said.irregularity.pushes, added))
+            return with_irregularity(campaign, pushes=(*campaign.stated.irregularity.pushes, added))
 
         for width in (
             log_free("octaves", "1", 0.7, 1.7, lowest=0.05),

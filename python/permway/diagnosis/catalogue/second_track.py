@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import hung_mass, with_fields
 from permway.diagnosis.catalogue._hung import spread_over
 from permway.diagnosis.catalogue._roles import girders
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.model.bodies import Beam
-from permway.recordings.campaign import Campaign
 
 ID = "second_track"
 DOMAIN: Domain = "path"

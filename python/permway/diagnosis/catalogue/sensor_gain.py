@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
-from permway.recordings.campaign import Campaign
 
 ID = "sensor_gain"
 DOMAIN: Domain = "measurement"
@@ -28,7 +28,7 @@ def _at(name: str, _: Mapping[str, float]) -> Where:
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """One for each sensor."""
-    for sensor in situation.campaign.said.sensors:
+    for sensor in situation.campaign.stated.sensors:
 
         def amend(campaign: Campaign, values: Mapping[str, float], name: str = sensor.name) -> Campaign:
             chain = campaign.sensor(name).chain

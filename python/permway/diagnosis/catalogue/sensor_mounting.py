@@ -7,11 +7,11 @@ from functools import partial
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._excite import chain_with
 from permway.diagnosis.catalogue._runs import likely
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
-from permway.recordings.campaign import Campaign
 
 ID = "sensor_mounting"
 DOMAIN: Domain = "measurement"

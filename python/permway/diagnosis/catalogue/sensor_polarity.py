@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._excite import chain_with
 from permway.diagnosis.catalogue._runs import likely
 from permway.diagnosis.catalogue.sensor_mounting import at_sensor
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, linear_free
-from permway.recordings.campaign import Campaign
 
 ID = "sensor_polarity"
 DOMAIN: Domain = "measurement"

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import fresh, with_factors, with_fields, with_joints
 from permway.diagnosis.catalogue._roles import fasteners, reaches, slabs, spacing
 from permway.diagnosis.fit import Free
@@ -18,7 +19,6 @@ from permway.model.bodies import Beam, BeamChange
 from permway.model.joints import Joints
 from permway.model.segments import Segment
 from permway.model.stations import MEETINGS
-from permway.recordings.campaign import Campaign
 
 ID = "slab_joints"
 DOMAIN: Domain = "path"

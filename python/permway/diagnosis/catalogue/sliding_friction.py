@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_law
 from permway.diagnosis.catalogue._roles import beds, laws_of, slabs
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, between_free, log_free
 from permway.laws import Hysteretic
-from permway.recordings.campaign import Campaign
 
 ID = "sliding_friction"
 DOMAIN: Domain = "path"

@@ -7,13 +7,13 @@ from itertools import pairwise
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import fresh, with_joints
 from permway.diagnosis.catalogue._roles import girders, layers, reaches
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.laws import Hysteretic
 from permway.model.joints import Joints
 from permway.model.stations import MEETINGS, TOUCH_M
-from permway.recordings.campaign import Campaign
 
 ID = "span_coupling"
 DOMAIN: Domain = "path"

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._excite import stays, with_speed
 from permway.diagnosis.catalogue._runs import excesses
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation
-from permway.recordings.campaign import Campaign
 
 ID = "speed_error"
 DOMAIN: Domain = "measurement"

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_factors
 from permway.diagnosis.catalogue._roles import laws_of, pads
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free
 from permway.model.joints import GROUND
-from permway.recordings.campaign import Campaign
 
 ID = "support_scatter"
 DOMAIN: Domain = "path"

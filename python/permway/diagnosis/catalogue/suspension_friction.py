@@ -7,11 +7,11 @@ from functools import partial
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._vehicle import vehicle_of, with_addition
 from permway.diagnosis.catalogue.damper_series_stiffness import SUSPENSIONS, Suspension, damping_of
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.model.vehicle_additions import DamperSeries, Slider
-from permway.recordings.campaign import Campaign
 
 ID = "suspension_friction"
 DOMAIN: Domain = "vehicle"

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.excitation import WheelLines
 from permway.diagnosis.catalogue._excite import stays, with_irregularity
 from permway.diagnosis.catalogue._lines import coordinate
 from permway.diagnosis.catalogue._runs import combs, excesses
 from permway.diagnosis.catalogue.wheel_polygon import candidates, named
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_free, log_free
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import WheelLines
 
 ID = "wheel_flat"
 DOMAIN: Domain = "irregularity"
@@ -36,14 +36,14 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     runs = excesses(situation)
     if not runs:
         return
-    around = 2.0 * np.pi * situation.campaign.said.irregularity.wheel_radius_m
+    around = 2.0 * np.pi * situation.campaign.stated.irregularity.wheel_radius_m
     for wheel, channels in candidates(situation, every=False, most=4):
         (found,) = combs(runs, [1.0 / around], harmonics=None, decay=0.3, most=1, channel=channels[0])
         first = coordinate(found.amplitude_m, CENTRE_M, FACTOR)
 
         def amend(campaign: Campaign, values: Mapping[str, float], wheel: int | None = wheel) -> Campaign:
             added = WheelLines(wheel=wheel, amplitude_m=values["amplitude_m"], decay=values["decay"])
-            return with_irregularity(campaign, wheels=(*campaign.said.irregularity.wheels, added))
+            return with_irregularity(campaign, wheels=(*campaign.stated.irregularity.wheels, added))
 
         yield Hypothesis(
             entry=ID,

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.excitation import WheelLines
 from permway.diagnosis.catalogue._excite import stays, with_irregularity
 from permway.diagnosis.catalogue._lines import coordinate
 from permway.diagnosis.catalogue._runs import combs, excesses, on_board, suspects
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, log_free
-from permway.recordings.campaign import Campaign
-from permway.recordings.campaign_excitation import WheelLines
 
 ID = "wheel_polygon"
 DOMAIN: Domain = "irregularity"
@@ -37,7 +37,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     runs = excesses(situation)
     if not runs:
         return
-    around = 2.0 * np.pi * situation.campaign.said.irregularity.wheel_radius_m
+    around = 2.0 * np.pi * situation.campaign.stated.irregularity.wheel_radius_m
     free = (
         log_free("order", "1", CENTRE, FACTOR, lowest=0.5),
         log_free("amplitude_m", "m", AMPLITUDE_M, 3.0),
@@ -50,7 +50,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             added = WheelLines(
                 order=values["order"], wheel=wheel, amplitude_m=values["amplitude_m"], harmonics=1, decay=0.0
             )
-            return with_irregularity(campaign, wheels=(*campaign.said.irregularity.wheels, added))
+            return with_irregularity(campaign, wheels=(*campaign.stated.irregularity.wheels, added))
 
         yield Hypothesis(
             entry=ID,

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._vehicle import loudest_Hz, sensors_on, vehicle_of, with_addition
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free, log_free
 from permway.model.vehicle_additions import FlexibleMode
-from permway.recordings.campaign import Campaign
 
 ID = "wheelset_bending"
 DOMAIN: Domain = "vehicle"

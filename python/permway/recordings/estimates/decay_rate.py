@@ -85,7 +85,7 @@ def track_decay_rate(
 
     Its logarithm has, with w_n = (|A_n|/|A_0|)^2 dx_n / sum and s_n^2 the variance of ln|A_n|, positions
     independent, the variance 4 (sum_(n>0) w_n^2 s_n^2 + (sum_(n>0) w_n)^2 s_0^2). Noise adds 2 s_n^2 of itself
-    to |A_n|^2, and so lowers the rate; `noise_bias_dB` says by how much.
+    to |A_n|^2, and so lowers the rate; `noise_bias_dB` states by how much.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def track_decay_rate(
     degrees_of_freedom : array_like
         Of those variances.
     take_off_noise : bool
-        Whether |A_n|^2 is freed of what its variance says noise has added.
+        Whether |A_n|^2 is freed of what its variance states noise has added.
     level : float
         Of the interval.
     warn : bool

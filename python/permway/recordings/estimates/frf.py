@@ -18,7 +18,7 @@ _DEAD = 1e-24
 """Share of a reference's greatest power below which a line holds rounding only."""
 
 _SINGULAR = 1e-10
-"""Reciprocal condition of the references' coherency matrix below which they cannot be told apart."""
+"""Reciprocal condition of the references' coherency matrix below which they cannot be distinguished."""
 
 
 def frequency_response(

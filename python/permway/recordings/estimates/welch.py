@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike
 
-from permway import __version__
+from permway._core import __version__
 from permway.arrays import Complexes, Reals, real_numbers
 from permway.errors import InputError
 from permway.recordings.estimates.checks import check_finite, check_names, check_positive, check_units

@@ -36,41 +36,41 @@ _UNREAD: tuple[tuple[bytes, str, str], ...] = (
 )
 
 
-def recognise(source: Path, said: str | None = None, encoding: str | None = None) -> Format:
+def recognise(source: Path, stated: str | None = None, encoding: str | None = None) -> Format:
     """The format of a file.
 
     Parameters
     ----------
     source : Path
-    said : str, optional
-        The format as the caller says it; the content must not be plainly another.
+    stated : str, optional
+        The format as the caller states it; the content must not be plainly another.
     encoding : str, optional
-        Character set of a text: one in UTF-16 has zero bytes, and is a text only if that was said.
+        Character set of a text: one in UTF-16 has zero bytes, and is a text only if that was stated.
 
     Raises
     ------
     InputError
-        If the content is none that is read here, or another than its name or the caller says.
+        If the content is none that is read here, or another than its name or the caller states.
     """
-    if said is not None and said not in get_args(Format):
+    if stated is not None and stated not in get_args(Format):
         raise InputError(
-            "no format of this name", where="format", value=said, remedy=f"use one of {get_args(Format)}"
+            "no format of this name", where="format", value=stated, remedy=f"use one of {get_args(Format)}"
         )
     if encoding is not None and encoding.lower().replace("_", "-").startswith(("utf-16", "utf-32")):
         return "text"
     found = _by_content(source)
-    wanted: tuple[str, ...] = _SUFFIXES.get(source.suffix.lower(), ()) if said is None else (said,)
-    if said in ("hdf5", "netcdf", "mat73") and found in ("hdf5", "netcdf", "mat73"):
-        return said  # type: ignore[return-value]
+    wanted: tuple[str, ...] = _SUFFIXES.get(source.suffix.lower(), ()) if stated is None else (stated,)
+    if stated in ("hdf5", "netcdf", "mat73") and found in ("hdf5", "netcdf", "mat73"):
+        return stated  # type: ignore[return-value]
     if not wanted or found in wanted:
-        # A file of HDF5 is named .nc or .h5, and nothing inside need tell which.
+        # A file of HDF5 is named .nc or .h5, and nothing inside need state which.
         return "netcdf" if found == "hdf5" and "hdf5" not in wanted and "netcdf" in wanted else found
     if found == "hdf5" and wanted[0] in ("netcdf", "mat"):
         return "netcdf" if wanted[0] == "netcdf" else "mat73"
     raise InputError(
-        f"the {'name' if said is None else 'caller'} says {' or '.join(wanted)}, the content is {found}",
+        f"the {'name' if stated is None else 'caller'} states {' or '.join(wanted)}, the content is {found}",
         where=str(source),
-        value=source.suffix if said is None else said,
+        value=source.suffix if stated is None else stated,
         remedy=f'rename it, or say format="{found}" if that is right',
     )
 

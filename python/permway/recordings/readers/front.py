@@ -76,11 +76,11 @@ def read_time(
     samples : (first, stop), optional
         Only these.
     format : str, optional
-        One of :data:`permway.recordings.readers.formats.Format`; by default told from content and name.
+        One of :data:`permway.recordings.readers.formats.Format`; by default determined from content and name.
     part : str, optional
         Group of a TDMS, MDF or HDF5 file, array of samples, or number of a segment of LVM, if there are several.
     hints : Hints
-        What is known of the file and wins over what it says.
+        What is known of the file and wins over what it states.
     keep_nonfinite : bool
         Keep samples that are not finite, to look at them; else they are refused.
     max_bytes : int
@@ -100,8 +100,8 @@ def read_time(
         timing = _timing(file, kind, rows, sampling_Hz)
         first, stop = _range(timing, samples)
         check_size(len(rows) * (stop - first), file.source, max_bytes=max_bytes)
-        said = agreed_units(file, rows, units, hints)
-        return _record(file, kind, rows, said, timing, first, stop, keep_nonfinite)
+        stated = agreed_units(file, rows, units, hints)
+        return _record(file, kind, rows, stated, timing, first, stop, keep_nonfinite)
 
 
 def time_blocks(
@@ -138,11 +138,11 @@ def time_blocks(
     with opened(path, format, part, hints, keep_nonfinite, MOST_BYTES) as (file, kind):
         rows = rows_of(file, channels)
         timing = _timing(file, kind, rows, sampling_Hz)
-        said = agreed_units(file, rows, units, hints)
+        stated = agreed_units(file, rows, units, hints)
         check_size(len(rows) * min(block_samples, timing.samples), file.source)
         for first in range(0, timing.samples, block_samples):
             stop = min(first + block_samples, timing.samples)
-            yield _record(file, kind, rows, said, timing, first, stop, keep_nonfinite)
+            yield _record(file, kind, rows, stated, timing, first, stop, keep_nonfinite)
 
 
 def read_frf(
@@ -258,7 +258,7 @@ def read_table(
 
 @contextmanager
 def opened(
-    path: str | Path, said: str | None, part: str | None, hints: Hints, keep: bool, max_bytes: int
+    path: str | Path, stated: str | None, part: str | None, hints: Hints, keep: bool, max_bytes: int
 ) -> Iterator[tuple[TimeFile, Format]]:
     """A file of records in time, opened, and its format.
 
@@ -268,7 +268,7 @@ def opened(
         As :func:`read_time`.
     """
     source = existing_file(path)
-    kind = recognise(source, said, hints.encoding)
+    kind = recognise(source, stated, hints.encoding)
     with ExitStack() as stack:
         # What a reader raises while it opens or reads is made one clear error; what is raised by whoever uses the
         # record between blocks is not its concern, and passes.
@@ -298,11 +298,11 @@ def opened(
         yield file, kind
 
 
-def _timing(file: TimeFile, kind: Format, rows: list[int], said: float | None) -> Timing:
+def _timing(file: TimeFile, kind: Format, rows: list[int], stated: float | None) -> Timing:
     """The timing of the channels asked for, its rate as file and caller say it."""
     with foreign(Path(file.source), kind):
         timing = agreed_timing(file, rows)
-    return replace(timing, sampling_Hz=agreed_rate(file, timing, said))
+    return replace(timing, sampling_Hz=agreed_rate(file, timing, stated))
 
 
 @contextmanager

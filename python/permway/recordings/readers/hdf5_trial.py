@@ -3,7 +3,7 @@
 Run as a script by :func:`permway.recordings.readers.hdf5.check_sound`, with the file's name, the most bytes that
 its texts may take, and seconds of processor time. Whatever the reader then does with structure, attributes and
 texts has been done here before; of numbers the first and the last are read. Raising is no matter, for the reader
-says it better: what counts is that this comes to an end, without a crash, and within its memory.
+states it better: what counts is that this comes to an end, without a crash, and within its memory.
 """
 
 from __future__ import annotations

@@ -93,7 +93,7 @@ def _names_quantity(parts: tuple[str, str]) -> bool:
 
 
 def clean_unit(text: object) -> str | None:
-    """A unit as found, without brackets and blanks; None where the text says that there is none."""
+    """A unit as found, without brackets and blanks; None where the text states that there is none."""
     if not isinstance(text, str):
         return None
     bare = text.strip().strip("\x00").strip()
@@ -128,9 +128,9 @@ def is_unit_row(cells: list[str]) -> bool:
     Each cell is a unit or none, or half of those that are not empty are, which a row of names never has.
     """
     bare = [clean_unit(cell) for cell in cells]
-    said = [i for i, unit in enumerate(bare) if unit is not None]
-    known = [i for i in said if is_unit(bare[i] or "") or cells[i].strip().startswith(("[", "("))]
-    return bool(known) and 2 * len(known) >= len(said)
+    stated = [i for i, unit in enumerate(bare) if unit is not None]
+    known = [i for i in stated if is_unit(bare[i] or "") or cells[i].strip().startswith(("[", "("))]
+    return bool(known) and 2 * len(known) >= len(stated)
 
 
 def _is_temperature(unit: str) -> bool:

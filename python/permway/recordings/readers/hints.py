@@ -1,4 +1,4 @@
-"""What whoever wrote a file down knows of it, and the file does not say, or says wrongly."""
+"""What whoever wrote a file down knows of it, and the file does not say, or states wrongly."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ NO_TIMES = "none"
 
 @dataclass(frozen=True, kw_only=True)
 class Hints:
-    """Statements that win over what a file says.
+    """Statements that win over what a file states.
 
     Each is a key of `[[records]]` in the campaign file, of the same name.
 

@@ -11,7 +11,7 @@ import numpy as np
 from permway.errors import InputError
 
 MOST_BYTES = 2**30
-"""Most that a record may take in memory, bytes, unless said otherwise."""
+"""Most that a record may take in memory, bytes, unless stated otherwise."""
 
 _BY_HAND = ("text", "uff", "wav", "mat", "lvm")
 
@@ -71,7 +71,8 @@ def foreign(source: Path, kind: str) -> Iterator[None]:
         other would be a mistake of the reader, not of the file.
     """
     try:
-        # Numbers that are none may be met while they are converted; they are told afterwards, with their place.
+        # Numbers that are none may be met while they are converted; they are reported afterwards, with their
+        # place.
         with np.errstate(invalid="ignore", over="ignore"):
             yield
     except InputError:
@@ -82,10 +83,10 @@ def foreign(source: Path, kind: str) -> Iterator[None]:
     except Exception as error:
         if kind in _BY_HAND:
             raise
-        said = (str(error).splitlines() or [""])[0][:120]
+        stated = (str(error).splitlines() or [""])[0][:120]
         raise InputError(
             f"cannot be read as {kind}: damaged, cut short or of another format",
             where=str(source),
-            value=f"{type(error).__name__}: {said}",
+            value=f"{type(error).__name__}: {stated}",
             remedy="export it again, or say which format it has",
         ) from error

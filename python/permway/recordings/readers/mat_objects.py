@@ -74,14 +74,14 @@ def _extract(source: Path, target: Path) -> None:
     except subprocess.TimeoutExpired as error:
         raise _unread(source, "mat-io does not come to an end") from error
     if done.returncode != 0 or not target.exists():
-        said = (done.stderr.decode("utf-8", "replace").strip().splitlines() or ["it ended"])[-1]
-        raise _unread(source, said[:120])
+        stated = (done.stderr.decode("utf-8", "replace").strip().splitlines() or ["it ended"])[-1]
+        raise _unread(source, stated[:120])
 
 
-def _unread(source: Path, said: str) -> InputError:
+def _unread(source: Path, stated: str) -> InputError:
     what = "holds a table or timetable of MATLAB that mat-io does not read"
     remedy = "save a struct of arrays, as by table2struct(T, 'ToScalar', true), or a text by writetimetable"
-    return InputError(what, where=str(source), value=said, remedy=remedy)
+    return InputError(what, where=str(source), value=stated, remedy=remedy)
 
 
 def _variables(table: Mapping[str, Any], arrays: Mapping[str, NDArray[np.generic]]) -> list[Variable]:

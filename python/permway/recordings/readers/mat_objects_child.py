@@ -105,7 +105,7 @@ def _moments(item: Any, *, relative: bool = True) -> tuple[str, np.ndarray]:
 
 
 def _resolution(item: Any) -> float:
-    """What dates are rounded to, ms, where nothing tells what their real parts have lost."""
+    """What dates are rounded to, ms, where nothing states what their real parts have lost."""
     data = np.ravel(item.properties.get("data", 0.0))
     return 0.0 if np.any(data.imag) else float(np.spacing(np.abs(data.real).max(initial=0.0)))
 
@@ -113,11 +113,11 @@ def _resolution(item: Any) -> float:
 def _columns(names: Any, units: Any, data: Any) -> list[tuple[str, str, np.ndarray]]:
     """A column for each of a variable, as splitvars names them."""
     found = []
-    said = [_text(unit) for unit in units.ravel()] if units.size else []
+    stated = [_text(unit) for unit in units.ravel()] if units.size else []
     for index, (name, values) in enumerate(zip(names.ravel(), data.ravel(), strict=True)):
         if not isinstance(values, np.ndarray) or values.dtype.kind not in "fiuc" or values.ndim != 2:
             continue
-        unit = said[index] if index < len(said) else ""
+        unit = stated[index] if index < len(stated) else ""
         for column in range(values.shape[1]):
             label = _text(name) if values.shape[1] == 1 else f"{_text(name)}_{column + 1}"
             found.append((label, unit, values[:, column]))

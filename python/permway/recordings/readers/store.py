@@ -99,8 +99,8 @@ def as_time(store: Store, part: str | None = None, hints: Hints = NO_HINTS) -> T
     def read(rows: Sequence[int], first: int, stop: int) -> Reals:
         for row in rows:
             if columns[row].counts:
-                said = hints.channel_unit(labels[row])
-                check_counts(store, labels[row], columns[row].attributes, columns[row].folder, said)
+                stated = hints.channel_unit(labels[row])
+                check_counts(store, labels[row], columns[row].attributes, columns[row].folder, stated)
         return read_columns([columns[row] for row in rows], first, stop)
 
     return TimeFile(
@@ -126,7 +126,7 @@ def _timing_of(store: Store, variable: Variable, rate: float | None, hints: Hint
     known, scale = time_scale(variable.leaf, unit, where)
     if not known:
         scale = None if unit is None else seconds_in(unit, where)
-    unsaid = scale is None
+    unstated = scale is None
     if scale is None:
         scale = unsaid_scale(raw)
     resolution = variable.step * scale * float(np.abs(raw).max(initial=0.0, where=np.isfinite(raw)))
@@ -134,14 +134,14 @@ def _timing_of(store: Store, variable: Variable, rate: float | None, hints: Hint
         max(2.0 * resolution, variable.resolution * scale), lambda sample: f"{where}, sample {sample}", scale
     )
     base.feed(raw)
-    if unsaid:
+    if unstated:
         check_unsaid(base, variable.leaf)
     found = base.timing(variable.size)
     if rate is None or found.sampling_Hz is None:
         return found if rate is None else Timing(samples=variable.size, sampling_Hz=rate, start_s=found.start_s)
     if abs(found.sampling_Hz / rate - 1.0) > max(1e-4, found.uncertainty):
         raise InputError(
-            f"the times mean {found.sampling_Hz:.9g} Hz, but the file also says {rate:.9g} Hz",
+            f"the times mean {found.sampling_Hz:.9g} Hz, but the file also states {rate:.9g} Hz",
             where=where,
             remedy='correct whichever is wrong, or leave the times aside: time_column = "none" and sampling_Hz',
         )
@@ -187,7 +187,7 @@ def _scaled(
 
 
 def _check_one_rate(store: Store, near: str | None) -> None:
-    """Refuse a list of several rates, of which nobody says whose each is."""
+    """Refuse a list of several rates, of which nobody states whose each is."""
     for variable in store.named(RATES, near):
         if variable.kind != "real" or not 1 < variable.size <= MOST_CHANNELS:
             continue
@@ -206,7 +206,7 @@ def _has_unit(store: Store, names: set[str], near: str | None) -> bool:
 
 
 def _times(store: Store, hints: Hints) -> list[Variable]:
-    """The arrays that hold times, by their names or as was said."""
+    """The arrays that hold times, by their names or as was stated."""
     long = [x for x in store.variables.values() if x.kind == "real" and x.size > 1 and rank(x) == 1]
     if hints.time_column is not None and not hints.no_times:
         found = [x for x in long if hints.time_column in (x.name, x.leaf)]
@@ -283,7 +283,7 @@ def _labels(
         if listed is not None and i in in_table:
             beside = clean_unit(listed[in_table.index(i) if len(listed) > 1 else 0])
         if unit is not None and beside is not None and unit != beside:
-            what = f"the name says {unit!r}, the list of units {beside!r}"
+            what = f"the name states {unit!r}, the list of units {beside!r}"
             raise InputError(what, where=f"{store.source}: channel '{name}'", remedy="keep one")
         units.append(unit or beside or columns[i].unit)
     return tuple(name for name, _ in pairs), tuple(units)

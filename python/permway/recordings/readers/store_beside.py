@@ -1,4 +1,4 @@
-"""What stands beside an array and says what its numbers are: a text with its unit, a number that scales it."""
+"""What stands beside an array and states what its numbers are: a text with its unit, a number that scales it."""
 
 from __future__ import annotations
 
@@ -31,24 +31,26 @@ def with_units_beside(store: Store) -> Store:
     attributes = {name.lower(): value for name, value in store.attributes.items() if isinstance(value, str)}
     found = {}
     for name, variable in store.variables.items():
-        said = None
+        stated = None
         for end in ("_unit", "_units", "unit", "units"):
             key = f"{name}{end}".lower()
             if key in texts:
-                said = str(np.ravel(texts[key].all(store.source, max_bytes=MOST_TEXT_BYTES))[0])
+                stated = str(np.ravel(texts[key].all(store.source, max_bytes=MOST_TEXT_BYTES))[0])
             elif key in attributes:
-                said = str(attributes[key])
-        unit, own = clean_unit(said), variable.unit()
+                stated = str(attributes[key])
+        unit, own = clean_unit(stated), variable.unit()
         if unit is None or variable.kind not in ("real", "complex"):
             continue
         if own is not None and own != unit:
             where = f"{store.source}: '{name}'"
-            raise InputError(f"its own unit is {own!r}, the text beside it says {unit!r}", where=where)
+            raise InputError(f"its own unit is {own!r}, the text beside it states {unit!r}", where=where)
         found[name] = replace(variable, attributes={**variable.attributes, "units": unit})
     return replace(store, variables={**store.variables, **found}) if found else store
 
 
-def check_counts(store: Store, name: str, attributes: Mapping[str, object], folder: str, said: str | None) -> None:
+def check_counts(
+    store: Store, name: str, attributes: Mapping[str, object], folder: str, stated: str | None
+) -> None:
     """Refuse whole numbers of a converter beside which a scale stands that nobody applied.
 
     Parameters
@@ -59,7 +61,7 @@ def check_counts(store: Store, name: str, attributes: Mapping[str, object], fold
         Of its array.
     folder : str
         The group or struct that its array is in.
-    said : str or None
+    stated : str or None
         The unit that the caller stated of the channel as its numbers stand: with it they are taken.
 
     Raises
@@ -67,7 +69,7 @@ def check_counts(store: Store, name: str, attributes: Mapping[str, object], fold
     InputError
         With the scale's name and value.
     """
-    if said is not None:
+    if stated is not None:
         return
     beside: list[Variable] = [
         x

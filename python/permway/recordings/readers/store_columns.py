@@ -74,7 +74,7 @@ def columns_of(
     Raises
     ------
     InputError
-        If which axis of the table counts the channels cannot be told.
+        If which axis of the table counts the channels cannot be determined.
     """
     table = next((variable for variable in data if rank(variable) == 2), None)
     vectors = [variable for variable in data if rank(variable) < 2]
@@ -178,6 +178,6 @@ def _channel_axis(
         if sum(fits) == 1:
             return fits.index(False)
     if lengths[0] == lengths[1]:
-        what = "which axis counts the channels cannot be told"
+        what = "which axis counts the channels cannot be determined"
         raise InputError(what, where=where, value=table.shape, remedy="give another number of samples, or times")
     return lengths.index(min(lengths))

@@ -39,9 +39,9 @@ def as_frf(
 ) -> FrfRecord:
     """Find frequency responses among arrays: one complex array over frequency, response and reference.
 
-    Axes are told by what the caller or an array of texts named `axes` states, by their names where the format has
-    them, else by their lengths. Where lengths do not tell, arrays of MATLAB and NumPy stand in the order
-    frequency, response, reference; those of HDF5 and NetCDF are refused.
+    Axes are determined by what the caller or an array of texts named `axes` states, by their names where the
+    format has them, else by their lengths. Where lengths do not decide, arrays of MATLAB and NumPy stand in the
+    order frequency, response, reference; those of HDF5 and NetCDF are refused.
 
     Raises
     ------
@@ -210,7 +210,7 @@ def _order(
     apart = {tuple(axis for axis in p if shape[axis] > 1) for p in fits}
     if len(apart) > 1 and not (values.ordered and (0, 1, 2) in fits):
         raise InputError(
-            "which axis counts the responses and which the references cannot be told: their lengths are one",
+            "which axis counts the responses and which the references cannot be determined: their lengths are one",
             where=where,
             value=values.shape,
             remedy='state it in the record: axes = ["frequency", "response", "reference"] in their order, '

@@ -96,7 +96,7 @@ class Variable:
         return self.read(tuple(slice(None) for _ in self.shape))
 
     def unit(self) -> str | None:
-        """Its unit, if an attribute says it."""
+        """Its unit, if an attribute states it."""
         return next((clean_unit(value) for key, value in self.attributes.items() if key.lower() in UNITS), None)
 
 

@@ -25,7 +25,7 @@ _UNITS = ("unit_string", "NI_UnitDescription", "unit", "Unit", "units")
 
 @contextmanager
 def open_time(source: Path, *, group: str | None = None, hints: Hints = NO_HINTS) -> Iterator[TimeFile]:
-    """Open the channels of a TDMS file, scaled as the file itself says.
+    """Open the channels of a TDMS file, scaled as the file itself states.
 
     With more than one group, and none chosen, channels are named "group/channel". A channel that is named as a
     time holds the times of channels that have none of their own.
@@ -87,22 +87,22 @@ def open_time(source: Path, *, group: str | None = None, hints: Hints = NO_HINTS
 @contextmanager
 def _complaints(source: Path) -> Iterator[Callable[[], None]]:
     """What the library only writes to its log (a last segment cut short, a text that is none) is an error here."""
-    heard: list[str] = []
+    messages: list[str] = []
     ear = logging.Handler(logging.WARNING)
-    ear.emit = lambda record: heard.append(record.getMessage())  # type: ignore[method-assign]
+    ear.emit = lambda record: messages.append(record.getMessage())  # type: ignore[method-assign]
     logger, console = logging.getLogger("nptdms"), log_manager.console_handler
     level = console.level
     logger.addHandler(ear)
     console.setLevel(logging.CRITICAL)
 
     def check() -> None:
-        if heard and "scale" in heard[0].lower():
+        if messages and "scale" in messages[0].lower():
             what = "a channel is scaled in a way that is not known, so that its samples have no unit"
             remedy = "export it as CSV, or with a linear, polynomial or table scale"
-            raise InputError(what, where=str(source), value=heard[0], remedy=remedy)
-        if heard:
+            raise InputError(what, where=str(source), value=messages[0], remedy=remedy)
+        if messages:
             remedy = "the file is cut short or damaged; export what is sound"
-            raise InputError("the file is not whole", where=str(source), value=heard[0], remedy=remedy)
+            raise InputError("the file is not whole", where=str(source), value=messages[0], remedy=remedy)
 
     try:
         yield check

@@ -20,11 +20,11 @@ from permway.recordings.readers.timebase import TimeBase, check_unsaid, unsaid_s
 from permway.recordings.readers.timefile import Timing
 
 _UNTIMED = 1.0
-"""Increment that LabVIEW writes where nothing was timed: it is no rate, unless a start says there was a clock."""
+"""Increment that LabVIEW writes where nothing was timed: no rate, unless a start shows that there was a clock."""
 
 
 def time_channels(channels: Mapping[str, Any], hints: Hints, source: Path) -> list[str]:
-    """Names of the channels that hold times: as was said, else by their names and their having no step in time."""
+    """Names of the channels that hold times: as stated, else by their names and their having no step in time."""
     if hints.no_times:
         return []
     if hints.time_column is not None:
@@ -52,7 +52,7 @@ def timing_of(channel: Any, where: str, times: list[str], channels: Mapping[str,
     Raises
     ------
     InputError
-        If what it says is no step in time, or the times are not even.
+        If what it states is no step in time, or the times are not even.
     """
     samples = len(channel)
     if hints.no_times:
@@ -112,10 +112,10 @@ def _by_channel(channel: Any, where: str, times: list[str], channels: Mapping[st
         raise InputError(what, where=where, remedy=remedy)
     name = mates[0]
     place = f"{where.rpartition(': channel')[0]}: channel '{name}'"
-    raw, scale, worth, unsaid = _numbers(found, name, place, hints)
+    raw, scale, worth, unstated = _numbers(found, name, place, hints)
     base = TimeBase(worth * scale, lambda sample: f"{place}, sample {sample}", scale)
     base.feed(raw)
-    if unsaid:
+    if unstated:
         check_unsaid(base, name)
     return base.timing(samples)
 
@@ -134,9 +134,9 @@ def _numbers(channel: Any, name: str, place: str, hints: Hints) -> tuple[Reals, 
     known, scale = time_scale(bare, unit, place)
     if not known and unit is not None:
         scale = seconds_in(unit, place)
-    unsaid = scale is None
+    unstated = scale is None
     if scale is None:
         scale = unsaid_scale(plain)
     top = float(np.abs(plain).max(initial=0.0, where=np.isfinite(plain)))
     eps = np.finfo(values.dtype).eps if values.dtype.kind == "f" else 0.0
-    return plain, scale, max(2.0 * float(eps) * top, 1.0 if values.dtype.kind in "iu" else 0.0), unsaid
+    return plain, scale, max(2.0 * float(eps) * top, 1.0 if values.dtype.kind in "iu" else 0.0), unstated

@@ -27,7 +27,7 @@ def open_time(source: Path, keep_nonfinite: bool = False, hints: Hints = NO_HINT
 
     The header, if there is one, names the columns, with units in brackets or in a row below. Separators are tab,
     semicolon, comma or blanks; with tab or semicolon, or in quotes, numbers may have a decimal comma. Lines that
-    begin with #, % or // are remarks; one that says "fs = 1024" is heard. A column named time (or t, time_s,
+    begin with #, % or // are remarks; one that states "fs = 1024" is read. A column named time (or t, time_s,
     "Time [ms]"), or the first one if its unit is one of time, must be uniform, and gives the rate. Only the
     columns that are asked for, and the times, have to be sound.
     """
@@ -57,7 +57,7 @@ def open_time(source: Path, keep_nonfinite: bool = False, hints: Hints = NO_HINT
             return found
         if abs(found.sampling_Hz / remark.value_Hz - 1.0) > max(1e-4, found.uncertainty):
             raise InputError(
-                f"the time column means {found.sampling_Hz:.9g} Hz, a remark says {remark.value_Hz:.9g} Hz",
+                f"the time column means {found.sampling_Hz:.9g} Hz, a remark states {remark.value_Hz:.9g} Hz",
                 where=str(source),
                 remedy='correct either, or leave the times aside: time_column = "none" and sampling_Hz',
             )
@@ -84,7 +84,7 @@ def _time_column(source: Path, layout: Layout, hints: Hints) -> int | None:
     Raises
     ------
     InputError
-        If there are several, or none of the name that was said.
+        If there are several, or none of the name that was stated.
     """
     if hints.no_times:
         return None
@@ -136,5 +136,5 @@ def _times(source: Path, rows: Rows, index: int, hints: Hints) -> Times:
         scale = seconds_in(unit, where)
     if scale is None:
         first = next(iter(rows.pieces([index])), None)
-        return Times(rows, index, 1.0 if first is None else unsaid_scale(first[:, 0]), unsaid=True)
+        return Times(rows, index, 1.0 if first is None else unsaid_scale(first[:, 0]), unstated=True)
     return Times(rows, index, scale)

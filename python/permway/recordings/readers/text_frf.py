@@ -112,7 +112,7 @@ def _row_units(
     Raises
     ------
     InputError
-        If it changes within a pair, or is not what the header says.
+        If it changes within a pair, or is not what the header states.
     """
     named = _named(table, ("unit", "units"))
     cells = table.columns[named[0]] if len(named) == 1 else None

@@ -81,7 +81,7 @@ def read_frf(
     """Read frequency responses side by side: complex text, real and imaginary part, or magnitude and phase.
 
     A column is named by its response and reference, "rail@8.64 / 3.20 real", and by what it holds; `pairs` of the
-    hints says what a name without a stroke means.
+    hints states what a name without a stroke means.
 
     Returns
     -------
@@ -120,7 +120,7 @@ def read_frf(
     where = f"{source}: '{names[at]}'"
     parts = [table.response(stem) for stem in chosen]
     coherence = [table.coherence(stem) for stem in chosen]
-    said = {unit for _, unit in parts}
+    stated = {unit for _, unit in parts}
     return FrfRecord(
         responses=tuple(pairs[stem][0] for stem in chosen),
         references=tuple(pairs[stem][1] for stem in chosen),
@@ -129,7 +129,7 @@ def read_frf(
         coherence=None
         if all(row is None for row in coherence)
         else np.array([np.full(frequency.size, np.nan) if row is None else row for row in coherence]),
-        unit=said.pop() if len(said) == 1 else None,
+        unit=stated.pop() if len(stated) == 1 else None,
         units=tuple(unit for _, unit in parts),
         averages=None,
         source=str(source),
@@ -211,7 +211,7 @@ def _columns(names: list[str], units: list[str | None], rows: list[Line], at: in
 
 def _agreed(unit: str | None, within: str | None, name: str) -> str | None:
     if unit is not None and within is not None and unit != within:
-        raise InputError(f"the column says {unit!r} and {within!r}", where=f"'{name}'", remedy="keep one unit")
+        raise InputError(f"the column states {unit!r} and {within!r}", where=f"'{name}'", remedy="keep one unit")
     return unit or within
 
 
@@ -233,7 +233,7 @@ def _pairs(source: Path, stems: list[str], hints: Hints) -> dict[str, tuple[str,
         pair = stated.get(stem) or _pair(stem) or (ALONE if len(stems) == 1 else None)
         if pair is None:
             example = f'pairs = {{ "{stem}" = ["what was read", "what was struck"] }}'
-            what = "what was read and what was struck cannot be told from a name"
+            what = "what was read and what was struck cannot be determined from a name"
             remedy = f'name the columns "read / struck", or say it of each in the record: {example}'
             raise InputError(what, where=str(source), value=stem, remedy=remedy)
         found[stem] = pair
@@ -330,7 +330,7 @@ class _Table:
         if len(signs) == 2 or (self._hints.decimal is not None and signs - {self._hints.decimal}):
             sign = "," if self._hints.decimal != "," else "."
             value = next((cell for cell in cells if sign in cell), None)
-            what = "decimal points and decimal commas in one column, or not the sign that was said"
+            what = "decimal points and decimal commas in one column, or not the sign that was stated"
             raise InputError(what, where=where, value=value, remedy="write all numbers alike")
         parts = [part for cell in cells if "," in cell for part in re.findall(r"\d+,\d+", cell)]
         thousands = parts and all(re.fullmatch(r"[1-9]\d{0,2},\d{3}", part) for part in parts)

@@ -48,7 +48,7 @@ class Layout:
     first_row : int
         Number of the line of the first row of samples.
     rate : RateRemark
-        What a remark says of the sampling rate.
+        What a remark states about the sampling rate.
     sample : tuple of str
         The first rows.
     encoding : str or None
@@ -77,7 +77,7 @@ def find_layout(source: Path, hints: Hints = NO_HINTS) -> Layout:
     Raises
     ------
     InputError
-        For a file without rows, lines before the header that nobody said to skip, units that contradict.
+        For a file without rows, lines before the header that nobody stated to skip, units that contradict.
     """
     rate = RateRemark()
     kept: list[tuple[int, str]] = []
@@ -219,7 +219,7 @@ def _named(
             unit = clean_unit(cell)
             if unit is not None and units[i] is not None and unit != units[i]:
                 raise InputError(
-                    f"the header says {units[i]!r}, the row of units {unit!r}",
+                    f"the header states {units[i]!r}, the row of units {unit!r}",
                     where=f"{source}: line {kept[line][0]}, column '{names[i]}'",
                     remedy="keep one",
                 )
@@ -245,12 +245,12 @@ def _joined(rows: list[list[str]]) -> list[str]:
 
 
 def _check_preamble(source: Path, kept: list[tuple[int, str]], at: int, hints: Hints) -> None:
-    """Refuse lines above the header that nobody said to leave out.
+    """Refuse lines above the header that nobody stated to leave out.
 
     Raises
     ------
     InputError
-        With these lines, and the key that says where the header is.
+        With these lines, and the key that states where the header is.
     """
     if at == 0 or hints.skip_rows is not None:
         return

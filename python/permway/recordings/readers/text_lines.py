@@ -81,7 +81,7 @@ def _decoded(raw: bytes, source: Path, before: int) -> list[str]:
 
 
 def is_remark(line: str) -> bool:
-    """Whether a line says nothing of the table: empty, or a remark."""
+    """Whether a line states nothing of the table: empty, or a remark."""
     bare = line.lstrip()
     return not bare or bare.startswith(_REMARKS)
 

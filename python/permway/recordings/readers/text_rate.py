@@ -29,7 +29,7 @@ class RateRemark:
     ----------
     value_Hz : float or None
     fault : InputError or None
-        If one speaks of the rate and is not understood: to be raised where nothing else says it.
+        If one speaks of the rate and is not understood: to be raised where nothing else states it.
     doubt : InputError or None
         The same if the table has decimal commas.
     """
@@ -43,7 +43,7 @@ class RateRemark:
         return self if self.doubt is None else RateRemark(fault=self.doubt)
 
     def and_then(self, other: RateRemark) -> RateRemark:
-        """The first that says something."""
+        """The first that states something."""
         return other if self.value_Hz is None and self.fault is None else self
 
 
@@ -52,10 +52,10 @@ def rate_in(remark: str, where: str) -> RateRemark:
 
     A comma may part decimals or thousands: "51,2" is read, "51,200" is not.
     """
-    said = _RATE.search(remark)
-    if said is None:
+    stated = _RATE.search(remark)
+    if stated is None:
         return RateRemark()
-    text = said["value"].strip()
+    text = stated["value"].strip()
     fault = InputError(
         "a remark speaks of the sampling rate and is not understood",
         where=where,
@@ -65,7 +65,7 @@ def rate_in(remark: str, where: str) -> RateRemark:
     found = _VALUE.fullmatch(text)
     if found is None:
         return RateRemark(fault=fault)
-    unit = found["unit"] or (said["bracket"] or "").strip("()[] ")
+    unit = found["unit"] or (stated["bracket"] or "").strip("()[] ")
     factor = _EXACT.get(unit) or (None if unit.lower() in ("mhz", "ms/s") else _UNITS.get(unit.lower()))
     number = found["number"]
     commas, points = number.count(","), number.count(".")

@@ -95,7 +95,7 @@ class Rows:
         table = self._quickly(lines, wanted)
         if table is not None and (self.keep or np.isfinite(table).all()):
             return table
-        # Slower, and telling the line of the first fault.
+        # Slower, and informative the line of the first fault.
         return np.array([self._row(index, line, wanted) for index, line in zip(numbers, lines, strict=True)])
 
     def _quickly(self, lines: list[str], wanted: Sequence[int]) -> Reals | None:
@@ -184,12 +184,14 @@ class Times:
         Seconds in one of its unit.
     clock : bool
         Whether they are dates or times of day. Loggers round these, so that even steps do not make a rate certain.
-    unsaid : bool
+    unstated : bool
         Whether no unit is stated.
     """
 
-    def __init__(self, rows: Rows, index: int, scale: float, *, clock: bool = False, unsaid: bool = False) -> None:
-        self.rows, self.index, self.scale, self.clock, self.unsaid = rows, index, scale, clock, unsaid
+    def __init__(
+        self, rows: Rows, index: int, scale: float, *, clock: bool = False, unstated: bool = False
+    ) -> None:
+        self.rows, self.index, self.scale, self.clock, self.unstated = rows, index, scale, clock, unstated
 
     def base(self) -> TimeBase:
         """A check that has seen nothing yet."""
@@ -209,7 +211,7 @@ class Times:
         piece = next(iter(self.rows.pieces([self.index])), None)
         if piece is not None:
             base.feed(piece[:, 0])
-        if self.unsaid:
+        if self.unstated:
             check_unsaid(base, self.rows.layout.names[self.index])
         return base
 
@@ -231,7 +233,8 @@ class Times:
                 worth.append(10.0 ** min(max(power, -300), 300))
                 exponents |= digits[2] is not None
                 top = max(top, abs(float(cell.replace(",", "."))) if cell.strip("+-.,") else 0.0)
-        # Where trailing zeros are left out ("0.5") the longest cell tells; with exponents the largest number does.
+        # Where trailing zeros are left out ("0.5") the longest cell decides; with exponents the largest number
+        # does.
         printed = (max(worth) if exponents else min(worth)) if worth else 0.0
         # Nanoseconds since 1970 have more digits than a number of double precision.
         return max(printed, 2.0**-52 * top)

@@ -44,7 +44,7 @@ class Timing:
     remark : bool
         Whether the rate is only a remark in a text, which a statement of the caller replaces.
     begins : str
-        When the first sample was taken by a clock, as the file says it; empty if it does not.
+        When the first sample was taken by a clock, as the file states it; empty if it does not.
     fault : InputError or None
         Why the rate is not known, or not well enough: to be raised if the caller does not give one.
     """
@@ -60,7 +60,7 @@ class Timing:
 
 @dataclass(frozen=True, kw_only=True)
 class TimeFile:
-    """What a file says of itself, and how to read samples.
+    """What a file states about itself, and how to read samples.
 
     Attributes
     ----------
@@ -171,8 +171,8 @@ def agreed_timing(file: TimeFile, rows: Sequence[int]) -> Timing:
             raise InputError(what, where=where, remedy=remedy)
         if not _together(other, first):
             what = (
-                f"sampled at {_said(other.sampling_Hz)} Hz from {_said(other.start_s)} s, "
-                f"'{name}' at {_said(first.sampling_Hz)} Hz from {_said(first.start_s)} s"
+                f"sampled at {_stated(other.sampling_Hz)} Hz from {_stated(other.start_s)} s, "
+                f"'{name}' at {_stated(first.sampling_Hz)} Hz from {_stated(first.start_s)} s"
             )
             raise InputError(what, where=where, remedy=remedy)
         if other.begins != first.begins:
@@ -197,11 +197,11 @@ def _together(one: Timing, other: Timing) -> bool:
     return abs(one.start_s - other.start_s) * rate <= START_OFF
 
 
-def _said(value: float | None) -> str:
+def _stated(value: float | None) -> str:
     return "an unknown number of" if value is None else f"{value:.9g}"
 
 
-def agreed_rate(file: TimeFile, timing: Timing, said: float | None) -> float | None:
+def agreed_rate(file: TimeFile, timing: Timing, expected: float | None) -> float | None:
     """The sampling rate of the file and the caller, if they are one.
 
     Raises
@@ -211,46 +211,50 @@ def agreed_rate(file: TimeFile, timing: Timing, said: float | None) -> float | N
         it and does not say it plainly.
     """
     found = timing.sampling_Hz
-    if said is None:
+    if expected is None:
         if timing.fault is not None:
             raise timing.fault
         return found
-    if not is_real(said) or not (np.isfinite(said) and said > 0.0):
-        raise InputError("must be finite and above 0 Hz", where="sampling_Hz", value=said)
-    if found is not None and not timing.remark and abs(found / said - 1.0) > max(RATES_AGREE, timing.uncertainty):
+    if not is_real(expected) or not (np.isfinite(expected) and expected > 0.0):
+        raise InputError("must be finite and above 0 Hz", where="sampling_Hz", value=expected)
+    if (
+        found is not None
+        and not timing.remark
+        and abs(found / expected - 1.0) > max(RATES_AGREE, timing.uncertainty)
+    ):
         raise InputError(
-            f"the file says {found:.9g} Hz, but was said to be sampled at {said:.9g} Hz",
+            f"the file states {found:.9g} Hz, but was stated to be sampled at {expected:.9g} Hz",
             where=f"{file.source}: sampling_Hz",
             remedy="correct whichever is wrong; nothing is resampled. "
             'time_column = "none" leaves the times of the file aside, and sampling_Hz holds',
         )
-    return float(said)
+    return float(expected)
 
 
 def agreed_units(
-    file: TimeFile, rows: Sequence[int], said: str | Mapping[str, str] | None, hints: Hints = NO_HINTS
+    file: TimeFile, rows: Sequence[int], expected: str | Mapping[str, str] | None, hints: Hints = NO_HINTS
 ) -> tuple[str | None, ...]:
-    """The unit of each channel as found, or as said where the file has none, or as a hint has it in any case.
+    """The unit of each channel as found, or as stated where the file has none, or as a hint has it in any case.
 
     Raises
     ------
     InputError
-        If the file's own, or the hint, means another than what was said.
+        If the file's own, or the hint, means another than what was stated.
     """
     units: list[str | None] = []
     for row in rows:
         name = file.channels[row]
         stated = hints.channel_unit(name)
         found = file.units[row] if stated is None else stated
-        told = said if isinstance(said, str) or said is None else said.get(name)
-        if found is not None and told is not None:
-            check_unit(found, told, f"{file.source}: channel '{name}'", name, stated is not None)
-        units.append(told if found is None else found)
+        reported = expected if isinstance(expected, str) or expected is None else expected.get(name)
+        if found is not None and reported is not None:
+            check_unit(found, reported, f"{file.source}: channel '{name}'", name, stated is not None)
+        units.append(reported if found is None else found)
     return tuple(units)
 
 
-def check_unit(found: str, told: str, where: str, label: str, hinted: bool) -> None:
-    """Refuse a unit of a file, or of a hint, that means another than what was said.
+def check_unit(found: str, reported: str, where: str, label: str, hinted: bool) -> None:
+    """Refuse a unit of a file, or of a hint, that means another than what was stated.
 
     Raises
     ------
@@ -258,12 +262,14 @@ def check_unit(found: str, told: str, where: str, label: str, hinted: bool) -> N
         If so, naming the key of the campaign file that would settle it.
     """
     try:
-        check_same(found, told, where=where)
+        check_same(found, reported, where=where)
     except InputError as error:
         if hinted:
-            what = f"the record states {found!r}, the sensor {told!r}"
+            what = f"the record states {found!r}, the sensor {reported!r}"
             raise InputError(what, where=where, remedy="correct whichever is wrong") from error
-        remedy = f'{error.remedy}. If the file is wrong, say so in the record: unit = {{ "{label}" = "{told}" }}'
+        remedy = (
+            f'{error.remedy}. If the file is wrong, say so in the record: unit = {{ "{label}" = "{reported}" }}'
+        )
         raise InputError(error.what, where=error.where, value=error.value, remedy=remedy) from error
 
 
@@ -275,7 +281,7 @@ def check_finite(file: TimeFile, rows: Sequence[int], values: Reals, first: int,
     InputError
         If there is one.
     """
-    # One sum tells whether to look: it is finite if all values are, but for an overflow.
+    # One sum shows whether to look: it is finite if all values are, but for an overflow.
     with np.errstate(over="ignore", invalid="ignore"):
         total = np.sum(values)
     if np.isfinite(total):

@@ -35,12 +35,12 @@ class Text:
     encoding: str | None = None
 
     def decoded(self, raw: bytes) -> str:
-        """Text of some bytes, for fields are counted in characters: as was said, else UTF-8, else Latin-1.
+        """Text of some bytes, for fields are counted in characters: as was stated, else UTF-8, else Latin-1.
 
         Raises
         ------
         InputError
-            For bytes that are not of the character set that was said.
+            For bytes that are not of the character set that was stated.
         """
         try:
             return raw.decode(self.encoding or "utf-8")

@@ -32,7 +32,7 @@ from permway.recordings.readers.uff58_units import ordinate_unit
 from permway.recordings.record import FrfRecord
 
 GENERAL, TIME, AUTO, CROSS, FRF, COHERENCE, DENSITY = 0, 1, 2, 3, 4, 6, 9
-_UNSAID, _TIME_AXIS, _FREQUENCY_AXIS = 0, 17, 18
+_UNSTATED, _TIME_AXIS, _FREQUENCY_AXIS = 0, 17, 18
 _PRINTED = 5e-6
 """Relative rounding of a step that is printed with six digits: 9.76562e-04 s is 1024 Hz."""
 
@@ -42,7 +42,7 @@ def open_time(source: Path, hints: Hints = NO_HINTS, *, keep: bool = False) -> I
     """Open the functions over time of a universal file, one channel each.
 
     A channel is named by node and direction, or by the entity's name or the first identification line where the
-    node is 0; what ties is told apart by entity, quantity, identification or the function's number.
+    node is 0; what ties is distinguished by entity, quantity, identification or the function's number.
     """
     with open_text(source, hints.encoding) as text:
         everything = list(functions(text))
@@ -119,14 +119,14 @@ def read_frf(
         ]
         if not found:
             raise _nothing(source, everything, "frequency response (dataset 58 of type 4)")
-        tells = pair_tells(found)
-        every = pair_labels(found, tells)
+        states = pair_tells(found)
+        every = pair_labels(found, states)
         chosen = [
             i
             for i, (response, reference) in enumerate(every)
             if (responses is None or response in responses) and (references is None or reference in references)
         ]
-        # Where no pair is asked for rightly, all are given: whoever asked says what there is.
+        # Where no pair is asked for rightly, all are given: whoever asked states what there is.
         chosen = chosen or list(range(len(found)))
         rows, labels = [found[i] for i in chosen], [every[i] for i in chosen]
         check_size(3 * len(rows) * rows[0].count, str(source), max_bytes=max_bytes)
@@ -152,7 +152,7 @@ def read_frf(
             references=tuple(label[1] for label in labels),
             frequency_Hz=frequency,
             values=values,
-            coherence=_coherence(text, everything, _Chosen(rows, labels, every, tells), frequency),
+            coherence=_coherence(text, everything, _Chosen(rows, labels, every, states), frequency),
             unit=units[0] if len(set(units)) == 1 else None,
             units=units,
             averages=None,
@@ -162,16 +162,16 @@ def read_frf(
 
 @dataclass(frozen=True)
 class _Chosen:
-    """Responses that are read and their labels, the labels of all, and what tells apart those of one pair."""
+    """Responses that are read and their labels, the labels of all, and what distinguishes those of one pair."""
 
     rows: list[Function]
     labels: list[Pair]
     every: list[Pair]
-    tells: dict[Pair, Tell]
+    states: dict[Pair, Tell]
 
 
 def _coherence(text: Text, everything: list[Function], chosen: _Chosen, frequency: Reals) -> Reals | None:
-    """Of the pairs that are read: told apart as the responses are."""
+    """Of the pairs that are read: distinguished as the responses are."""
     found = [item for item in everything if item.function == COHERENCE]
     if not found:
         return None
@@ -180,7 +180,7 @@ def _coherence(text: Text, everything: list[Function], chosen: _Chosen, frequenc
     asked = {plain_pair(item) for item in rows}
     coherence = np.full((len(rows), frequency.size), np.nan)
     seen: set[int] = set()
-    for item, label in zip(found, pair_labels(found, chosen.tells), strict=True):
+    for item, label in zip(found, pair_labels(found, chosen.states), strict=True):
         pair = " / ".join(label)
         if label not in chosen.every and (plain_pair(item) in asked or len(rows) == len(chosen.every)):
             remedy = "identify it as its response is: by names, an identification line, or the function's number"
@@ -231,7 +231,7 @@ def over_frequency(text: Text, item: Function) -> tuple[Reals, Complexes]:
     InputError
         For a function that does not stand over frequency.
     """
-    if item.abscissa.kind not in (_UNSAID, _FREQUENCY_AXIS):
+    if item.abscissa.kind not in (_UNSTATED, _FREQUENCY_AXIS):
         what = f"{_pair(item)} does not stand over frequency: its abscissa is of type {item.abscissa.kind}"
         remedy = "export it over frequency (type 18)"
         raise text.error(what, item.at, value=item.abscissa.label or item.abscissa.unit, remedy=remedy)
@@ -265,7 +265,7 @@ def _timing(text: Text, item: Function, hints: Hints) -> Timing:
         raise text.error("samples in time must be real", item.at, value=item.response.label)
     if hints.no_times:
         return Timing(samples=item.count, sampling_Hz=None)
-    if item.abscissa.kind not in (_UNSAID, _TIME_AXIS):
+    if item.abscissa.kind not in (_UNSTATED, _TIME_AXIS):
         what = (
             f"channel {item.response.label} does not stand over time: its abscissa is of type {item.abscissa.kind}"
         )

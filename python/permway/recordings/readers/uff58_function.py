@@ -63,7 +63,7 @@ class End:
 
 @dataclass(frozen=True)
 class Function:
-    """One dataset 58: what its header says, and where its values are.
+    """One dataset 58: what its header states, and where its values are.
 
     Attributes
     ----------

@@ -17,7 +17,7 @@ _QUANTITIES = {
     18: "frequency", 19: "rpm", 20: "order",
 }  # fmt: skip
 
-# What tells two channels of one node and direction apart, the plainest first.
+# What states two channels of one node and direction apart, the plainest first.
 _TELLS: tuple[Callable[[Function], str], ...] = (
     lambda item: item.response.entity,
     lambda item: _QUANTITIES.get(item.ordinate.kind, ""),
@@ -32,7 +32,7 @@ def type_name(kind: int) -> str:
 
 
 def channel_labels(items: Sequence[Function]) -> tuple[str, ...]:
-    """A label for each channel: node and direction, or its name; with what tells it apart where several tie."""
+    """A label for each channel: node and direction, or its name; with what distinguishes it where several tie."""
     labels = [_channel(item) for item in items]
     for label in dict.fromkeys(labels):
         tied = [i for i, other in enumerate(labels) if other == label]
@@ -74,7 +74,7 @@ def _by_line(line: int) -> Tell:
     return tell
 
 
-# What tells functions of one pair apart: entities' names, an identification line, number or version.
+# What distinguishes functions of one pair: entities' names, an identification line, number or version.
 _PAIR_TELLS: tuple[Tell, ...] = (
     lambda item: (_named(item.response), _named(item.reference)),
     *(_by_line(line) for line in range(5)),
@@ -84,7 +84,7 @@ _PAIR_TELLS: tuple[Tell, ...] = (
 
 
 def pair_tells(items: Sequence[Function]) -> dict[Pair, Tell]:
-    """For each pair that several functions are of, what tells these apart; it is missing where nothing does."""
+    """For each pair that several functions are of, what distinguishes these; it is missing where nothing does."""
     groups: dict[Pair, list[Function]] = {}
     for item in items:
         groups.setdefault(plain_pair(item), []).append(item)
@@ -96,9 +96,9 @@ def pair_tells(items: Sequence[Function]) -> dict[Pair, Tell]:
     return found
 
 
-def pair_labels(items: Sequence[Function], tells: Mapping[Pair, Tell]) -> list[Pair]:
+def pair_labels(items: Sequence[Function], states: Mapping[Pair, Tell]) -> list[Pair]:
     """Labels of response and reference of each function."""
-    return [tells.get(plain_pair(item), plain_pair)(item) for item in items]
+    return [states.get(plain_pair(item), plain_pair)(item) for item in items]
 
 
 def _named(end: End) -> str:

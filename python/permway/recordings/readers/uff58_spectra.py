@@ -38,7 +38,7 @@ class SpectraRecord:
     units : tuple of (str or None)
         Of each auto spectrum.
     plain : tuple of bool
-        Whether a channel's spectrum is said to be a density by its type; that of others their unit has to say.
+        Whether a channel's spectrum is stated to be a density by its type; that of others their unit has to say.
     source : str
     """
 

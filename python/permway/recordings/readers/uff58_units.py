@@ -64,7 +64,7 @@ def axis_of(text: Text, line: str, at: int) -> Axis:
 
 
 def system_of(text: Text, block: Block) -> System:
-    """What a dataset 164 says: factors from SI to the file's units."""
+    """What a dataset 164 states: factors from SI to the file's units."""
     _, second = text.line(block.body)
     line, _ = text.line(second)
     factors = [text.real(line, second, first, 25, "factor of a unit") for first in (0, 25)]

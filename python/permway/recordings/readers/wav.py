@@ -1,4 +1,4 @@
-"""WAV: whole numbers of 8 to 32 bits or floats, told as parts of full scale, for the file knows no unit."""
+"""WAV: whole numbers of 8 to 32 bits or floats, reported as parts of full scale, for the file knows no unit."""
 
 from __future__ import annotations
 

@@ -10,9 +10,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from permway.campaign.campaign import Campaign
+from permway.campaign.compare import NEPER_DB, POWER_DB, POWERS
 from permway.diagnosis.compare import KIND, Comparison
-from permway.recordings.campaign import Campaign
-from permway.recordings.compare import NEPER_DB, POWER_DB, POWERS
 from permway.report.compare.looks import COLOUR, FONT, MEASURED, NAME, UNITS, logarithmic_hertz, plain
 from permway.report.compare.maps import TABULAR, UNSEEN_DB, groups
 from permway.report.compare.writing import file_name

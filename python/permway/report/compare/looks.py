@@ -16,7 +16,7 @@ from permway.diagnosis.compare import CLEAN, RAW, RECALIBRATED
 FONT = 8
 INK, MEASURED = "#20242c", "#20242c"
 COLOUR = {RAW: "#c77800", RECALIBRATED: "#0a6fb4", CLEAN: "#0b8f6b"}
-NAME = {RAW: "owner's values", RECALIBRATED: "recalibrated", CLEAN: "recalibrated,\nsmooth errors taken out"}
+NAME = {RAW: "nominal values", RECALIBRATED: "recalibrated", CLEAN: "recalibrated,\nsmooth errors taken out"}
 """What pictures call the models."""
 
 UNITS = {
@@ -67,7 +67,7 @@ def edges(frequency_Hz: Reals) -> Reals:
     return np.asarray(np.exp(whole))
 
 
-def heat(axes: Axes, frequency_Hz: Reals, values: Reals, limit: float, *, first_row: int = 0) -> Any:
+def colour_map(axes: Axes, frequency_Hz: Reals, values: Reals, limit: float, *, first_row: int = 0) -> Any:
     """Rows of signed values on one diverging scale, white at 0, grey where there are none."""
     palette = colormaps["RdBu_r"].with_extremes(bad="0.8")
     rows = first_row + np.arange(values.shape[0] + 1)

@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.compare import KIND, Comparison
-from permway.recordings.campaign import Campaign
-from permway.report.compare.looks import FONT, NAME, edges, heat, logarithmic_hertz, name_rows
+from permway.report.compare.looks import FONT, NAME, colour_map, edges, logarithmic_hertz, name_rows
 from permway.report.compare.writing import file_name
 
 LEVEL_DB, SIGMAS = 6.0, 4.0
@@ -40,7 +40,7 @@ def ordered(campaign: Campaign, record: xr.Dataset) -> list[int]:
     sensors = [str(name) for name in record["sensor"].values]
     forces = [str(name) for name in record["force"].values]
     first = {name: place for place, name in reversed(list(enumerate(sensors)))}
-    points = {p.name: (p.body, p.x_m) for p in campaign.said.forces}
+    points = {p.name: (p.body, p.x_m) for p in campaign.stated.forces}
     return sorted(range(len(sensors)), key=lambda i: (first[sensors[i]], points.get(forces[i], ("", 0.0))))
 
 
@@ -49,7 +49,7 @@ Part = tuple[np.ndarray, np.ndarray, list[str]]
 
 
 def level_maps(comparison: Comparison) -> Iterator[tuple[str, Figure]]:
-    """Measured over predicted in dB, the owner's values beside the recalibrated."""
+    """Measured over predicted in dB, the nominal values beside the recalibrated."""
     for name, members in groups(comparison):
         parts: list[Part] = []
         for i in members:
@@ -120,7 +120,7 @@ def _side_by_side(models: Sequence[str], panels: Mapping[str, Sequence[Part]], l
             cell, first = axes[row, column], 0
             cell.set_facecolor("0.8")
             for frequency, values, mine in parts:
-                mesh = heat(cell, frequency, values[column], limit, first_row=first)
+                mesh = colour_map(cell, frequency, values[column], limit, first_row=first)
                 first += len(mine)
             logarithmic_hertz(cell, low, high)
             name_rows(cell, labels)

@@ -8,8 +8,8 @@ from typing import Any
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from permway import _core
+from permway.campaign.compare import UNSURE_DB
 from permway.diagnosis.compare import CLEAN, Comparison
-from permway.recordings.compare import UNSURE_DB
 from permway.report.compare.curves import nearest_points
 from permway.report.compare.looks import NAME
 from permway.report.compare.maps import LEVEL_DB, SIGMAS, UNSEEN_DB, groups
@@ -54,7 +54,7 @@ def render(comparison: Comparison, drawn: Mapping[str, Drawn]) -> str:
     summary = comparison.summary()
     return environment.get_template("compare.html.j2").render(
         version=_core.__version__,
-        title=comparison.campaign.said.title or "A campaign",
+        title=comparison.campaign.stated.title or "A campaign",
         recalibrated=comparison.fit is not None,
         sentence=_sentence(comparison),
         fits=summary["fits"],
@@ -82,7 +82,7 @@ def _sentence(comparison: Comparison) -> str:
     """What an engineer wants to know first."""
     words = []
     for fit in comparison.fits():
-        raw = f"the owner's values miss the measured levels by {decibels(fit['raw_dB_rms'])} rms"
+        raw = f"the nominal values miss the measured levels by {decibels(fit['raw_dB_rms'])} rms"
         held = f"{share(fit['raw_within_2_sigma'])} of deviations lie within two sigma"
         text = f"{fit['kind'].capitalize()}: {raw}, and {held}"
         if comparison.fit is not None:
@@ -93,7 +93,7 @@ def _sentence(comparison: Comparison) -> str:
 
 
 def _clean_share(comparison: Comparison) -> list[tuple[str, str]]:
-    """By record, the share of deviations within two sigma with smooth errors taken out."""
+    """By record, the share of deviations within two sigma with calibration errors taken out."""
     found = []
     for data in comparison.deviations:
         if CLEAN in data["model"].values:

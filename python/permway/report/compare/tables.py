@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from permway.campaign.compare import NEPER_DB
 from permway.diagnosis.compare import RAW, RECALIBRATED, Comparison
 from permway.diagnosis.residuals import channel_rms, lag_correlation
 from permway.diagnosis.verdict_words import quantity, span
-from permway.recordings.compare import NEPER_DB
 
 NOTABLE_DB = 1.0
 """Deviations of this size are marked."""
@@ -48,7 +48,7 @@ def decibels(value: float | None) -> str:
 
 
 def band_table(bands: xr.Dataset, name: str, channels: Sequence[int]) -> BandTable:
-    """Deviations of some channels in one-third octaves; bands where none says anything are left out."""
+    """Deviations of some channels in one-third octaves; bands where none states anything are left out."""
     values = bands["deviation_dB"].values[:, list(channels)]
     used = np.flatnonzero(np.isfinite(values).any(axis=(0, 1)))
     models = [str(m) for m in bands["model"].values]
@@ -65,7 +65,7 @@ def band_table(bands: xr.Dataset, name: str, channels: Sequence[int]) -> BandTab
 
 
 def parameter_rows(comparison: Comparison) -> list[dict[str, Any]]:
-    """Owner's value, tolerance, found value, interval, z and what is to be said of it."""
+    """Owner's value, tolerance, found value, interval, z and what is to be stated about it."""
     table, rows = comparison.parameters, []
     for i, name in enumerate(table["parameter"].values.astype(str)):
         one = table.isel(parameter=i)
@@ -76,15 +76,15 @@ def parameter_rows(comparison: Comparison) -> list[dict[str, Any]]:
             "tolerance": f"{quantity(float(one['low_2sigma']))} to {quantity(float(one['high_2sigma']))}",
         }
         if comparison.fit is not None:
-            said = "left its tolerance" if bool(one["left"]) else ""
+            stated = "left its tolerance" if bool(one["left"]) else ""
             if bool(one["not_informed"]):
-                said = "the records say nothing of it"
+                stated = "the records say nothing of it"
             row |= {
                 "found": quantity(float(one["value"])),
                 "interval": span(float(one["low"]), float(one["high"])),
                 "z": signed(float(one["z"]), 2),
                 "width": f"{100.0 * float(one['sigma_over_prior']):.0f} %",
-                "said": said,
+                "said": stated,
                 "left": bool(one["left"]),
             }
         rows.append(row)
@@ -92,7 +92,7 @@ def parameter_rows(comparison: Comparison) -> list[dict[str, Any]]:
 
 
 def smooth_rows(comparison: Comparison) -> list[dict[str, Any]]:
-    """Sizes of smooth errors in words; origins of one kind and nearly one size are one row."""
+    """Sizes of calibration errors in words; origins of one kind and nearly one size are one row."""
     sizes = comparison.smooth["size_dB"]
     kinds: dict[str, list[tuple[str, float]]] = {}
     for origin, size in zip(sizes["origin"].values.astype(str), sizes.values, strict=True):

@@ -11,7 +11,7 @@ import xarray as xr
 
 from permway.diagnosis.compare import Comparison
 from permway.files import prepare_folder, write_bytes, write_text
-from permway.response.solve import netcdf_bytes
+from permway.problem.solve import netcdf_bytes
 
 PAGE, NUMBERS, PICTURES = "report.html", "comparison.nc", "pictures"
 

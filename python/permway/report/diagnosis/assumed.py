@@ -7,10 +7,10 @@ from importlib.metadata import version
 from typing import Any
 
 from permway import _core
+from permway.campaign.rolls import how_trains_run
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.compare import KIND
 from permway.diagnosis.result import Diagnosis
-from permway.recordings.rolls import how_trains_run
 from permway.report.compare.tables import decibels, smooth_rows
 
 LIBRARIES = ("numpy", "scipy", "xarray")
@@ -20,11 +20,11 @@ def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
     """Facts by heading: `model`, `records`, `smooth`, `noise`, `left_out`, `ruled_out`, `held_out`, how made."""
     campaign, comparison = diagnosis.comparison.campaign, diagnosis.comparison
     line = campaign.model.line
-    runs = how_trains_run(campaign.said, campaign.model)
+    runs = how_trains_run(campaign.stated, campaign.model)
     layers = dict.fromkeys(f"{layer.law} ({layer.between[0]} on {layer.between[1]})" for layer in line.joints)
     return {
         "model": [
-            ("Model file", campaign.said.model),
+            ("Model file", campaign.stated.model),
             ("Bodies", ", ".join(line.bodies)),
             ("Joints", f"{line.joint_table().x.size}: {', '.join(layers)}"),
             ("Parameters with tolerances", str(len(campaign.parameters.known))),
@@ -38,7 +38,7 @@ def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
         "noise": _noise(diagnosis),
         "left_out": list(comparison.left_out.items()),
         "ruled_out": list(diagnosis.verdict.ruled_out),
-        "held_out": [f"{group.name} ({group.axis})" for group in campaign.said.held_out],
+        "held_out": [f"{group.name} ({group.axis})" for group in campaign.stated.held_out],
         "versions": [
             ("permway", _core.__version__),
             ("Python", platform.python_version()),

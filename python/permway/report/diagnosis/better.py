@@ -21,7 +21,7 @@ from permway.report.compare.looks import (
     MEASURED,
     NAME,
     UNITS,
-    heat,
+    colour_map,
     logarithmic_hertz,
     name_rows,
     plain,
@@ -57,7 +57,7 @@ def _map(diagnosis: Diagnosis, change: Change) -> Figure:
     panels = figure.subplots(1, len(models), sharey=True, squeeze=False)[0]
     for axes, (model, deviation) in zip(panels, models.items(), strict=True):
         axes.set_facecolor("0.8")
-        mesh = heat(axes, deviation["band"].values, deviation.values[order], LEVEL_DB)
+        mesh = colour_map(axes, deviation["band"].values, deviation.values[order], LEVEL_DB)
         name_rows(axes, labels)
         axes.tick_params(axis="y", labelleft=axes is panels[0])
         axes.tick_params(axis="x", labelsize=FONT)
@@ -180,8 +180,8 @@ def _style(model: str) -> dict[str, Any]:
 def parameter_picture(diagnosis: Diagnosis) -> Figure:
     """The verdict's parameters in standard deviations of their priors, before and after, with 90 % intervals."""
     known = diagnosis.comparison.campaign.parameters.known
-    told, names = diagnosis.verdict.recalibrated, list(known)
-    shown = {RECALIBRATED: told.before} | ({AMENDED: told.after} if told.after else {})
+    reported, names = diagnosis.verdict.recalibrated, list(known)
+    shown = {RECALIBRATED: reported.before} | ({AMENDED: reported.after} if reported.after else {})
     figure = Figure(figsize=(6.8, 0.9 + 0.2 * len(names)), layout="constrained")
     axes = figure.subplots()
     axes.axvspan(-2.0, 2.0, color="0.94", label="tolerance")
@@ -206,7 +206,7 @@ def parameter_picture(diagnosis: Diagnosis) -> Figure:
     axes.set_yticks(range(len(names)), names)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.set_xlim(-reach, reach)
-    axes.set_xlabel("found less believed, standard deviations of the owner's prior")
+    axes.set_xlabel("found less believed, standard deviations of the prior")
     plain(axes)
     figure.legend(loc="outside upper left", ncols=3, fontsize=FONT, frameon=False)
     return figure

@@ -23,7 +23,7 @@ class Change:
     ----------
     name : str
     before, after : Dataset
-        The record as :func:`permway.recordings.compare.curves` has it; `after` is None without an amendment.
+        The record as :func:`permway.campaign.compare.curves` has it; `after` is None without an amendment.
     before_dB, after_dB : DataArray (channel, band)
         Deviations in one-third octaves; `after_dB` is None without an amendment.
     """
@@ -35,7 +35,7 @@ class Change:
     after_dB: xr.DataArray | None
 
     def mean_square(self) -> tuple[Reals, Reals | None]:
-        """Of deviations in one-third octaves by channel, dB2; NaN where no band says anything."""
+        """Of deviations in one-third octaves by channel, dB2; NaN where no band states anything."""
         before = _mean_square(self.before_dB)
         return before, None if self.after_dB is None else _mean_square(self.after_dB)
 

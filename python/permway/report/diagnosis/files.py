@@ -9,8 +9,8 @@ from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.verdict import UNPROVED
 from permway.errors import InputError
 from permway.files import prepare_folder, write_text
+from permway.formats.model_writing import model_table
 from permway.laws.toml import to_toml
-from permway.model.writing import model_table
 from permway.report.diagnosis.writing import PAGE, write_report
 
 VERDICT, AMENDED = "verdict.json", "amended.toml"

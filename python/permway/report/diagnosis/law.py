@@ -1,4 +1,4 @@
-"""What: the stiffness that the records ask for at the most telling place, beside that of the named law."""
+"""What: the stiffness that the records ask for at the most informative place, beside that of the named law."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ def render(diagnosis: Diagnosis, drawn: Mapping[str, Drawn]) -> str:
     )
     verdict, candidates = diagnosis.verdict, candidate_rows(diagnosis)
     return environment.get_template("diagnosis.html.j2").render(
-        title=diagnosis.comparison.campaign.said.title or "A campaign",
+        title=diagnosis.comparison.campaign.stated.title or "A campaign",
         sentence=verdict.sentence,
         blunders=verdict.blunders,
         missing=verdict.status not in UNPROVED,

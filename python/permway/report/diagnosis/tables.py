@@ -20,14 +20,14 @@ BAR_ERRORS = 2.0
 """Of a held-out gain in standard errors, to call physics missing."""
 
 WENT_BACK = 0.5
-"""Standard deviations of the prior by which a parameter must near its owner's value to be said to."""
+"""Standard deviations of the prior by which a parameter must near its nominal value to be stated to."""
 
 FEW_CHANNELS = 16
 """Channels of a record that its table shows openly."""
 
 
 NOTABLE_GAIN = 10.0
-"""Of twice the log posterior, from which a parameter is said not to stay constant."""
+"""Of twice the log posterior, from which a parameter is stated not to stay constant."""
 
 
 def headline(verdict: Verdict) -> list[tuple[str, str]]:
@@ -65,7 +65,7 @@ def _e_value(value: float) -> str:
 
 
 def effect_blocks(verdict: Verdict) -> list[dict[str, Any]]:
-    """What is said of each effect."""
+    """What is stated about each effect."""
     return [_effect(effect) for effect in verdict.effects]
 
 
@@ -110,7 +110,7 @@ def _law(effect: Effect) -> str:
 
 
 def candidate_rows(diagnosis: Diagnosis) -> list[dict[str, str]]:
-    """Everything that was held against the records, the most telling first."""
+    """Everything that was held against the records, the most informative first."""
     chance = {m.name: m.probability for effect in diagnosis.verdict.effects for m in effect.class_}
     rows = []
     for one in diagnosis.candidates:
@@ -163,7 +163,7 @@ def weight_rows(verdict: Verdict) -> list[tuple[str, str, str]]:
 
 
 def held_out_rows(verdict: Verdict) -> list[dict[str, Any]]:
-    """By axis: gain with its standard error, dB before and after, and the placebo's gain."""
+    """By axis: gain with its standard error, dB before and after, and the negative control's gain."""
     rows = []
     for axis in dict.fromkeys([*verdict.held_out, *verdict.placebo]):
         gain, placebo = verdict.held_out.get(axis), verdict.placebo.get(axis)
@@ -211,7 +211,7 @@ def change_table(change: Change) -> tuple[BandTable, BandTable | None]:
 
 
 def parameter_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """The owner's parameters: belief and tolerance, before and after with z and 90 % intervals."""
+    """The parameters: belief and tolerance, before and after with z and 90 % intervals."""
     verdict, rows = diagnosis.verdict.recalibrated, []
     for known in diagnosis.comparison.campaign.parameters.known.values():
         before, after = verdict.before.get(known.name), verdict.after.get(known.name)
@@ -291,6 +291,6 @@ def looked_for(diagnosis: Diagnosis) -> str:
         best = diagnosis.found[0]
         text += (
             f" A free stiffness was tried at {len(diagnosis.found)} places of track and structure; the most"
-            f" telling is {best.spot.label}, with a gain of {quantity(best.gain)} for {best.degrees} free numbers."
+            f" informative is {best.spot.label}, gaining {quantity(best.gain)} for {best.degrees} free numbers."
         )
     return text.strip()

@@ -11,10 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Colormap, Normalize
 
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.spot import Found
 from permway.model.bodies import Mass
 from permway.model.line import Line
-from permway.recordings.campaign import Campaign
 from permway.report.compare.looks import FONT, INK
 
 HALF = 0.13
@@ -74,8 +74,8 @@ def _depths(line: Line) -> dict[str, int]:
 
 def _reach(campaign: Campaign) -> tuple[float, float]:
     x = campaign.model.line.joint_table().x.tolist()
-    x += [s.x_m for s in campaign.said.sensors if s.x_m is not None and s.body in campaign.model.line.bodies]
-    x += [p.x_m for p in campaign.said.forces]
+    x += [s.x_m for s in campaign.stated.sensors if s.x_m is not None and s.body in campaign.model.line.bodies]
+    x += [p.x_m for p in campaign.stated.forces]
     low, high = (min(x), max(x)) if x else (0.0, 1.0)
     margin = max(0.02 * (high - low), 0.5)
     return low - margin, high + margin
@@ -147,8 +147,8 @@ def _held_at(campaign: Campaign, mass: str) -> float:
 
 
 def _instruments(axes: Axes, campaign: Campaign, plan: Drawing) -> None:
-    sensors = [(s.x_m, plan.level.get(s.body or "")) for s in campaign.said.sensors]
-    points = [(p.x_m, plan.level.get(p.body)) for p in campaign.said.forces]
+    sensors = [(s.x_m, plan.level.get(s.body or "")) for s in campaign.stated.sensors]
+    points = [(p.x_m, plan.level.get(p.body)) for p in campaign.stated.forces]
     shown = np.array([p for p in points if p[1] is not None], dtype=np.float64).reshape(-1, 2)
     if shown.size:
         x, y = shown.T

@@ -70,7 +70,7 @@ def track_picture(diagnosis: Diagnosis) -> Figure:
 
 
 def frequency_picture(diagnosis: Diagnosis) -> Figure:
-    """Place against frequency of the most telling layers or bodies."""
+    """Place against frequency of the most informative layers or bodies."""
     chosen = groups(diagnosis.found)[:MOST_MAPS]
     plan = drawing(diagnosis.base.campaign)
     figure = Figure(figsize=(WIDTH_IN, 0.5 + 1.9 * len(chosen)), layout="constrained")
@@ -101,7 +101,7 @@ def frequency_picture(diagnosis: Diagnosis) -> Figure:
 
 
 def groups(found: tuple[Found, ...]) -> list[tuple[str, list[Found]]]:
-    """Spots by layer or body, each along x; the most telling first."""
+    """Spots by layer or body, each along x; the most informative first."""
     sorted_by: dict[tuple[str, str], list[Found]] = {}
     for one in found:
         sorted_by.setdefault((one.spot.kind, one.spot.name), []).append(one)

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 
 from permway.arrays import Reals
 from permway.errors import InputError
-
-Quantity = Literal["displacement", "velocity", "acceleration"]
 
 REFERENCES = {"displacement": 1e-12, "velocity": 1e-9, "acceleration": 1e-6}
 """Reference values of levels in m, m/s and m/s2 (ISO 1683)."""

@@ -97,9 +97,9 @@ def sampled_moments(
     step = max(1, _POINTS // x.size)
     for first in range(0, omega.size, step):
         chunk = omega[first : first + step]
-        felt = np.exp(-1j * np.outer(chunk, entry_s)) @ force
-        felt *= np.exp(-1j * np.outer(chunk, x.ravel() / speed))
-        shaped = felt.reshape(chunk.size, *x.shape)
+        imposed = np.exp(-1j * np.outer(chunk, entry_s)) @ force
+        imposed *= np.exp(-1j * np.outer(chunk, x.ravel() / speed))
+        shaped = imposed.reshape(chunk.size, *x.shape)
         moments[first : first + step] = (shaped @ basis) * (path.half[:, None] / speed)
     return moments
 

@@ -19,10 +19,11 @@ from permway.arrays import Reals, is_real, real_numbers
 from permway.errors import InputError
 from permway.model.irregularity_spectra import check_speed
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response.passby.kernel import kernels
 from permway.response.passby.path import Path, path_of
 from permway.response.passby.sprung import AnyVehicle, Stepper, stepper
-from permway.response.receptance import CONVENTION, Formulation, Place, Progress, check_places
+from permway.response.receptance import CONVENTION, Formulation, Progress, check_places
 
 _MOST_STEPS = 200_000
 _OFTEN = 16
@@ -178,10 +179,10 @@ def couple(
     if sensors:
         padded = int(next_fast_len(2 * steps, real=True))
         product = (rfft(to_sensors, padded, axis=1) * rfft(nodal, padded, axis=0)).sum(axis=2)
-        felt = irfft(product, padded, axis=1)[:, :steps]
+        imposed = irfft(product, padded, axis=1)[:, :steps]
         data.coords["sensor"] = [s.label for s in sensors]
         data.coords["sensor_x"] = ("sensor", [s.x_m for s in sensors], {"units": "m"})
-        data["displacement"] = (("sensor", "time"), felt, {"long_name": "displacement", "units": "m"})
+        data["displacement"] = (("sensor", "time"), imposed, {"long_name": "displacement", "units": "m"})
     return data
 
 
@@ -211,18 +212,18 @@ def _march(
         rows = [slice(first[w, n], first[w, n] + order) for w in range(wheels)]
         past = latest_first[steps - n :]
         own = np.zeros((wheels, wheels))
-        felt = np.zeros(wheels)
+        imposed = np.zeros(wheels)
         for w in range(wheels):
             if not weights[w, n].any():
                 continue
             if n:
-                felt[w] = weights[w, n] @ (between[rows[w], 1 : n + 1].reshape(order, -1) @ past.ravel())
+                imposed[w] = weights[w, n] @ (between[rows[w], 1 : n + 1].reshape(order, -1) @ past.ravel())
             own[w] = [weights[w, n] @ between[rows[w], 0, rows[v]] @ weights[v, n] for v in range(wheels)]
         if n:
             free = parts.state @ state[n - 1] + parts.weight + parts.before @ force[:, n - 1]
-            force[:, n] = np.linalg.solve(loose + own, free[parts.wheels] - felt - surface[:, n])
+            force[:, n] = np.linalg.solve(loose + own, free[parts.wheels] - imposed - surface[:, n])
             state[n] = free + parts.after @ force[:, n]
-        under[:, n] = felt + own @ force[:, n]
+        under[:, n] = imposed + own @ force[:, n]
         for w in range(wheels):
             latest_first[steps - 1 - n, rows[w]] += weights[w, n] * force[w, n]
         if progress is not None and n % _OFTEN == 0:

@@ -8,13 +8,12 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Complexes, Reals
-from permway.response.passby.bands import REFERENCES, Quantity, band_energy, one_third_octaves
+from permway.model.passby import Quantity
+from permway.model.place import Place
+from permway.response.passby.bands import REFERENCES, band_energy, one_third_octaves
 from permway.response.passby.rough import Realisation
 from permway.response.passby.window import FLAT, Window
-from permway.response.receptance import (
-    Place,
-    frequency_coordinate,
-)
+from permway.response.receptance import frequency_coordinate
 
 BAND_WIDTH = 10.0**0.05 - 10.0**-0.05
 """Of a one-third octave, over its centre."""

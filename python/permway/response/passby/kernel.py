@@ -10,9 +10,10 @@ from scipy.fft import irfft
 from permway.arrays import Reals
 from permway.errors import InputError
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.response.passby.path import Path
 from permway.response.passby.transfer import transfer
-from permway.response.receptance import Formulation, Place, Progress
+from permway.response.receptance import Formulation, Progress
 
 LARGEST_KERNEL = 2**30
 """Bytes of kernels that one run keeps."""

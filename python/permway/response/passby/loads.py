@@ -13,8 +13,8 @@ from permway.arrays import Reals
 from permway.errors import InputError
 from permway.model.faults import fault
 from permway.model.irregularity_spectra import check_speed
+from permway.model.train import Train
 from permway.records import FloatTuple, FrozenModel, Number
-from permway.response.train import Train
 
 _HSLM_A: tuple[tuple[int, float, float, float], ...] = (
     (18, 18.0, 2.0, 170.0),

@@ -12,7 +12,7 @@ from permway.arrays import Complexes, Reals, is_real
 from permway.errors import InputError
 from permway.model.bodies import Beam, Shaft
 from permway.model.line import Line, Segment
-from permway.response.receptance import Place
+from permway.model.place import Place
 
 MOST_NODES = 20_000
 _QUARTER_WAVE = 0.25

@@ -12,9 +12,10 @@ from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.model.irregularity import AnyIrregularity
 from permway.model.line import Line
+from permway.model.train import Train
 from permway.response.passby.carry import Course
 from permway.response.receptance import Formulation, Progress
-from permway.response.train import Train, train_response
+from permway.response.train import train_response
 
 _FINER = 8
 """Samples of the spline a shortest period, over the two that are needed."""

@@ -14,8 +14,10 @@ from permway.arrays import Complexes, is_real
 from permway.errors import InputError
 from permway.model.irregularity import AnyIrregularity
 from permway.model.line import Line
+from permway.model.passby import Quantity
+from permway.model.place import Place
+from permway.model.train import Train
 from permway.response.limits import check_answer
-from permway.response.passby.bands import Quantity
 from permway.response.passby.carry import arrivals, carried, harmonic_moments, sampled_moments
 from permway.response.passby.dataset import labelled
 from permway.response.passby.loads import Axles, static_axles
@@ -23,14 +25,7 @@ from permway.response.passby.path import Path, path_of
 from permway.response.passby.rough import Realisation, realise
 from permway.response.passby.transfer import STATIC_SHARE, transfer
 from permway.response.passby.window import FLAT, Window, window_of
-from permway.response.receptance import (
-    CONVENTION,
-    Formulation,
-    Place,
-    Progress,
-    check_places,
-)
-from permway.response.train import Train
+from permway.response.receptance import CONVENTION, Formulation, Progress, check_places
 
 _TRIALS = 4
 _CHUNK = 2**22

@@ -13,7 +13,8 @@ import numpy as np
 from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.model.line import Line
-from permway.response.receptance import Formulation, Place, Progress, receptance
+from permway.model.place import Place
+from permway.response.receptance import Formulation, Progress, receptance
 
 STATIC_SHARE = 0.1
 """0 Hz is taken from this share of the first frequency above it."""

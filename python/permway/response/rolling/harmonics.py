@@ -105,9 +105,9 @@ def _lines(
     load = np.full(wheels, vehicle.share * 2.0 * vehicle.static_wheel_load_N)
     yields = [share * _harmonic(by, n, at[[k]])[0] @ load for k, n in enumerate(orders)]
     force = np.linalg.solve(_with(matrix, beyond, at[None])[0], np.concatenate(yields)).reshape(-1, wheels)
-    moved = np.einsum("kdw,kw->kd", response[0], force)
+    displaced = np.einsum("kdw,kw->kd", response[0], force)
     # One of each pair of conjugates stands for both.
-    return np.asarray(2.0 * moved[HARMONICS:])
+    return np.asarray(2.0 * displaced[HARMONICS:])
 
 
 @lru_cache(maxsize=16)

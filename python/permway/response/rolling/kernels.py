@@ -22,9 +22,10 @@ from permway.arrays import Complexes, Reals, is_real, real_numbers
 from permway.errors import InputError
 from permway.model.bodies import Beam
 from permway.model.line import Line
+from permway.model.place import Place
 from permway.model.stations import TOUCH_M
 from permway.response.core import Formulation
-from permway.response.receptance import Place, between
+from permway.response.receptance import between
 from permway.response.rolling.bays import bays
 from permway.response.rolling.passed import AHEAD_S, BEHIND_M, HARMONICS, STEP_HZ, TAPER, passed
 
@@ -107,7 +108,7 @@ def kernel(
     answer = partial(
         _answer, line, body, solved, temperature_C=temperature_C, formulation=formulation, threads=threads
     )
-    moved = partial(passed, answer, line, body, speed=speed_m_per_s, spacing=spacing_m, kept=kept)
+    displaced = partial(passed, answer, line, body, speed=speed_m_per_s, spacing=spacing_m, kept=kept)
     standing = answer(wheels, wheels)[:kept]
     ahead = wheels[:, None] - wheels
     harmonics = np.zeros((2 * HARMONICS + 1, *standing.shape), dtype=np.complex128)
@@ -116,7 +117,7 @@ def kernel(
     if starts is None:
         for shift in NEAR:
             at = wheels + shift * spacing_m
-            found = np.stack(moved(at, ahead.T), axis=-1)
+            found = np.stack(displaced(at, ahead.T), axis=-1)
             # What rolling changes; whatever is below stays as it is where the train stands.
             found[HARMONICS] += standing - answer(at, at)[:kept]
             harmonics += found / len(NEAR)
@@ -125,7 +126,7 @@ def kernel(
         which = which.reshape(ahead.shape)
         for first in range(0, starts.size, TOGETHER):
             some = starts[first : first + TOGETHER]
-            for x, found in zip(some, moved(some, np.tile(apart, (some.size, 1))), strict=True):
+            for x, found in zip(some, displaced(some, np.tile(apart, (some.size, 1))), strict=True):
                 turned = np.exp(-2j * np.pi * np.outer(orders, x - wheels) / spacing_m)
                 harmonics += found[:, :, which] * (turned / starts.size)[:, None, None, :]
     return Kernel(STEP_HZ * np.arange(kept, dtype=np.float64), harmonics, standing, spacing_m, speed_m_per_s)

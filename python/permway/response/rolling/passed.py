@@ -103,11 +103,11 @@ def _under_wheels(
         near, *shares = rail.shares(place[rows])
         four = slice(from_first[index] - first, from_first[index] - first + PARTS + 1)
         by, by_mass = still[:, index], moving[:, index]
-        moved = np.zeros(place.shape)
+        displaced = np.zeros(place.shape)
         for k, (share, of_mass) in enumerate(zip(*shares, strict=True)):
             here, there = (of[:, :, four][rows[:, None], near + k] for of in (history, second))
-            moved[rows] += share * (here @ by - there @ by_mass) - of_mass * (there @ by)
-        seen[index] = np.fft.rfft(np.where(inside, moved, 0.0), axis=0)
+            displaced[rows] += share * (here @ by - there @ by_mass) - of_mass * (there @ by)
+        seen[index] = np.fft.rfft(np.where(inside, displaced, 0.0), axis=0)
         at_once, by_mass_too = rail.beyond(x + ahead_m, x)
         seen[index] += at_once + squared * by_mass_too
     return seen

@@ -1,0 +1,44 @@
+"""What a hammer test reads: frequency responses from force points to sensors on the line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from permway.arrays import Complexes, Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.parts import Condition
+from permway.campaign.predict.sweeps import Request
+from permway.recordings.channel import Point, Sensor, transfers
+
+
+def request(
+    campaign: Campaign, condition: Condition, sensors: list[str], points: list[str], frequency_Hz: Reals
+) -> Request:
+    """The receptances behind the frequency responses from points to sensors, by name."""
+    rows = [campaign.sensor(name) for name in sensors]
+    columns = [campaign.point(name) for name in points]
+    return Request(
+        temperature(campaign, condition),
+        frequency_Hz,
+        tuple((str(sensor.body), float(sensor.x_m or 0.0)) for sensor in rows),
+        tuple((point.body, point.x_m) for point in columns),
+    )
+
+
+def read(sensors: Sequence[Sensor], points: Sequence[Point], frequency_Hz: Reals) -> Complexes:
+    """What is read per receptance: sensors' chains over force cells' chains.
+
+    Returns
+    -------
+    ndarray of complex128, shape (F, sensors, points)
+        SI unit of the quantity per N, over m/N.
+    """
+    top, bottom = (transfers(chains, frequency_Hz) for chains in (sensors, points))
+    return np.asarray(top[:, :, None] * (1.0 / bottom)[:, None, :])
+
+
+def temperature(campaign: Campaign, condition: Condition) -> float | None:
+    """Temperature of a condition, or else the model's, degrees Celsius."""
+    return campaign.model.temperature_C if condition.temperature_C is None else condition.temperature_C

@@ -1,0 +1,240 @@
+"""What sensors on a train see of an irregularity: cross-spectral densities as Welch's method estimates them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from permway.arrays import Complexes, Reals
+from permway.campaign.parts import Condition, IrregularityKnown
+from permway.campaign.predict import excitation
+from permway.campaign.predict.excitation import speed_of
+from permway.campaign.predict.grid import Grid, grid_of, solved_lines
+from permway.campaign.predict.motion import influence, pushed, wheels_of
+from permway.campaign.predict.rolling import passing
+from permway.campaign.predict.sliding import shares
+from permway.errors import InputError
+from permway.problem.model import Model
+from permway.recordings.channel import Direction, Quantity, Sensor, there
+from permway.response.rolling import Rolled
+from permway.response.sliding import Remainder
+
+__all__ = ["expected_csd", "influence", "solved_lines", "wheels_of"]
+
+
+Reads = tuple[Quantity, Direction]
+
+
+@lru_cache(maxsize=32)
+def _late(lines: bytes, lag: bytes) -> Complexes:
+    """Phase by which what meets the leading wheel comes later to each wheel, shape (F, wheels)."""
+    found = np.asarray(np.exp((-2j * np.pi * np.frombuffer(lines))[:, None] * np.frombuffer(lag)))
+    found.flags.writeable = False
+    return found
+
+
+def expected_csd(
+    model: Model,
+    known: IrregularityKnown,
+    condition: Condition,
+    sensors: Sequence[Sensor],
+    lines_Hz: Reals,
+    per_profile: Complexes,
+    estimate_Hz: Reals,
+    *,
+    segment_s: float,
+    interpolated: bool,
+    duration_s: float | None = None,
+    left: Sequence[Remainder] = (),
+    rolls: Rolled | None = None,
+    away: bool = False,
+) -> Complexes:
+    """Expectation of Welch's cross-spectral matrix with Hann's window, and the noise of the channels.
+
+    All wheels meet one profile, so its part of the spectrum is of rank one; so is each wheel's own roughness and
+    each force on the vehicle, and they add. The window, which cannot tell what comes late by a good part of a
+    segment, makes them less coherent.
+
+    Parameters
+    ----------
+    lines_Hz : ndarray, shape (L,)
+        Frequencies of `per_profile`, from below the first estimate to above the last: see :func:`solved_lines`.
+    per_profile : ndarray of complex128, shape (L, degrees, wheels)
+    estimate_Hz : ndarray, shape (F,)
+    segment_s : float
+    interpolated : bool
+        Whether the record was computed by interpolating transfer functions, lags and all, between `lines_Hz`.
+    duration_s : float, optional
+        Of the run, over which clocks run apart.
+    left : sequence of Remainder
+        Forces of suspensions that slide, as :func:`permway.campaign.predict.sliding.worked` gives them.
+    rolls : Rolled, optional
+        Of a train that rolls, over the same lines; `per_profile` is then that of the standing train still, by
+        which a wheel's own roughness and forces act.
+    away : bool
+        Whether each part counts by how far it is from its line, in lines, and noise not at all: what an error
+        acts on that grows from line to line.
+
+    Returns
+    -------
+    ndarray of complex128, shape (F, sensors, sensors)
+        E[x_i conj(x_j)], units of the sensors in SI squared per hertz.
+
+    Raises
+    ------
+    InputError
+        If clocks run apart and nobody states how long.
+    """
+    assert model.train is not None
+    grid = grid_of(lines_Hz, estimate_Hz, segment_s)
+    grid = grid.away if away else grid
+    degrees = model.train.vehicle.degrees
+    chosen = [degrees.index(str(sensor.degree)) for sensor in sensors]
+    fine_Hz = grid.frequency_Hz
+    flat = all(sensor.chain.flat for sensor in sensors)
+    chains = _chains(sensors, fine_Hz[:1] if flat else fine_Hz)
+    reads = tuple(_reads(sensor) for sensor in sensors)
+    wheels = wheels_of(model, condition)
+    lag = ((wheels[0] - wheels) / speed_of(condition)).tobytes()
+
+    def read(fine: Complexes) -> Complexes:
+        """By chains whose transfers are no mere gains."""
+        if not flat:
+            fine *= chains
+        return fine
+
+    def expected(source: Complexes, density: Reals) -> Complexes:
+        """Of what a source is read as at the solved lines, but for chains."""
+        return grid.expected(read(grid.spread(source, straight=interpolated)), density)
+
+    def met(part: Complexes, met_Hz: Reals, density: Reals) -> Complexes:
+        """Of the profile at some frequencies, by which the vehicle moves at the grid's."""
+        shifted = grid.spread(part[:, chosen], _late(met_Hz.tobytes(), lag), straight=False)
+        shifted *= _ideal(reads, grid)
+        return grid.expected(read(shifted), density)
+
+    power = excitation.profile(model, known, condition, grid)
+    if rolls is not None:
+        parts = []
+        for order, part in zip(rolls.orders, rolls.per_profile, strict=True):
+            met_Hz = fine_Hz + order * rolls.passing_Hz
+            nearby = np.maximum(np.abs(met_Hz), fine_Hz[0])
+            density = excitation.broad(model, known, condition, nearby) if order else power
+            parts.append(met(part, met_Hz, density))
+        for line_Hz, amplitudes in passing(rolls):
+            density = excitation.deposit(grid, np.array([line_Hz]), np.ones(1), 0.0)
+            parts.append(expected(amplitudes[chosen] * _there(sensors, lines_Hz), density))
+        upper = np.asarray(np.sum(parts, axis=0))
+    elif interpolated:
+        mine = per_profile[:, chosen, :]
+        shifted = np.einsum("fsw,fw->fs", mine, _late(lines_Hz.tobytes(), lag))
+        upper = expected(shifted * _there(sensors, lines_Hz), power)
+    else:
+        upper = met(per_profile, fine_Hz, power)
+    for sources, density in _sources(model, known, condition, grid, lines_Hz, per_profile):
+        for source in sources:
+            upper += expected(source[:, chosen] * _there(sensors, lines_Hz), density)
+    for remainder in left:
+        per_force = pushed(model.train.vehicle, lines_Hz, remainder.rows, per_profile)[:, :, chosen]
+        per_force = per_force * _there(sensors, lines_Hz)[:, None, :]
+        fine = grid.spread(per_force.reshape(lines_Hz.size, -1), straight=interpolated)
+        fine = fine.reshape(-1, *per_force.shape[1:])
+        if not flat:
+            fine *= chains[:, None, :]
+        mixed = np.einsum("ntk,ntc->knc", shares(remainder, fine_Hz), fine)
+        upper += np.sum([grid.expected(one, np.ones(fine_Hz.size)) for one in mixed], axis=0)
+    rows, columns = np.triu_indices(len(sensors))
+    if flat:
+        upper *= chains[:, rows] * chains[:, columns].conj()
+    if any(sensor.chain.clock_slow for sensor in sensors):
+        if duration_s is None:
+            remedy = "give the dataset its attribute duration_s"
+            raise InputError("clocks run apart in a run of unknown length", where="duration_s", remedy=remedy)
+        upper *= _apart(sensors, estimate_Hz, segment_s, duration_s)
+    # Of a matrix that is its own adjoint the upper triangle is enough.
+    matrix = np.empty((estimate_Hz.size, len(sensors), len(sensors)), dtype=np.complex128)
+    matrix[:, columns, rows] = upper.conj()
+    matrix[:, rows, columns] = upper
+    return matrix if away else matrix + added_csd(sensors, lines_Hz, estimate_Hz, segment_s)
+
+
+def _apart(sensors: Sequence[Sensor], estimate_Hz: Reals, segment_s: float, duration_s: float) -> Complexes:
+    """What clocks that run apart leave of cross spectra: the mean over segments of a phase that grows.
+
+    Returns
+    -------
+    ndarray of complex128, shape (F, pairs)
+        Pairs in the order of the upper triangle.
+    """
+    slow = np.array([sensor.chain.clock_slow for sensor in sensors])
+    rows, columns = np.triu_indices(len(sensors))
+    turns = estimate_Hz[:, None] * (slow[rows] - slow[columns])
+    growing = np.sinc(turns * max(duration_s - segment_s, 0.0))
+    return np.asarray(growing * np.exp(-1j * np.pi * turns * duration_s))
+
+
+def added_csd(sensors: Sequence[Sensor], lines_Hz: Reals, estimate_Hz: Reals, segment_s: float) -> Reals:
+    """What chains add of their own, whatever moves: the noise of each, and hum, which they have in common.
+
+    Parameters
+    ----------
+    lines_Hz, estimate_Hz, segment_s
+        As of :func:`expected_csd`.
+
+    Returns
+    -------
+    ndarray, shape (F, sensors, sensors)
+    """
+    matrix = np.zeros((estimate_Hz.size, len(sensors), len(sensors)))
+    if any(sensor.chain.mains is not None for sensor in sensors):
+        grid = grid_of(lines_Hz, estimate_Hz, segment_s)
+        for density, size in excitation.hum(sensors, grid):
+            matrix += (grid.smear @ density)[:, None, None] * np.outer(size, size)
+    own = np.arange(len(sensors))
+    matrix[:, own, own] += np.stack([sensor.noise(estimate_Hz) for sensor in sensors], axis=-1)
+    return matrix
+
+
+def _sources(
+    model: Model,
+    known: IrregularityKnown,
+    condition: Condition,
+    grid: Grid,
+    lines_Hz: Reals,
+    per_profile: Complexes,
+) -> Iterator[tuple[list[Complexes], Reals]]:
+    """Sources beside the profile: how each moves the vehicle's degrees, (L, degrees), and their density, (N,)."""
+    assert model.train is not None
+    vehicle = model.train.vehicle
+    for of, density in excitation.wheels(known, condition, len(vehicle.wheel_indices), grid):
+        yield [per_profile[:, :, wheel] for wheel in of], density
+    for source in known.pushes:
+        row = np.eye(len(vehicle.degrees))[[vehicle.degrees.index(source.degree)]]
+        yield [pushed(vehicle, lines_Hz, row, per_profile)[:, 0]], excitation.push(source, grid.frequency_Hz)
+
+
+def _chains(sensors: Sequence[Sensor], frequency_Hz: Reals) -> Complexes:
+    return np.stack([sensor.chain.transfer(frequency_Hz) for sensor in sensors], axis=-1)
+
+
+def _there(sensors: Sequence[Sensor], frequency_Hz: Reals) -> Complexes:
+    return _each(tuple(_reads(sensor) for sensor in sensors), frequency_Hz)
+
+
+@lru_cache(maxsize=16)
+def _ideal(reads: tuple[Reads, ...], grid: Grid) -> Complexes:
+    """:func:`_there` on a grid, (N, sensors), or (N, 1) where all read alike."""
+    found = _each(reads[:1] if len(set(reads)) == 1 else reads, grid.frequency_Hz)
+    found.flags.writeable = False
+    return found
+
+
+def _each(reads: tuple[Reads, ...], frequency_Hz: Reals) -> Complexes:
+    each = {one: there(*one, frequency_Hz) for one in set(reads)}
+    return np.stack([each[one] for one in reads], axis=-1)
+
+
+def _reads(sensor: Sensor) -> Reads:
+    return sensor.quantity, sensor.direction

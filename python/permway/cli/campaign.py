@@ -1,0 +1,174 @@
+"""Commands on campaigns: compare, diagnose, separability, and the demonstration."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from permway.cli.output import (
+    Json,
+    Outside,
+    Threads,
+    examples,
+    print_message,
+    print_result,
+    progress_bar,
+    stage_bar,
+)
+
+campaigns = typer.Typer(rich_markup_mode=None)
+
+
+@campaigns.command(
+    epilog=examples(
+        "permway compare campaign/campaign.toml -o page", "permway compare campaign/campaign.toml --raw-only"
+    )
+)
+def compare(
+    campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Folder for page, numbers, pictures; by default beside the campaign."),
+    ] = None,
+    raw_only: Annotated[bool, typer.Option("--raw-only", help="With the nominal values only.")] = False,
+    allow_outside: Outside = False,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """Predicted against measured, as a page.
+
+    With the nominal values, and recalibrated within the tolerances that the campaign file states.
+    """
+    from permway.campaign.campaign import read_campaign
+    from permway.diagnosis.compare import compare as run
+    from permway.files import prepare_folder
+    from permway.report.compare import write_comparison
+
+    described = read_campaign(campaign, allow_outside=allow_outside)
+    folder = prepare_folder(output or campaign.parent / "comparison")
+    with progress_bar("comparing", as_json) as progress:
+        result = run(described, raw_only=raw_only, threads=threads, progress=progress)
+    print_result(write_comparison(result, folder), as_json)
+
+
+@campaigns.command(
+    epilog=examples(
+        "permway diagnose campaign/campaign.toml -o diagnosis",
+        "permway diagnose campaign/campaign.toml --no-report --json",
+    )
+)
+def diagnose(
+    campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", help="Folder for report, verdict and model; by default beside the campaign."
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Of simulated campaigns with nothing missing.")] = 0,
+    rule_out: Annotated[
+        list[str] | None,
+        typer.Option("--rule-out", metavar="EFFECT", help="Of the catalogue, what cannot be; may be repeated."),
+    ] = None,
+    draws: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            max=1_000_000,
+            help="Draws of the parameters of what is found, for its intervals and class: 400, say, a solve each. "
+            "By default from curvature.",
+        ),
+    ] = 0,
+    posterior: Annotated[
+        bool,
+        typer.Option(
+            "--posterior",
+            help="By one posterior over sets of effects; --seed and --draws do not act.",
+        ),
+    ] = False,
+    no_report: Annotated[bool, typer.Option("--no-report", help="Without report.html.")] = False,
+    allow_outside: Outside = False,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """What a model leaves out, where, how surely.
+
+    First states what is probably stated wrongly, as `permway check` does. Then recalibrates the model, looks for
+    what no value of it explains, names the effect or states that the records do not decide, and proves it on
+    records that were not fitted. Writes report.html, verdict.json and amended.toml; takes minutes. The same seed
+    gives the same verdict. Stopped and called again, it goes on where it was.
+    """
+    from permway.campaign.campaign import read_campaign
+    from permway.checking.check import check
+    from permway.diagnosis.catalogue import known
+    from permway.diagnosis.diagnose import diagnose as run
+    from permway.diagnosis.doubts import doubted
+    from permway.diagnosis.journal import FOLDER, keeping, key_of
+    from permway.files import prepare_folder
+    from permway.posterior.diagnose import diagnose as explain
+    from permway.report.diagnosis import write_diagnosis
+
+    ruled_out = known(rule_out or ())
+    described = read_campaign(campaign, allow_outside=allow_outside)
+    folder = prepare_folder(output or campaign.parent / "diagnosis")
+    checked = check(described, threads=threads)
+    for blunder in checked.blunders:
+        print_message(f"{'asked' if blunder.asked else 'put right first'}: {blunder.sentence}")
+    if posterior:
+        with stage_bar("diagnosing", as_json) as progress:
+            by_posterior = explain(described, ruled_out=ruled_out, threads=threads, progress=progress)
+        print_result(write_diagnosis(doubted(by_posterior, checked), folder, page=not no_report), as_json)
+        return
+    with keeping(folder / FOLDER, key_of(described, seed, ruled_out)) as journal:
+        with stage_bar("diagnosing", as_json) as progress:
+            result = run(
+                described, seed=seed, ruled_out=ruled_out, draws=draws, threads=threads, progress=progress
+            )
+        written = write_diagnosis(doubted(result, checked), folder, page=not no_report)
+        journal.close()
+    print_result(written, as_json)
+
+
+@campaigns.command(epilog=examples("permway separability campaign/campaign.toml --json"))
+def separability(
+    campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
+    allow_outside: Outside = False,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """What a campaign's sensors can distinguish.
+
+    Before any record is read: which effects the sensors would confuse, whatever they measure.
+    """
+    from permway.campaign.campaign import read_campaign
+    from permway.diagnosis.separability import separability as run
+
+    described = read_campaign(campaign, allow_outside=allow_outside)
+    with stage_bar("separability", as_json) as progress:
+        result = run(described, threads=threads, progress=progress)
+    print_result(result.summary(), as_json)
+
+
+@campaigns.command(
+    epilog=examples("permway demo", "permway demo -o trial --no-open", "permway demo --json | jq .verdict")
+)
+def demo(
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder that gets the campaign and its diagnosis.")
+    ] = Path("permway-demo"),
+    no_open: Annotated[bool, typer.Option("--no-open", help="Do not open the report in a browser.")] = False,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """A whole diagnosis of an embedded campaign.
+
+    Lays a small campaign with something concealed in it into a folder, diagnoses it in under a minute, opens the
+    report, and states what was concealed.
+    """
+    from permway.demo import run
+
+    with stage_bar("demo", as_json) as progress:
+        result = run(output, threads=threads, show=not (no_open or as_json), progress=progress)
+    print_result(result, as_json)

@@ -1,0 +1,1 @@
+"""Files of models: TOML in, a checked model out, and back."""
