@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from permway.errors import InputError
+from permway.errors import InputError, must_be
 from permway.formats.model_parts import line_of, train_of
 from permway.model.faults import model_error, refuse_coercion, table_at
 from permway.problem.model import Model
@@ -30,6 +30,7 @@ def read_model(path: str | Path) -> Model:
         With file, place in the file, value and remedy, for a file that cannot be read, is not TOML, or states
         something that cannot be.
     """
+    must_be(path, (str, Path), "path", remedy="a table is read by model_from_dict")
     path = Path(path)
     table = read_toml(path, "name a model file (TOML)")
     try:
@@ -54,6 +55,7 @@ def model_from_dict(table: Mapping[str, Any], *, folder: Path | None = None) -> 
     InputError
         With the place in the table.
     """
+    must_be(table, Mapping, "table", remedy="a file is read by read_model")
     # A model written as JSON states null where a file states nothing.
     filled = {key: value for key, value in table.items() if value is not None}
     if "line" in filled:
