@@ -36,7 +36,7 @@ AT_HZ = 50.0
 
 SIZE, SIZE_FACTOR = 0.1, 3.0
 """Of an element over what a joint beside it has: median, and the factor of one standard deviation, before
-:data:`permway.posterior.cells.WIDER`."""
+:data:`permway.posterior.spans.WIDER`."""
 
 
 def everywhere(situation: Situation) -> Iterator[Hypothesis]:

@@ -14,12 +14,9 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.diagnosis.fit import free_parameters
-from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.speeds import begin
 from permway.diagnosis.tangent import Problem
-from permway.errors import InputError, SolveError
 from permway.posterior.beam import (
-    SAME,
     STEPS,
     Member,
     Progress,
@@ -28,17 +25,13 @@ from permway.posterior.beam import (
     chosen,
     completed,
     distinct,
-    finished,
     leading,
     tempered,
 )
 from permway.posterior.cells import Cell, cells, resized, small
-from permway.posterior.fit import Fit, Fitter, Model, extended
-from permway.posterior.idealised import idealised
+from permway.posterior.fit import Fitter, Model
+from permway.posterior.ordering import LEFT, LEVELS, annealed, apart, carried, ordered, weighed
 from permway.posterior.screening import Scores, screened
-
-LEVELS = (1.0, 0.2, 0.04)
-"""Discrepancies at which cells are refined, neper: a factor, a fifth, a twenty-fifth of a response."""
 
 WIDTHS, PER_FORM = (72, 32, 12), (6, 3, 2)
 """Cells that are refined at each level, and at most so many of one form: sizes of the beam."""
@@ -55,9 +48,6 @@ NEGLECTED = 0.01
 BEHIND = 92.0
 """Of the objective, by which a fit may be behind the best at one discrepancy to be fitted at the next: odds of
 1e-20, for at a large discrepancy a fit may still lie beside its best neighbour."""
-
-LEFT = 12.0
-"""Nats behind the best set from which a set is let go of: less than a class ever shows."""
 
 MOVING = 5.0
 """Nats that a small change may lack before it is moved to better neighbours."""
@@ -107,14 +97,14 @@ def explored(
     coarse = searching.frame.first().with_discrepancy(LEVELS[0])
     z = _first_values(searching, nominal)
     start = searching.begin(nominal, z, coarse)
-    searching, (first,) = _weighed(searching, [_annealed(searching, start)], [()])
+    searching, (first,) = weighed(searching, [annealed(searching, start)], [()])
     far = Member((), searching.begin(nominal, z, coarse), ())
     look = _Look(nominal, far, near=few is None, ruled_out=ruled_out, progress=progress)
     members, seen = look.extended(searching, [Member((), first, ())])
     if few is not None:
         look = _Look(nominal, None, near=True, ruled_out=ruled_out, progress=progress)
-        members, seen = look.extended(*_carried(fitter, members))
-    return Explored(_apart(members), seen)
+        members, seen = look.extended(*carried(fitter, members))
+    return Explored(apart(members), seen)
 
 
 @dataclass(frozen=True)
@@ -157,34 +147,11 @@ class _Look:
             if lacking or root is not None:
                 widths = WIDTHS if lacking else FEW
                 found += _far(fitter, root or best, self.ruled_out, self.progress, what, widths)
-            fitter, members = _ordered(fitter, best, [*members, *found], self.nominal)
+            fitter, members = ordered(fitter, best, [*members, *found], self.nominal)
             # A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it.
             if len(members[0].amendments) < count:
                 break
         return members, seen
-
-
-def _carried(fitter: Fitter, members: Sequence[Member]) -> tuple[Fitter, list[Member]]:
-    """Sets fitted to more lines of the records, the most probable first; these tell them farther apart."""
-    kept = [m for m in members if m.log_mass > members[0].log_mass - 0.5 * LEFT or not m.amendments]
-    begun = [fitter.begin(m.fit.model, m.fit.z, m.fit.hyper, bend=m.fit.bend) for m in kept]
-    best = finished(fitter, begun[0], kept[0].amendments)
-    fitter, fits = _weighed(fitter, [best, *begun[1:]], [m.amendments for m in kept])
-    found = [replace(m, fit=fit) for m, fit in zip(kept, fits, strict=True)]
-    return fitter, sorted(found, key=lambda m: -m.log_mass)
-
-
-def _ordered(
-    fitter: Fitter, before: Member, members: Sequence[Member], nominal: Model
-) -> tuple[Fitter, list[Member]]:
-    """The most probable first, in records that are weighed by it, its subsets among them."""
-    members = _pruned(fitter, sorted(members, key=lambda m: -m.log_mass), nominal)
-    if members[0] is before:
-        return fitter, members
-    members = [m for m in _apart(members) if m.log_mass > members[0].log_mass - LEFT or not m.amendments]
-    fitter, fits = _weighed(fitter, [m.fit for m in members], [m.amendments for m in members])
-    members = [replace(m, fit=fit) for m, fit in zip(members, fits, strict=True)]
-    return fitter, sorted(members, key=lambda m: -m.log_mass)
 
 
 def _first_values(fitter: Fitter, nominal: Model) -> Reals:
@@ -193,60 +160,6 @@ def _first_values(fitter: Fitter, nominal: Model) -> Reals:
     if all(dataset.record.statistic != "passage" for dataset in evidence.datasets):
         return np.zeros(len(nominal.free))
     return begin(evidence, Problem(evidence, nominal.build, nominal.free))
-
-
-def _weighed(
-    fitter: Fitter, fits: Sequence[Fit], amendments: Sequence[tuple[Hypothesis, ...]]
-) -> tuple[Fitter, list[Fit]]:
-    """Records weighed by the first of some fits, and all of them fitted again."""
-    best = fits[0]
-    frame = fitter.frame.about(best.state.solved, best.covariance, best.state.deviations)
-    slopes = Fitter(frame).begin(best.model, best.z, best.hyper)
-    again = Fitter(frame.with_columns(idealised(slopes)))
-    begun = [again.begin(fit.model, fit.z, fit.hyper, bend=fit.bend) for fit in fits]
-    return again, [finished(again, fit, own) for fit, own in zip(begun, amendments, strict=True)]
-
-
-def _pruned(fitter: Fitter, members: list[Member], nominal: Model) -> list[Member]:
-    """With the best set's subsets, each begun where the set has it, as long as one is better.
-
-    What came first may have stood in for what came after it.
-    """
-    while True:
-        best = members[0]
-        found = []
-        for index in range(len(best.amendments) if len(best.amendments) > 1 else 0):
-            kept = [i for i in range(len(best.amendments)) if i != index]
-            fit = _without(fitter, best, kept, nominal)
-            if fit is not None:
-                own = tuple(best.amendments[i] for i in kept)
-                found.append(Member(own, finished(fitter, fit, own), tuple(best.log_priors[i] for i in kept)))
-        members = sorted([*members, *found], key=lambda m: -m.log_mass)
-        if members[0] is best:
-            return members
-
-
-def _without(fitter: Fitter, member: Member, kept: Sequence[int], nominal: Model) -> Fit | None:
-    """The set of some of a member's amendments, at the values that they have in it; the discrepancy falls anew."""
-    fit = member.fit
-    z = fit.z[: len(nominal.free)]
-    model = nominal
-    for number, index in enumerate(kept, start=1):
-        model = extended(model, member.amendments[index], f"{number}.", fitter.frame.evidence.campaign)
-        z = np.concatenate([z, fit.z[member.own(index)]])
-    try:
-        found = fitter.begin(model, z, fit.hyper.with_discrepancy(LEVELS[1]), bend=fit.bend)
-        found = fitter.fit(found, steps=STEPS[1])
-        return fitter.fit(replace(found, hyper=found.hyper.with_discrepancy(LEVELS[2])), steps=STEPS[2])
-    except (InputError, SolveError):
-        return None
-
-
-def _annealed(fitter: Fitter, fit: Fit) -> Fit:
-    """To the end, the discrepancy falling."""
-    for level, steps in zip(LEVELS, STEPS, strict=False):
-        fit = fitter.fit(replace(fit, hyper=fit.hyper.with_discrepancy(level)), steps=steps)
-    return finished(fitter, fit)
 
 
 def _small_changes(
@@ -316,15 +229,3 @@ def _far(
 
 def _saying(progress: Progress, what: str, count: int) -> Callable[[int], object]:
     return lambda done: progress(what, done, count)
-
-
-def _apart(members: list[Member]) -> list[Member]:
-    """Without members that are the same set of names with the same predictions as a more probable one."""
-    kept: list[Member] = []
-    for one in members:
-        change = [
-            one.fit.state.deviations - other.fit.state.deviations for other in kept if other.names == one.names
-        ]
-        if not any(one.fit.covariance.square(d) < SAME for d in change):
-            kept.append(one)
-    return kept

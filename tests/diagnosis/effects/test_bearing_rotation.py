@@ -116,7 +116,7 @@ def test_a_stuck_bearing_is_found_from_one_passage(campaign: Campaign, offered: 
     ]
     for dataset, change in zip(datasets, shift, strict=True):
         dataset.data["spectrum"] = dataset.data["spectrum"] + change
-    masses = Masses.of(explored(Fitter(Frame.of(gather(campaign, datasets, threads=1)))))
+    masses = Masses.of(explored(Fitter(Frame.of(gather(campaign, datasets, threads=1)))).members)
     assert masses.nothing < 0.05
     assert masses.names(0)[0][0] == "bearing_rotation"
     assert masses.best.values(0)["stiffness"] == pytest.approx(0.3 * TYPICAL, rel=0.3)
