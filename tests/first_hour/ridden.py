@@ -108,7 +108,7 @@ def run(random: np.random.Generator, pads: float) -> Reals:
         beams_at_Hz={"rail": VISCOUS_AT_HZ},
         gamma=UNDAMPED,
     )
-    felt = np.fft.irfft(np.fft.rfft(done.felt[start:], axis=0)[: samples // 2 + 1] / FINER, n=samples, axis=0)
+    felt = np.fft.irfft(np.fft.rfft(done.on_board[start:], axis=0)[: samples // 2 + 1] / FINER, n=samples, axis=0)
     own = np.sqrt(0.5 * RATE_HZ * np.array(list(NOISE.values())))
     return np.asarray(felt + own * random.standard_normal(felt.shape))
 

@@ -85,7 +85,7 @@ def test_coordinates_move_along_frequency_and_modulus(name: str) -> None:
     random = np.random.default_rng(0)
     x = random.uniform(0.2, 0.7, len(chosen.kinds))
     f = np.geomspace(0.01, 1e3, 9)
-    moved = chosen.law(chosen.moved(x, 1.5, 0.2))
+    moved = chosen.law(chosen.shifted(x, 1.5, 0.2))
     np.testing.assert_allclose(moved.complex(f), 10.0**0.2 * chosen.law(x).complex(10.0**1.5 * f), rtol=1e-10)
 
 

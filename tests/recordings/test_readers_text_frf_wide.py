@@ -92,7 +92,7 @@ def test_names_over_joined_cells(tmp_path: Path) -> None:
 
 def test_names_that_do_not_say_what_was_struck(tmp_path: Path) -> None:
     path = wide(tmp_path, ["f [Hz];H1 [g/N];H2 [g/N]"], [cells(F), [str(h) for h in H], [str(2 * h) for h in H]])
-    with pytest.raises(InputError, match=r"cannot be told from a name \(got 'H1'\).*pairs = \{ \"H1\" ="):
+    with pytest.raises(InputError, match=r"cannot be determined from a name \(got 'H1'\).*pairs = \{ \"H1\" ="):
         read_frf(path)
     stated = ["--pair", "H1=rail@8.64/3.20", "--pair", "H2=rail@8.64/5.76"]
     shown = CliRunner().invoke(app, ["look", str(path), *stated, "--json"])

@@ -161,7 +161,7 @@ def test_cross_spectra_that_are_missing_or_of_another_scale(tmp_path: Path) -> N
 def test_an_auto_spectrum_does_not_say_that_it_is_a_density(tmp_path: Path) -> None:
     function(tmp_path / "a.uff", 2, np.ones(50), 2.0 * np.arange(50), ref_node=1)
     one = {"averages": 80.0, "channels": {"1:+Z": "axle"}}
-    with pytest.raises(InputError, match=r"densities is not said.*\"\(m/s2\)\^2/Hz\""):
+    with pytest.raises(InputError, match=r"densities is not stated.*\"\(m/s2\)\^2/Hz\""):
         campaign(tmp_path, "a.uff", **one).load()
     (dataset,) = campaign(tmp_path, "a.uff", unit={"1:+Z": "(m/s2)^2/Hz"}, **one).load()
     np.testing.assert_array_equal(dataset.data["psd"].values, 1.0)

@@ -63,7 +63,7 @@ def test_killed_at_any_time_and_resumed(undisturbed, tmp_path):
     assert (done.failed, done.already_there) == ({}, len(there))
     assert whole_files(folder) == expected
     assert {p.name for p in folder.iterdir()} - set(expected) == {".lock", "study.json"}
-    xr.testing.assert_identical(open_study(folder).compute(), open_study(tmp_path / "undisturbed").compute())
+    xr.testing.assert_identical(open_study(folder).compute(), open_study(path.parent / "out").compute())
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks for processes in /proc")

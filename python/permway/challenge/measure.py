@@ -98,7 +98,7 @@ def _wander(plan: Plan, random: np.random.Generator, frequency_Hz: Reals, of: st
     """The calibration error of one chain, which it has in all tests."""
     if plan.chain.clean:
         return np.ones(frequency_Hz.size, dtype=np.complex128)
-    return calibration_error(random, frequency_Hz, size_dB=plan.chain.calibration_error_dB * SHARE[of])
+    return calibration_error(random, frequency_Hz, size_dB=plan.chain.wander_dB * SHARE[of])
 
 
 def _errors(plan: Plan, random: np.random.Generator, lines: Reals) -> Complexes:
