@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from folders import RECORDINGS, columns, factor, lay, one_response, responses
+from pair_folders import RECORDINGS, columns, factor, lay, one_response, responses
 from permway.formats.model_file import model_from_dict
-from permway.response.modes import modes
+from permway.response.modes import poles_between
 from permway.response.receptance import receptance
 from scipy import optimize
 
@@ -89,7 +89,7 @@ def _identified() -> np.ndarray:
 
     def natural(z: np.ndarray) -> np.ndarray:
         model = model_from_dict(_model(*(start * np.exp([z[0], z[1], 0.0, 0.0])), LENGTH_M))
-        found = modes(model.line, 10.0, 200.0, places=[*model.sensors])
+        found = poles_between(model.line, 10.0, 200.0, places=[*model.sensors])
         return np.asarray(np.log(np.sort(found.omega.real)[:2] / (2.0 * np.pi) / PEAKS_HZ))
 
     start[:2] *= np.exp(optimize.least_squares(natural, np.zeros(2)).x)

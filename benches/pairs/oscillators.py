@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from folders import RECORDINGS, columns, factor, lay, one_response, responses
+from pair_folders import RECORDINGS, columns, factor, lay, one_response, responses
 from permway.recordings.estimates.frf import frequency_response
 from permway.recordings.estimates.welch import cross_spectra
 from scipy import optimize

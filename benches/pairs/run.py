@@ -17,8 +17,8 @@ from pathlib import Path
 
 import numpy as np
 from beam import beams
-from folders import RECORDINGS
 from oscillators import carts, reuss, silverbox
+from pair_folders import RECORDINGS
 from permway.campaign.importers.rubber_rig import import_rubber_rig
 from permway.campaign.importers.track_decay import import_track_decay
 from permway.diagnosis.verdict import Verdict

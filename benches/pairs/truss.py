@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from folders import RECORDINGS, columns, factor, lay
+from pair_folders import RECORDINGS, columns, factor, lay
 
 FOLDER = RECORDINGS / "railway-truss-bridge"
 ELASTIC_PA, LENGTH_M, HEIGHT_M = 200e9, 47.24, 7.315
