@@ -15,8 +15,9 @@ from permway.challenge.small.by_model import ByModel
 from permway.challenge.small.draws import generator
 from permway.challenge.small.fixture import fixture_names, make_fixture
 from permway.challenge.small.layouts import Layout, draw_layout
-from permway.challenge.small.make import draw_small, make_small, true_values
+from permway.challenge.small.make import NEVER, draw_small, make_small, true_values
 from permway.challenge.small.write import write_tables
+from permway.diagnosis.catalogue import entries
 from permway.diagnosis.gather import gather
 from permway.errors import InputError
 
@@ -109,3 +110,8 @@ def test_the_fixture_is_made_again_byte_for_byte(tmp_path: Path) -> None:
 def test_a_campaign_that_the_fixture_has_not_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no campaign of the fixture"):
         make_fixture("fixture-0.7-01", tmp_path)
+
+
+def test_entries_that_came_after_the_published_seeds_are_drawn_by_none() -> None:
+    """An entry more among those that are drawn, and every published seed makes other campaigns."""
+    assert len(set(entries()) - set(NEVER)) == 49

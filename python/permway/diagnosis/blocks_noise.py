@@ -56,7 +56,7 @@ class NoiseBlock:
         Frequency responses with their coherence.
     student : bool
         Whether distances are Student's, with a degree of freedom less than there are sensors, by which the scale
-        is told: of five that do not differ in kind, one in sixty lies four scales off. Else they are normal.
+        is known: of five that do not differ in kind, one in sixty lies four scales off. Else they are normal.
     """
 
     log_determinant = 0.0

@@ -30,7 +30,7 @@ SAME, ALIKE = 2.0, 0.01
 """Of the objective, and of each value in proportion: two fits of one form this near are one."""
 
 IDEALISED = 20_000.0
-"""Residuals from which the model's own idealisation tells. It errs on neighbouring lines and pairs alike, and the
+"""Residuals from which the model's own idealisation shows. It errs on neighbouring lines and pairs alike, and the
 likelihood counts each anew. A posterior that allows for that has the evidence of n residuals to the power
 1 / (1 + n / a) (Miller and Dunson 2019, J. Am. Stat. Assoc. 114, 1113-1125): 0.9 of the 3,000 of a small campaign,
 0.25 of the 60,000 of a large one."""

@@ -17,7 +17,7 @@ LIKELY = 0.5
 """Posterior probability from which nothing is said to be missing, or something of no catalogue."""
 
 ALIKE = 2_000
-"""Residuals from which the model's own idealisation tells between sets with amendments: see
+"""Residuals from which the model's own idealisation shows between sets with amendments: see
 :data:`permway.posterior.beam.IDEALISED`, ten times as many, for sets differ less from each other than from
 nothing."""
 
