@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from permway.campaign.predict.grid import grid_of, halved, interpolating, solved_lines
+from permway.campaign.predict.grid import HANN, grid_of, halved, hann, interpolating, solved_lines
 
 ESTIMATE_HZ = np.arange(5.0, 200.0)
 
@@ -64,3 +64,38 @@ def test_what_wheels_do_late_is_summed_on_the_grid_and_smeared_pair_by_pair() ->
     rows, columns = np.triu_indices(channels)
     pairs = density[:, None] * fine[:, rows] * fine[:, columns].conj()
     np.testing.assert_allclose(grid.expected(fine, density), grid.smear @ pairs, atol=1e-11)
+
+
+def delayed(frequency_Hz: np.ndarray) -> np.ndarray:
+    """What two channels read of one source: the second later by half a segment, both with a resonance."""
+    shape = resonance(frequency_Hz)
+    return np.hstack([shape, shape * np.exp(-1j * np.pi * frequency_Hz)[:, None]])
+
+
+def test_four_points_a_line_are_enough_of_what_dies_out_within_three_segments() -> None:
+    lines = solved_lines(ESTIMATE_HZ, 1.0, None)
+    few, many = (grid_of(lines, ESTIMATE_HZ, 1.0, narrow=narrow) for narrow in (False, True))
+    assert few.step_Hz == 4.0 * many.step_Hz
+    found, expected = (g.expected(delayed(g.frequency_Hz), np.ones(g.frequency_Hz.size)) for g in (few, many))
+    error = np.abs(found - expected) / np.sqrt(np.abs(expected[:, :1] * expected[:, 2:]))
+    assert error[1:].max() < 1e-4
+    assert error[0].max() < 2e-3
+
+
+def test_a_source_at_one_frequency_is_met_exactly() -> None:
+    """As a bell of the same power that gets ever narrower, on a grid fine enough for it."""
+    lines = solved_lines(ESTIMATE_HZ, 1.0, None)
+    grid = grid_of(lines, ESTIMATE_HZ, 1.0)
+    amplitudes = np.array([2.0, 1.0 - 1.0j])
+    x = 57.3 + np.linspace(-0.05, 0.05, 101)
+    bell = np.exp(-0.5 * ((x - 57.3) / 0.01) ** 2)
+    window = np.array([np.sum(bell * hann(x - f)) / bell.sum() for f in ESTIMATE_HZ]) / HANN
+    near = np.abs(ESTIMATE_HZ - 57.3) < 3.9
+    found = grid.of_line(57.3, amplitudes)
+    expected = window[:, None] * np.array([4.0, 2.0 + 2.0j, 2.0])
+    np.testing.assert_allclose(found[near], expected[near], atol=2e-3)
+    assert not found[np.abs(ESTIMATE_HZ - 57.3) > 4.1].any()
+    # All of its power is found again, if lines of a window's noise bandwidth are taken for one.
+    assert abs(found[:, 0].sum().real / 4.0 - 1.0) < 1e-4
+    away = grid.away.of_line(57.3, amplitudes)
+    np.testing.assert_allclose(away, found * (57.3 - ESTIMATE_HZ)[:, None], atol=1e-12)

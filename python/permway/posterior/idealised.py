@@ -15,6 +15,10 @@ from permway.posterior.fit import Fit
 SIZE = 0.003
 """Of a stiffness or a mass, as a ratio, one standard deviation: as discretisations differ."""
 
+SHOWN = 0.01
+"""Square of an error of unit variance, in standard deviations, below which it is left out: it would change evidence
+by less than 0.005 nats."""
+
 STEP = 1e-3
 """Of a parameter, in standard deviations, for the ratio by which it changes."""
 
@@ -29,7 +33,7 @@ def idealised(fit: Fit) -> Reals:
 
     Returns
     -------
-    ndarray, shape (n, 2 p)
+    ndarray, shape (n, at most 2 p)
     """
     octaves = np.log2(fit.frame.evidence.rows.frequency_Hz)
     low, high = float(octaves.min()), float(octaves.max())
@@ -43,4 +47,10 @@ def idealised(fit: Fit) -> Reals:
             continue
         by_ratio = fit.jacobian[:, index] * STEP / float(np.log(beyond / value))
         found.extend([SIZE * by_ratio * x, SIZE * by_ratio * (1.5 * x**2 - 0.5)])
-    return np.column_stack(found) if found else np.zeros((octaves.size, 0))
+    if not found:
+        return np.zeros((octaves.size, 0))
+    # Turned, errors of unit variance stay such; most combinations of them do not show.
+    columns = np.column_stack(found)
+    roots = fit.covariance.roots(columns)
+    shown, turn = np.linalg.eigh(roots.times(roots))
+    return np.asarray(columns @ turn[:, shown > SHOWN])

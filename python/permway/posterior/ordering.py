@@ -27,16 +27,6 @@ def annealed(fitter: Fitter, fit: Fit) -> Fit:
     return finished(fitter, fit)
 
 
-def carried(fitter: Fitter, members: Sequence[Member]) -> tuple[Fitter, list[Member]]:
-    """Sets fitted to more lines of the records, the most probable first: these distinguish them more."""
-    kept = [m for m in members if m.log_mass > members[0].log_mass - 0.5 * LEFT or not m.amendments]
-    begun = [fitter.begin(m.fit.model, m.fit.z, m.fit.hyper, bend=m.fit.bend) for m in kept]
-    best = finished(fitter, begun[0], kept[0].amendments)
-    fitter, fits = weighed(fitter, [best, *begun[1:]], [m.amendments for m in kept])
-    found = [replace(m, fit=fit) for m, fit in zip(kept, fits, strict=True)]
-    return fitter, sorted(found, key=lambda m: -m.log_mass)
-
-
 def ordered(
     fitter: Fitter, before: Member, members: Sequence[Member], nominal: Model
 ) -> tuple[Fitter, list[Member]]:

@@ -30,7 +30,7 @@ from permway.posterior.beam import (
 )
 from permway.posterior.cells import Cell, cells, resized, small
 from permway.posterior.fit import Fitter, Model
-from permway.posterior.ordering import LEFT, LEVELS, annealed, apart, carried, ordered, weighed
+from permway.posterior.ordering import LEFT, LEVELS, annealed, apart, ordered, weighed
 from permway.posterior.screening import Scores, screened
 
 WIDTHS, PER_FORM = (72, 32, 12), (6, 3, 2)
@@ -72,86 +72,42 @@ class Explored:
     small: tuple[list[Cell], Scores]
 
 
-def explored(
-    fitter: Fitter,
-    few: Fitter | None = None,
-    *,
-    ruled_out: Collection[str] = (),
-    progress: Progress = lambda *_: None,
-) -> Explored:
+def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progress = lambda *_: None) -> Explored:
     """Search the sets of amendments.
 
     Parameters
     ----------
     fitter : Fitter
-    few : Fitter, optional
-        Of fewer lines of the same records. Large changes are looked for with these, as they show there, too; what
-        is found is then fitted to all lines.
     ruled_out : collection of str
     progress : callable
         Called with what is done, and how much of it.
     """
     campaign = fitter.frame.evidence.campaign
     nominal = Model(campaign.with_values, free_parameters(campaign))
-    searching = few or fitter
-    coarse = searching.frame.first().with_discrepancy(LEVELS[0])
-    z = _first_values(searching, nominal)
-    start = searching.begin(nominal, z, coarse)
-    searching, (first,) = weighed(searching, [annealed(searching, start)], [()])
-    far = Member((), searching.begin(nominal, z, coarse), ())
-    look = _Look(nominal, far, near=few is None, ruled_out=ruled_out, progress=progress)
-    members, seen = look.extended(searching, [Member((), first, ())])
-    if few is not None:
-        look = _Look(nominal, None, near=True, ruled_out=ruled_out, progress=progress)
-        members, seen = look.extended(*carried(fitter, members))
+    coarse = fitter.frame.first().with_discrepancy(LEVELS[0])
+    z = _first_values(fitter, nominal)
+    start = fitter.begin(nominal, z, coarse)
+    fitter, (first,) = weighed(fitter, [annealed(fitter, start)], [()])
+    # About the stated values, for what the nominal parameters took up shows there only.
+    far = Member((), fitter.begin(nominal, z, coarse), ())
+    members, seen = [Member((), first, ())], (list[Cell](), Scores.none(0))
+    while len(members[0].amendments) < MOST:
+        best = members[0]
+        count = len(best.amendments) + 1
+        what = f"{count} amendment{'s' if count > 1 else ''}"
+        lacking = best.fit.hyper.novel > LACKING
+        found = []
+        if not lacking:
+            seen = _small_changes(best, ruled_out, progress, what)
+            found += _near(fitter, best, *seen, progress, what)
+        if lacking or count == 1:
+            widths = WIDTHS if lacking else FEW
+            found += _far(fitter, far if count == 1 else best, ruled_out, progress, what, widths)
+        fitter, members = ordered(fitter, best, [*members, *found], nominal)
+        # A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it.
+        if len(members[0].amendments) < count:
+            break
     return Explored(apart(members), seen)
-
-
-@dataclass(frozen=True)
-class _Look:
-    """How sets are extended.
-
-    Attributes
-    ----------
-    nominal : Model
-    far : Member, optional
-        The empty set about the stated values, for what the nominal parameters took up shows there only.
-    near : bool
-        Whether small changes are tried.
-    ruled_out : collection of str
-    progress : callable
-    """
-
-    nominal: Model
-    far: Member | None
-    near: bool
-    ruled_out: Collection[str]
-    progress: Progress
-
-    def extended(self, fitter: Fitter, members: list[Member]) -> tuple[list[Member], tuple[list[Cell], Scores]]:
-        """Sets with an amendment more than the best, as long as one is better, in records that it weighs.
-
-        And the last look at small changes.
-        """
-        seen: tuple[list[Cell], Scores] = ([], Scores.none(0))
-        while len(members[0].amendments) < MOST:
-            best = members[0]
-            count = len(best.amendments) + 1
-            what = f"{count} amendment{'s' if count > 1 else ''}"
-            lacking = best.fit.hyper.novel > LACKING
-            found = []
-            if self.near and not lacking:
-                seen = _small_changes(best, self.ruled_out, self.progress, what)
-                found += _near(fitter, best, *seen, self.progress, what)
-            root = self.far if count == 1 else None
-            if lacking or root is not None:
-                widths = WIDTHS if lacking else FEW
-                found += _far(fitter, root or best, self.ruled_out, self.progress, what, widths)
-            fitter, members = ordered(fitter, best, [*members, *found], self.nominal)
-            # A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it.
-            if len(members[0].amendments) < count:
-                break
-        return members, seen
 
 
 def _first_values(fitter: Fitter, nominal: Model) -> Reals:

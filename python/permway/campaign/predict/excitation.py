@@ -31,11 +31,16 @@ def profile(model: Model, known: IrregularityKnown, condition: Condition, grid: 
     InputError
         If the model has no irregularity.
     """
-    values = broad(model, known, condition, grid.frequency_Hz)
+    return broad(model, known, condition, grid.frequency_Hz) + series(known, condition, grid)
+
+
+def series(known: IrregularityKnown, condition: Condition, grid: Grid) -> Reals:
+    """What lines of the profile add to its density, m2/Hz, (N,)."""
     speed = speed_of(condition)
-    for series in known.series:
-        values = values + lines(grid, speed / series.length_m, series)
-    return np.asarray(values)
+    found = np.zeros(grid.frequency_Hz.size)
+    for one in known.series:
+        found = found + lines(grid, speed / one.length_m, one)
+    return found
 
 
 def broad(model: Model, known: IrregularityKnown, condition: Condition, frequency: Reals) -> Reals:
@@ -86,10 +91,10 @@ def wheels(
 ) -> Iterator[tuple[Sequence[int], Reals]]:
     """Wheels by index, and the density of what each of them for itself adds to the profile, m2/Hz, (N,)."""
     turns = speed_of(condition) / (2.0 * np.pi * known.wheel_radius_m)
-    for series in known.wheels:
+    for one in known.wheels:
         yield (
-            range(count) if series.wheel is None else (series.wheel - 1,),
-            lines(grid, series.order * turns, series),
+            range(count) if one.wheel is None else (one.wheel - 1,),
+            lines(grid, one.order * turns, one),
         )
 
 

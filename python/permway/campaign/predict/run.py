@@ -88,66 +88,67 @@ def expected_csd(
         If clocks run apart and nobody states how long.
     """
     assert model.train is not None
-    grid = grid_of(lines_Hz, estimate_Hz, segment_s)
-    grid = grid.away if away else grid
+    broad, narrow = (grid_of(lines_Hz, estimate_Hz, segment_s, narrow=fine) for fine in (False, True))
+    if away:
+        broad, narrow = broad.away, narrow.away
     degrees = model.train.vehicle.degrees
     chosen = [degrees.index(str(sensor.degree)) for sensor in sensors]
-    fine_Hz = grid.frequency_Hz
     flat = all(sensor.chain.flat for sensor in sensors)
-    chains = _chains(sensors, fine_Hz[:1] if flat else fine_Hz)
     reads = tuple(_reads(sensor) for sensor in sensors)
     wheels = wheels_of(model, condition)
     lag = ((wheels[0] - wheels) / speed_of(condition)).tobytes()
 
-    def read(fine: Complexes) -> Complexes:
+    def read(fine: Complexes, grid: Grid) -> Complexes:
         """By chains whose transfers are no mere gains."""
         if not flat:
-            fine *= chains
+            fine *= _chains(sensors, grid.frequency_Hz)
         return fine
 
-    def expected(source: Complexes, density: Reals) -> Complexes:
+    def expected(grid: Grid, source: Complexes, density: Reals) -> Complexes:
         """Of what a source is read as at the solved lines, but for chains."""
-        return grid.expected(read(grid.spread(source, straight=interpolated)), density)
+        return grid.expected(read(grid.spread(source, straight=interpolated), grid), density)
 
-    def met(part: Complexes, met_Hz: Reals, density: Reals) -> Complexes:
+    def met(grid: Grid, part: Complexes, met_Hz: Reals, density: Reals) -> Complexes:
         """Of the profile at some frequencies, by which the vehicle moves at the grid's."""
+        if interpolated and rolls is None:
+            shifted = np.einsum("fsw,fw->fs", part[:, chosen, :], _late(lines_Hz.tobytes(), lag))
+            return expected(grid, shifted * _there(sensors, lines_Hz), density)
         shifted = grid.spread(part[:, chosen], _late(met_Hz.tobytes(), lag), straight=False)
         shifted *= _ideal(reads, grid)
-        return grid.expected(read(shifted), density)
+        return grid.expected(read(shifted, grid), density)
 
-    power = excitation.profile(model, known, condition, grid)
+    passing_Hz, orders, moved = 0.0, [0], [per_profile]
     if rolls is not None:
-        parts = []
-        for order, part in zip(rolls.orders, rolls.per_profile, strict=True):
-            met_Hz = fine_Hz + order * rolls.passing_Hz
-            nearby = np.maximum(np.abs(met_Hz), fine_Hz[0])
-            density = excitation.broad(model, known, condition, nearby) if order else power
-            parts.append(met(part, met_Hz, density))
-        for line_Hz, amplitudes in passing(rolls):
-            density = excitation.deposit(grid, np.array([line_Hz]), np.ones(1), 0.0)
-            parts.append(expected(amplitudes[chosen] * _there(sensors, lines_Hz), density))
-        upper = np.asarray(np.sum(parts, axis=0))
-    elif interpolated:
-        mine = per_profile[:, chosen, :]
-        shifted = np.einsum("fsw,fw->fs", mine, _late(lines_Hz.tobytes(), lag))
-        upper = expected(shifted * _there(sensors, lines_Hz), power)
-    else:
-        upper = met(per_profile, fine_Hz, power)
-    for sources, density in _sources(model, known, condition, grid, lines_Hz, per_profile):
+        passing_Hz, orders, moved = rolls.passing_Hz, rolls.orders.tolist(), list(rolls.per_profile)
+    parts = []
+    for order, part in zip(orders, moved, strict=True):
+        met_Hz = broad.frequency_Hz + order * passing_Hz
+        density = excitation.broad(model, known, condition, np.maximum(np.abs(met_Hz), broad.frequency_Hz[0]))
+        parts.append(met(broad, part, met_Hz, density))
+        if known.series and not order:
+            density = excitation.series(known, condition, narrow)
+            parts.append(met(narrow, part, narrow.frequency_Hz, density))
+    for line_Hz, amplitudes in () if rolls is None else passing(rolls):
+        at_Hz = np.array([line_Hz])
+        seen = amplitudes[chosen] * _there(sensors, at_Hz)[0]
+        parts.append(broad.of_line(line_Hz, seen if flat else seen * _chains(sensors, at_Hz)[0]))
+    upper = np.asarray(np.sum(parts, axis=0))
+    for sources, density in _sources(model, known, condition, narrow, lines_Hz, per_profile):
         for source in sources:
-            upper += expected(source[:, chosen] * _there(sensors, lines_Hz), density)
+            upper += expected(narrow, source[:, chosen] * _there(sensors, lines_Hz), density)
     for remainder in left:
         per_force = pushed(model.train.vehicle, lines_Hz, remainder.rows, per_profile)[:, :, chosen]
         per_force = per_force * _there(sensors, lines_Hz)[:, None, :]
-        fine = grid.spread(per_force.reshape(lines_Hz.size, -1), straight=interpolated)
+        fine = narrow.spread(per_force.reshape(lines_Hz.size, -1), straight=interpolated)
         fine = fine.reshape(-1, *per_force.shape[1:])
         if not flat:
-            fine *= chains[:, None, :]
-        mixed = np.einsum("ntk,ntc->knc", shares(remainder, fine_Hz), fine)
-        upper += np.sum([grid.expected(one, np.ones(fine_Hz.size)) for one in mixed], axis=0)
+            fine *= _chains(sensors, narrow.frequency_Hz)[:, None, :]
+        mixed = np.einsum("ntk,ntc->knc", shares(remainder, narrow.frequency_Hz), fine)
+        upper += np.sum([narrow.expected(one, np.ones(len(fine))) for one in mixed], axis=0)
     rows, columns = np.triu_indices(len(sensors))
     if flat:
-        upper *= chains[:, rows] * chains[:, columns].conj()
+        gains = _chains(sensors, broad.frequency_Hz[:1])
+        upper *= gains[:, rows] * gains[:, columns].conj()
     if any(sensor.chain.clock_slow for sensor in sensors):
         if duration_s is None:
             remedy = "give the dataset its attribute duration_s"

@@ -85,7 +85,8 @@ def rolled(
     own[REACH * wheels : (REACH + 1) * wheels] = np.eye(wheels)
     rows = np.linalg.solve(np.swapaxes(flat, 1, 2), np.broadcast_to(own, (lines_Hz.size, *own.shape)))
     pressed = np.swapaxes(rows, 1, 2).reshape(lines_Hz.size, wheels, len(orders), wheels)
-    per_profile = np.einsum("fdw,fwkv->kfdv", response[:, REACH], pressed)
+    per_profile = response[:, REACH] @ pressed.reshape(lines_Hz.size, wheels, -1)
+    per_profile = np.moveaxis(per_profile.reshape(lines_Hz.size, -1, len(orders), wheels), 2, 0)
     by_load = _lines(vehicle, contact_m_per_N, by, beyond, passing, share)
     return Rolled(np.array(orders), per_profile, passing, by_load)
 
@@ -129,15 +130,25 @@ def _coupled(
     at_Hz = np.frombuffer(lines)[:, None] + passing * np.array(orders, dtype=np.float64)
     found = vehicle.per_wheel_force(np.maximum(np.abs(at_Hz), LEAST_HZ).ravel())
     degrees, contacts = (_signed(values.reshape(*at_Hz.shape, *values.shape[1:]), at_Hz) for values in found)
-    wheels = contacts.shape[-1]
+    matrix = _of_track(by, lines, passing, orders, share).copy()
+    for j in range(len(orders)):
+        matrix[:, j, :, j, :] += contacts[:, j] + contact * np.eye(contacts.shape[-1])
+    return matrix, degrees
+
+
+@lru_cache(maxsize=8)
+def _of_track(by: Kernel, lines: bytes, passing: float, orders: tuple[int, ...], share: float) -> Complexes:
+    """What the kernel's own track has of the matrix, (L, K, wheels, K, wheels)."""
+    at_Hz = np.frombuffer(lines)[:, None] + passing * np.array(orders, dtype=np.float64)
+    wheels = by.standing.shape[-1]
     matrix = np.zeros((*at_Hz.shape, wheels, len(orders), wheels), dtype=np.complex128)
     for j, into in enumerate(orders):
         for k, of in enumerate(orders):
             if abs(into - of) <= HARMONICS:
                 matrix[:, j, :, k, :] = share * _harmonic(by, into - of, at_Hz[:, j])
         standing = _signed(_between(by.frequency_Hz, by.standing, np.abs(at_Hz[:, j])), at_Hz[:, j])
-        matrix[:, j, :, j, :] += (1.0 - share) * standing + contacts[:, j] + contact * np.eye(wheels)
-    return matrix, degrees
+        matrix[:, j, :, j, :] += (1.0 - share) * standing
+    return matrix
 
 
 def _with(matrix: Complexes, beyond: Beyond, at_Hz: Reals) -> Complexes:
