@@ -19,7 +19,7 @@ from permway.diagnosis.nearby import Nearby, Part
 from permway.diagnosis.side_by_side import SMALL, each
 from permway.model.line import Line
 
-OFF = {"law": 2e-4, "beam": 8e-4}
+OFF: dict[Part, float] = {"law": 2e-4, "bending": 8e-4}
 """Standard deviation of the share by which a stiffness is off. So large is what the parameters of the practice
 campaigns, made by another discretisation and known to all digits, come out wrong by: of a pad 0.03 %, of a slab,
 which bends in short waves, 1.5 to 2 %."""
@@ -65,7 +65,7 @@ def _parts(line: Line) -> Iterator[tuple[Part, list[int]]]:
         yield "law", [index]
     bodies = [segment.body for _, segment in line.beams()]
     for name in dict.fromkeys(bodies):
-        yield "beam", [index for index, body in enumerate(bodies) if body == name]
+        yield "bending", [index for index, body in enumerate(bodies) if body == name]
 
 
 def _hump(frequency_Hz: Reals, *, centre: float) -> Reals:

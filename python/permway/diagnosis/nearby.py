@@ -27,7 +27,8 @@ from permway.response.sensitivity import sensitivity
 COLUMNS = ("bending", "shear", "mass", "rotary")
 """Of the core's tables, in the order of :data:`permway.response.sensitivity.PROPERTIES`."""
 
-Part = Literal["law", "beam"]
+Part = Literal["law", "bending", "mass", "point"]
+"""Of a line: stiffness of laws, bending stiffness and mass of beams, masses."""
 
 MOST_BEAMS = 60
 """Beams and masses of a line above which all derivatives together cost more memory than they save time."""
@@ -56,6 +57,14 @@ class _Derivatives:
     by_law: Complexes
     by_beam: Complexes
     by_mass: Complexes
+
+    def of(self, part: Part) -> tuple[np.ndarray, Complexes]:
+        """Values of a part, (frequency or 1, number), and derivatives by them."""
+        if part == "law":
+            return self.at.stiffness, self.by_law
+        if part == "point":
+            return self.at.masses_kg[None], self.by_mass
+        return self.at.beams[part][None], self.by_beam[:, :, COLUMNS.index(part)]
 
 
 class Nearby:
@@ -98,15 +107,15 @@ class Nearby:
         return self._read(campaign, {id(n): self._moved(n, campaign) for n in near.needs if n is not None})
 
     def bent(self, part: Part, indices: Sequence[int], share: Callable[[Reals], Reals]) -> Solved | None:
-        """What is predicted with the stiffness of laws, or of beams that bend, off at some frequencies.
+        """What is predicted with some numbers of the line off at some frequencies.
 
         Parameters
         ----------
         part : str
         indices : sequence of int
-            Of the line's laws, or of its beams.
+            Of the line's laws, beams or masses.
         share : callable
-            From frequencies to the share by which it is off.
+            From frequencies to the share by which these are off.
 
         Returns
         -------
@@ -119,13 +128,9 @@ class Nearby:
         for need in self.solved.needs:
             if need is not None:
                 line = model_under(self.solved.campaign.model, need.factors).line
-                known = self._derivatives(need, line)
-                if part == "law":
-                    stiffness, slopes = known.at.stiffness, known.by_law
-                else:
-                    stiffness, slopes = known.at.beams["bending"][None], known.by_beam[:, :, 0]
+                values, slopes = self._derivatives(need, line).of(part)
                 chosen = list(indices)
-                by_share = np.einsum("fi,firc->frc", stiffness[:, chosen], slopes[:, chosen])
+                by_share = np.einsum("fi,firc->frc", values[:, chosen], slopes[:, chosen])
                 answers[id(need)] = self._answer(need, share(need.frequency_Hz)[:, None, None] * by_share)
         return self._read(self.solved.campaign, answers)
 

@@ -159,7 +159,7 @@ def advanced(
             fit = fitter.grown(likely[trial.hyper.log.tobytes()], _model(root, trial.cell), trial.z, trial.bend)
             fit = fitter.fit(fit, steps=steps, fixed=fixed)
             if moves:
-                fit = rested(fitter, fitter.settled(fit), own, hypothesis, steps)
+                fit = rested(fitter, fitter.settled(fit, fixed=fixed), own, hypothesis, steps)
         except (InputError, SolveError):
             return None
         return _kept(trial, fit)
@@ -219,7 +219,8 @@ def finished(fitter: Fitter, fit: Fit, amendments: Sequence[Hypothesis] = ()) ->
     for amendment in reversed(amendments):
         own = slice(stop - len(amendment.free), stop)
         fit, stop = rested(fitter, fit, own, amendment, STEPS[-1]), own.start
-    fit = fitter.fit(estimated(fitter.settled(fit)), steps=STEPS[-1])
+    # Slopes of nominal parameters change little: they are taken anew where they lead no further.
+    fit = fitter.fit(estimated(fitter.settled(fit)), steps=STEPS[-1], fixed=stop if amendments else 0)
     return fitter.settled(fit)
 
 

@@ -1,52 +1,67 @@
 """What the idealisation of a model may do to its residuals: stiffness and mass vary a little over frequency.
 
-Two discretisations of one structure differ by some tenths of a per cent, smoothly over frequency and in all
-records alike. That is a change of the structure, and no new error of each line.
+Two discretisations of one structure differ by some hundredths of a per cent, smoothly over frequency and in all
+records alike: a mesh is stiffer the shorter the waves, a slab shears, a bed is no row of springs. That is a change
+of the structure, and no new error of each line.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import partial
+
 import numpy as np
+from numpy.polynomial import legendre
 
 from permway.arrays import Reals
-from permway.diagnosis.fit import free_parameters
+from permway.diagnosis.nearby import Nearby, Part
+from permway.diagnosis.side_by_side import SMALL, each
+from permway.model.line import Line
 from permway.posterior.fit import Fit
 
-SIZE = 0.003
-"""Of a stiffness or a mass, as a ratio, one standard deviation: as discretisations differ."""
+SIZE = 0.001
+"""Share of a stiffness or a mass, one standard deviation of each of its :data:`SHAPES`: as discretisations of the
+practice campaigns differ."""
+
+SHAPES = 4
+"""Legendre's polynomials of octaves, the constant among them: over five octaves they follow what takes two."""
+
+STEP = 1e-4
+"""Of differences, as a share."""
 
 SHOWN = 0.01
-"""Square of an error of unit variance, in standard deviations, below which it is left out: it would change evidence
-by less than 0.005 nats."""
-
-STEP = 1e-3
-"""Of a parameter, in standard deviations, for the ratio by which it changes."""
+"""Square of an error of unit variance, in standard deviations, below which it is left out: it would change the
+evidence by less than 0.005 nats."""
 
 
 def idealised(fit: Fit) -> Reals:
-    """Columns of unit variance: each nominal parameter, changed in proportion to octaves and to their square.
+    """Columns of unit variance: each law, beam and mass of the line, off by a share that varies over frequency.
 
     Parameters
     ----------
     fit : Fit
-        Whose slopes say what a parameter does.
 
     Returns
     -------
-    ndarray, shape (n, at most 2 p)
+    ndarray, shape (n, b)
+        None where derivatives by all parts would cost too much.
     """
-    octaves = np.log2(fit.frame.evidence.rows.frequency_Hz)
-    low, high = float(octaves.min()), float(octaves.max())
-    x = (2.0 * octaves - low - high) / max(high - low, 1e-9)
-    found = []
-    nominal = free_parameters(fit.frame.evidence.campaign)
-    for index, one in enumerate(nominal):
-        z = float(fit.z[index])
-        value, beyond = one.value(z), one.value(z + STEP)
-        if not value > 0.0 or not beyond > 0.0 or beyond == value:
-            continue
-        by_ratio = fit.jacobian[:, index] * STEP / float(np.log(beyond / value))
-        found.extend([SIZE * by_ratio * x, SIZE * by_ratio * (1.5 * x**2 - 0.5)])
+    evidence, campaign = fit.frame.evidence, fit.state.solved.campaign
+    solved = evidence.predicted(campaign)
+    octaves = np.log2(evidence.rows.frequency_Hz)
+    band = float(octaves.min()), float(octaves.max())
+    nearby = Nearby(evidence, solved)
+    nearby.derive()
+
+    def column(of: tuple[Part, list[int], int]) -> Reals | None:
+        part, indices, order = of
+        bent = nearby.bent(part, indices, partial(_share, band=band, order=order))
+        if bent is None:
+            return None
+        return np.asarray((evidence.deviations(bent.datasets) - fit.state.deviations) * (SIZE / STEP))
+
+    wanted = [(part, indices, order) for part, indices in _parts(campaign.model.line) for order in range(SHAPES)]
+    found = [one for one in each(column, wanted, threads=evidence.threads, least=SMALL) if one is not None]
     if not found:
         return np.zeros((octaves.size, 0))
     # Turned, errors of unit variance stay such; most combinations of them do not show.
@@ -54,3 +69,23 @@ def idealised(fit: Fit) -> Reals:
     roots = fit.covariance.roots(columns)
     shown, turn = np.linalg.eigh(roots.times(roots))
     return np.asarray(columns @ turn[:, shown > SHOWN])
+
+
+def _parts(line: Line) -> Iterator[tuple[Part, list[int]]]:
+    """Each law, each body with all its spans, and all masses."""
+    for index in range(len(line.laws)):
+        yield "law", [index]
+    bodies = [segment.body for _, segment in line.beams()]
+    for name in dict.fromkeys(bodies):
+        spans = [index for index, body in enumerate(bodies) if body == name]
+        yield "bending", spans
+        yield "mass", spans
+    if line.masses_kg().size:
+        yield "point", list(range(line.masses_kg().size))
+
+
+def _share(frequency_Hz: Reals, *, band: tuple[float, float], order: int) -> Reals:
+    """A polynomial of octaves between -1 and 1 over the records' band."""
+    low, high = band
+    x = np.clip((2.0 * np.log2(frequency_Hz) - low - high) / max(high - low, 1e-9), -1.0, 1.0)
+    return np.asarray(STEP * legendre.legval(x, np.eye(SHAPES)[order]))

@@ -63,7 +63,7 @@ def rested(fitter: Fitter, fit: Fit, own: slice, hypothesis: Hypothesis, steps: 
             return fit
         try:
             start = fitter.begin(fit.model, moved[best][0], fit.hyper, fit.jacobian, fit.bend)
-            new = fitter.fit(fitter.settled(start, fixed=own.start), steps=steps)
+            new = fitter.fit(fitter.settled(start, fixed=own.start), steps=steps, fixed=own.start)
         except (InputError, SolveError):
             return fit
         if not new.objective < fit.objective:

@@ -186,11 +186,14 @@ def _scored(
         if solved_ones:
             at = start + np.array(list(solved_ones))
             columns = np.stack(list(solved_ones.values()), axis=1)
+            # A channel is swapped or it is not.
+            discrete = np.array([not cells[i].hypothesis.free for i in at])
             for number, view in enumerate(views):
                 objective, along, size = view.scores(columns)
                 # Of r + a d with a at least 0.
                 measure = np.where(along < 0.0, -along / np.maximum(size, 1e-300), 0.0)
-                gain = -measure * along - worse[number]
+                measure = np.where(discrete, 1.0, measure)
+                gain = -measure * (2.0 * along + measure * size) - worse[number]
                 if not number:
                     scores.objective[at] = objective + [float(cells[i].z @ cells[i].z) for i in at]
                     scores.shown[at] = size
