@@ -192,8 +192,8 @@ def _scored(
                 objective, along, size = view.scores(columns)
                 # Of r + a d with a at least 0.
                 measure = np.where(along < 0.0, -along / np.maximum(size, 1e-300), 0.0)
+                gain = np.where(discrete, -2.0 * along - size, -measure * along) - worse[number]
                 measure = np.where(discrete, 1.0, measure)
-                gain = -measure * (2.0 * along + measure * size) - worse[number]
                 if not number:
                     scores.objective[at] = objective + [float(cells[i].z @ cells[i].z) for i in at]
                     scores.shown[at] = size
