@@ -170,13 +170,12 @@ def advanced(
 def completed(
     fitter: Fitter, root: Member, trials: Sequence[Trial], progress: Callable[[int], object]
 ) -> list[Member]:
-    """Fitted to the end, each amendment moved to better neighbours."""
+    """Fitted to the end, the amendment that is new moved to better neighbours."""
 
     def work(trial: Trial) -> Trial | None:
-        amendments = (*root.amendments, trial.cell.hypothesis)
         try:
             begun = fitter.begin(_model(root, trial.cell), trial.z, trial.hyper, bend=trial.bend)
-            return _kept(trial, finished(fitter, begun, amendments))
+            return _kept(trial, finished(fitter, begun, (trial.cell.hypothesis,)))
         except (InputError, SolveError):
             return None
 
@@ -213,7 +212,7 @@ def _kept(trial: Trial, fit: Fit) -> Trial:
 
 
 def finished(fitter: Fitter, fit: Fit, amendments: Sequence[Hypothesis] = ()) -> Fit:
-    """Each amendment moved to better neighbours, then with hyperparameters of its own."""
+    """The last so many amendments moved to better neighbours, then with hyperparameters of its own."""
     fit = fitter.settled(fit)
     stop = len(fit.model.free)
     for amendment in reversed(amendments):

@@ -36,11 +36,8 @@ from permway.posterior.screening import Scores, screened
 WIDTHS, PER_FORM = (72, 32, 12), (6, 3, 2)
 """Cells that are refined at each level, and at most so many of one form: sizes of the beam."""
 
-FEW = (24, 8, 6)
-"""The same where the nominal model fits."""
-
 LACKING = 0.5
-"""Probability that a fit lacks something, from which large changes are tried beside it."""
+"""Probability that a fit lacks something, from which large changes are tried in place of small ones."""
 
 NEGLECTED = 0.01
 """Posterior odds, against the set that they would extend, of amendments that are not fitted to the end."""
@@ -95,14 +92,12 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
         best = members[0]
         count = len(best.amendments) + 1
         what = f"{count} amendment{'s' if count > 1 else ''}"
-        lacking = best.fit.hyper.novel > LACKING
         found = []
-        if not lacking:
+        if best.fit.hyper.novel <= LACKING:
             seen = _small_changes(best, ruled_out, progress, what)
             found += _near(fitter, best, *seen, progress, what)
-        if lacking or count == 1:
-            widths = WIDTHS if lacking else FEW
-            found += _far(fitter, far if count == 1 else best, ruled_out, progress, what, widths)
+        else:
+            found += _far(fitter, far if count == 1 else best, ruled_out, progress, what)
         fitter, members = ordered(fitter, best, [*members, *found], nominal)
         # A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it.
         if len(members[0].amendments) < count:
@@ -159,7 +154,6 @@ def _far(
     ruled_out: Collection[str],
     progress: Progress,
     what: str,
-    widths: tuple[int, int, int],
 ) -> list[Member]:
     """Sets with one amendment more, whose change is large: begun far off, the discrepancy falling."""
     level = LEVELS[0] if not root.amendments else LEVELS[1]
@@ -168,7 +162,7 @@ def _far(
     scores = screened(about, starts, _saying(progress, f"first look, {what}", len(starts)))
     ranked = scores.objective - 2.0 * np.array([cell.log_prior for cell in starts])
     first = [(ranked[i], starts[i].hypothesis, starts[i]) for i in range(len(starts))]
-    trials = [Trial.of(root, cell, about.hyper) for cell in chosen(first, widths[0], PER_FORM[0])]
+    trials = [Trial.of(root, cell, about.hyper) for cell in chosen(first, WIDTHS[0], PER_FORM[0])]
     for stage, value in enumerate(LEVELS):
         if value > level:
             continue
@@ -179,7 +173,7 @@ def _far(
         # Differences between fits grow while the discrepancy falls.
         rows = leading(rows, BEHIND if stage + 1 < len(LEVELS) else 4.0 * LEFT)
         last = min(stage + 1, len(LEVELS) - 1)
-        trials = chosen(rows, widths[last], PER_FORM[last])
+        trials = chosen(rows, WIDTHS[last], PER_FORM[last])
     return completed(fitter, root, trials, _saying(progress, f"{what}, to the end", len(trials)))
 
 
