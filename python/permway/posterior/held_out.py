@@ -2,7 +2,8 @@
 
 The residuals of what is left out are predicted from all others: parameters, calibration errors and the discrepancy
 are conditioned on what is kept, the model taken as linear about its fit to all. The density of the left out given
-the kept is the ratio of two marginal likelihoods, each Gaussian.
+the kept is the ratio of two marginal likelihoods, each Gaussian. Decibels are of the model solved with the
+parameters that the others ask for.
 
 Source: Vehtari, Gelman and Gabry (2017), Statistics and Computing 27, 1413-1432, section 2.
 """
@@ -14,6 +15,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from permway.diagnosis.side_by_side import each
+from permway.diagnosis.tangent import Problem
 from permway.posterior.covariance import Covariance
 from permway.posterior.fit import Fit
 
@@ -54,21 +57,28 @@ def gains(base: Fit, amended: Fit) -> list[Gain]:
         mine = (rows.frequency_Hz >= low) & (rows.frequency_Hz <= high)
         if mine.any() and not mine.all():
             groups.append(("band", f"{low:.4g} to {high:.4g} Hz", mine))
-    found = []
-    for axis, name, out in groups:
+
+    def gain(group: tuple[str, str, np.ndarray]) -> Gain:
+        axis, name, out = group
         before, after = _predicted(base, out), _predicted(amended, out)
-        found.append(Gain(axis, name, after[0] - before[0], before[1], after[1]))
-    return found
+        return Gain(axis, name, after[0] - before[0], before[1], after[1])
+
+    return each(gain, groups, threads=base.frame.evidence.threads, least=2)
 
 
 def _predicted(fit: Fit, out: np.ndarray) -> tuple[float, float]:
     """Log density of the rows left out given the others, and the error of their levels in dB."""
     whole, _ = _marginal(fit, np.ones(out.size, dtype=bool))
     kept, shift = _marginal(fit, ~out)
-    left = (fit.state.deviations + fit.jacobian @ shift) * fit.frame.evidence.rows.scale_dB
-    levels = fit.frame.evidence.levels_dB(fit.state.solved.datasets)
-    mine = out & np.isfinite(levels) & np.isfinite(left)
-    error = float(np.sqrt(np.mean(left[mine] ** 2))) if mine.any() else float("nan")
+    # Solved where the others have the parameters: slopes do not reach to where a resonance is elsewhere.
+    evidence = fit.frame.evidence
+    problem = Problem(evidence, fit.model.build, fit.model.free)
+    state = problem.at(np.clip(fit.z + shift, *fit.model.limits), fit.state.solved)
+    if state is None:
+        return whole - kept, float("nan")
+    levels = evidence.levels_dB(state.solved.datasets)
+    mine = out & np.isfinite(levels)
+    error = float(np.sqrt(np.mean(levels[mine] ** 2))) if mine.any() else float("nan")
     return whole - kept, error
 
 
