@@ -218,9 +218,11 @@ def finished(fitter: Fitter, fit: Fit, amendments: Sequence[Hypothesis] = ()) ->
     for amendment in reversed(amendments):
         own = slice(stop - len(amendment.free), stop)
         fit, stop = rested(fitter, fit, own, amendment, STEPS[-1]), own.start
-    # Slopes of nominal parameters change little: they are taken anew where they lead no further.
-    fit = fitter.fit(estimated(fitter.settled(fit)), steps=STEPS[-1], fixed=stop if amendments else 0)
-    return fitter.settled(fit)
+    # Slopes of nominal parameters change little: only at the end are they taken at every step.
+    fixed = stop if amendments else 0
+    fit = fitter.fit(fitter.settled(fit), steps=STEPS[-1], fixed=fixed)
+    fit = fitter.fit(estimated(fitter.settled(fit)), steps=STEPS[-1], fixed=fixed)
+    return fitter.settled(fitter.fit(fitter.settled(fit), steps=STEPS[-1]))
 
 
 def chosen(ranked: Sequence[tuple[float, Hypothesis, Item]], width: int, per_form: int) -> list[Item]:
