@@ -28,6 +28,7 @@ from permway.posterior.detectable import detectable
 from permway.posterior.fit import Fit, Fitter
 from permway.posterior.held_out import gains
 from permway.posterior.masses import Masses
+from permway.posterior.places import weighed
 from permway.posterior.search import explored
 
 FEW_LINES = 10.0
@@ -100,6 +101,7 @@ def diagnose(
         after=None if amended is None else assemble(amended.evidence, amended, left_out=left_out),
         law_dZ={},
         seconds=clock.seconds(),
+        weighed=weighed(masses, search.small[0]),
     )
 
 
