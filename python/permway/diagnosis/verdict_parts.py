@@ -122,6 +122,8 @@ class Effect(VerdictPart):
     """Its mechanics."""
     parameters: dict[str, Estimate] = Field(default_factory=dict)
     """Its parameters with 90 % intervals."""
+    size: Named | None = None
+    """The one of them that says how strong it is; null if none does, or none was said to."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:
