@@ -14,12 +14,22 @@ from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.result import Diagnosis
-from permway.diagnosis.verdict_parts import Doubt, Moved, NextMeasurement, Recalibrated
+from permway.diagnosis.verdict import NOVEL
+from permway.diagnosis.verdict_parts import (
+    ClassMember,
+    Doubt,
+    Mechanics,
+    Moved,
+    NextMeasurement,
+    Place,
+    Recalibrated,
+)
 from permway.posterior import cells
 from permway.posterior.diagnose import diagnose
 from permway.report.diagnosis import write_report
 from permway.report.diagnosis.acting import next_steps, rival_rows
 from permway.report.diagnosis.places import map_picture
+from permway.report.diagnosis.verdict_page import render_verdict
 from simulated import simulate
 
 FEW = {"fastener_loss", "sensor_gain"}
@@ -56,7 +66,12 @@ def pages(found: dict[str, Diagnosis], tmp_path_factory: pytest.TempPathFactory)
 
 
 def text_of(path: Path) -> str:
-    bare = re.sub(r"<style>.*?</style>|<script.*?</script>", " ", path.read_text("utf-8"), flags=re.DOTALL)
+    return read(path.read_text("utf-8"))
+
+
+def read(page: str) -> str:
+    """What is read of a page."""
+    bare = re.sub(r"<style>.*?</style>|<script.*?</script>", " ", page, flags=re.DOTALL)
     return " ".join(re.sub(r"<[^>]+>", " ", bare).split())
 
 
@@ -157,6 +172,62 @@ def test_each_status_says_what_to_do(found: dict[str, Diagnosis]) -> None:
     assert next_steps(replace(fine, verdict=doubted))[0] == (
         'Put right in the campaign file: records.blows: sign = "-".'
     )
+
+
+LOST, VOID = ClassMember(name="fastener_loss", probability=0.6), ClassMember(name="mortar_void", probability=0.4)
+SURE = ClassMember(name=NOVEL, probability=0.95)
+
+
+@pytest.mark.parametrize(
+    ("status", "changes", "said"),
+    [
+        ("ambiguous", {"name": None, "class_": (LOST, VOID)}, ("Lost fasteners or void below the slab", "(0.40)")),
+        ("insufficient", {}, ("What is suspected", "Lost fasteners")),
+        (
+            "described",
+            {"name": None, "class_": (SURE,), "law": Mechanics(words="spring of 3 MN/m")},
+            ("acts what the catalogue does not hold", "expect something the catalogue does not hold"),
+        ),
+        (
+            "located",
+            {"name": None, "class_": (SURE,), "parameters": {}, "size": None, "law": Mechanics()},
+            ("physics is missing that these records cannot describe", "Look at the pad from 5.4 to 6.6 m"),
+        ),
+        (
+            "measurement",
+            {"domain": "measurement", "name": "sensor_labels", "class_": (), "place": Place(channels=("a", "b"))},
+            ("Swapped labels", "Check a and b: mounting"),
+        ),
+        (
+            "named",
+            {"name": "owner_value", "class_": (), "place": Place(body="pad.k"), "parameters": {}, "size": None},
+            ("Wrong stated value", "Check what was stated of pad.k"),
+        ),
+        (
+            "named",
+            {"domain": "vehicle", "name": "air_spring", "place": Place()},
+            ("Air spring", "Look at the vehicle"),
+        ),
+    ],
+)
+def test_a_page_of_every_status_says_its_effect(
+    found: dict[str, Diagnosis], status: str, changes: dict[str, object], said: tuple[str, ...]
+) -> None:
+    one = found["lost"]
+    effect = one.verdict.effects[0].model_copy(update=changes)
+    verdict = one.verdict.model_copy(update={"status": status, "effects": (effect,)})
+    text = read(render_verdict(replace(one, verdict=verdict), {}))
+    for words in said:
+        assert words in text, words
+    assert re.findall(r"\b\w*[A-Za-z]_[A-Za-z]\w*", text) == []
+
+
+def test_text_of_a_campaign_is_no_markup(found: dict[str, Diagnosis]) -> None:
+    one = found["lost"]
+    effect = one.verdict.effects[0].model_copy(update={"law": Mechanics(words="<script>alert(1)</script>")})
+    page = render_verdict(replace(one, verdict=one.verdict.model_copy(update={"effects": (effect,)})), {})
+    assert "<script>alert" not in page
+    assert "&lt;script&gt;" in page
 
 
 def test_the_same_diagnosis_gives_the_same_page(
