@@ -13,6 +13,7 @@ from permway.diagnosis.plain_names import (
     name_of,
     parameter_of,
     seen,
+    stated,
     stretch,
 )
 from permway.diagnosis.verdict_parts import Estimate, Smallest
@@ -54,6 +55,8 @@ def test_without_an_interval_three_digits_are_said() -> None:
     assert (estimate(one), ends(one)) == ("0.123", "")
     assert measured(3.1e-6, "m") == "3.10 µm"
     assert measured(4.2e8, "N/m", 2) == "420 MN/m"
+    assert stated(3.0e7, "N/m") == "30 MN/m"
+    assert stated(-0.05, "1") == "−0.05"
 
 
 def test_a_probability_that_rounds_to_one_is_called_more_than_its_last_digit() -> None:

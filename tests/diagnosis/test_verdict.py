@@ -247,10 +247,10 @@ def test_the_ends_of_an_interval_differ_as_they_are_written() -> None:
 
 def test_a_parameter_that_nobody_would_believe_is_said() -> None:
     near = Moved(value=1.05e9, prior=1e9, z=1.2)
-    far = {"level": Moved(value=7.0, prior=0.0, z=7.0), "pad.k": Moved(value=2e7, prior=6e7, z=-4.4)}
+    far = {"level": Moved(value=7.0, prior=0.0, z=7.0), "pad.k": Moved(value=2e7, prior=6e7, z=-4.4, unit="N/m")}
     words = (
-        "; level has to be 7 for it, 7 standard deviations from the owner's 0"
-        " and pad.k has to be 2e7 for it, 4.4 standard deviations from the owner's 6e7."
+        "; level has to be 7.00 for it, 7 standard deviations from the owner's 0"
+        " and pad.k has to be 20.0 MN/m for it, 4.4 standard deviations from the owner's 60 MN/m."
     )
     told = Recalibrated(before={"slab.E": near, **far})
     found = verdict("located", effects=(LOST,), recalibrated=told).sentence
@@ -266,13 +266,14 @@ def test_a_parameter_that_nobody_would_believe_is_said() -> None:
 
 
 def test_a_model_that_fits_outside_a_tolerance_says_so() -> None:
-    far = Moved(value=2.1e7, prior=3e7, z=-4.4, low=2e7, high=2.2e7)
+    far = Moved(value=2.1e7, prior=3e7, z=-4.4, low=2e7, high=2.2e7, unit="N/m")
     near = Moved(value=1.05e9, prior=1e9, z=1.2)
     told = Recalibrated(before={"slab.E": near, "pad.k": far, "level": Moved(value=7.0, prior=0.0, z=7.0)})
     assert verdict("outside_tolerance", recalibrated=told).sentence == (
-        "The model fits only with level at 7, in place of the stated 0 and 7 standard deviations of its tolerance "
-        "away and pad.k at 2.1e7 (90 %: 2e7 to 2.2e7), 30 % below the stated 3e7 and 4.4 standard deviations of "
-        "its tolerance away: what is stated there is wrong, or something is missing that acts like it."
+        "The model fits only with level at 7.00, in place of the stated 0 and 7 standard deviations of its "
+        "tolerance away and pad.k at 21.0 MN/m (90 %: 20.0 to 22.0 MN/m), 30 % below the stated 30 MN/m and 4.4 "
+        "standard deviations of its tolerance away: what is stated there is wrong, or something is missing that "
+        "acts like it."
     )
     with pytest.raises(InputError, match="has no effects"):
         Verdict(status="outside_tolerance", effects=(LOST,))

@@ -141,6 +141,12 @@ def test_rivals_are_ranked_by_probability_and_all_sum_to_one(found: dict[str, Di
     assert float(lost_rows[-1]["behind"]) > 20.0
 
 
+def test_parameters_have_units_that_fit(pages: dict[str, Path]) -> None:
+    text = text_of(pages["lost"])
+    assert re.search(r"pad\.k 30 MN/m 2[0-9] to 4[0-9] MN/m [0-9.]+ MN/m [0-9.]+ to [0-9.]+ MN/m", text)
+    assert re.search(r"deck\.E 34 GPa", text)
+
+
 def test_held_out_groups_have_nats_and_decibels(found: dict[str, Diagnosis], pages: dict[str, Path]) -> None:
     text = text_of(pages["lost"])
     assert found["lost"].verdict.held_out

@@ -83,19 +83,24 @@ def measured(value: float, unit: str, digits: int = MOST) -> str:
     return _with(_text(value / factor, _decimals(value / factor, digits)), named)
 
 
-def estimate(one: Estimate | Moved, unit: str = "") -> str:
+def stated(value: float, unit: str) -> str:
+    """A number that somebody has stated, with its unit and no nought at its end."""
+    factor, named = _scale(abs(value), unit)
+    text = f"{value / factor:.4g}".replace("e+0", "e").replace("e+", "e").replace("e-0", "e-")
+    return _with(text.replace("-", "−"), named)
+
+
+def estimate(one: Estimate | Moved) -> str:
     """A value with its unit, with the digits that its 90 % interval leaves."""
-    unit = one.unit if isinstance(one, Estimate) else unit
-    factor, named = _scale(abs(one.value), unit)
+    factor, named = _scale(abs(one.value), one.unit)
     return _with(_text(one.value / factor, _known(one, factor)), named)
 
 
-def ends(one: Estimate | Moved, unit: str = "") -> str:
+def ends(one: Estimate | Moved) -> str:
     """The 90 % interval with its unit, or "" where it is not known or adds no digit to the value."""
     if one.low is None or one.high is None:
         return ""
-    unit = one.unit if isinstance(one, Estimate) else unit
-    factor, named = _scale(abs(one.value), unit)
+    factor, named = _scale(abs(one.value), one.unit)
     decimals = _known(one, factor)
     low, high = (_text(end / factor, decimals) for end in (one.low, one.high))
     return "" if low == high else _with(f"{low} to {high}", named)

@@ -203,6 +203,8 @@ class Moved(VerdictPart):
     """Lower end of the 90 % interval by the fit's covariance."""
     high: Number | None = None
     """Upper end of the 90 % interval."""
+    unit: str = "1"
+    """Of value and interval; "1" of a ratio, and where an older file does not say."""
 
 
 class Recalibrated(VerdictPart):

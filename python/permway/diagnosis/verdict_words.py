@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
-from permway.diagnosis.plain_names import chance, ends, estimate, name_of, parameter_of, seen, stretch
+from permway.diagnosis.plain_names import chance, ends, estimate, name_of, parameter_of, seen, stated, stretch
 from permway.diagnosis.tolerances import outside
 from permway.diagnosis.verdict import NOVEL, Effect, Estimate, HeldOutGain, Moved, Smallest, Verdict
 from permway.diagnosis.verdict_parts import E_VALUE, RECALIBRATED, Condition
@@ -242,8 +242,8 @@ def _beyond(verdict: Verdict) -> str:
     # What an effect of its own says already.
     told = {effect.place.body for effect in verdict.effects if effect.name == STATED}
     said = [
-        f"{name} has to be {quantity(known[name].value)} for it, {quantity(abs(known[name].z))} standard "
-        f"deviations from the owner's {quantity(known[name].prior)}"
+        f"{name} has to be {estimate(known[name])} for it, {quantity(abs(known[name].z))} standard "
+        f"deviations from the owner's {stated(known[name].prior, known[name].unit)}"
         for name in [name for name in outside(known) if name not in told][:MOST_OUTSIDE]
     ]
     return " and ".join(said)
@@ -262,13 +262,13 @@ def _outside(verdict: Verdict) -> str:
 
 def _off(name: str, one: Moved) -> str:
     """A parameter's value, and how far from the stated one."""
-    ends = f" (90 %: {text})" if (text := interval(one)) else ""
+    spread = f" (90 %: {text})" if (text := ends(one)) else ""
     share = one.value / one.prior - 1.0 if one.prior else 0.0
     percent = (
         f"{quantity(100.0 * abs(share))} % {'below' if share < 0.0 else 'above'} " if share else "in place of "
     )
     return (
-        f"{name} at {quantity(one.value)}{ends}, {percent}the stated {quantity(one.prior)} and "
+        f"{name} at {estimate(one)}{spread}, {percent}the stated {stated(one.prior, one.unit)} and "
         f"{quantity(abs(one.z))} standard deviations of its tolerance away"
     )
 

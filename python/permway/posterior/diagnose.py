@@ -128,7 +128,8 @@ def with_moved(after: Mapping[str, Moved], member: Member) -> dict[str, Moved]:
         both = np.array([1.0, per_z])
         half = WIDTH * float(np.sqrt(both @ member.fit.spread[np.ix_([at, own], [at, own])] @ both))
         low, high = (known[name].value(end) for end in (z - half, z + half))
-        found[name] = Moved(value=known[name].value(z), prior=found[name].prior, z=z, low=low, high=high)
+        moved = {"value": known[name].value(z), "z": z, "low": low, "high": high}
+        found[name] = found[name].model_copy(update=moved)
     return found
 
 

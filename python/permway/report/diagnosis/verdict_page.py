@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+import numpy as np
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from matplotlib.figure import Figure
 
 from permway.diagnosis.plain_names import name_of
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.verdict import RIGHT, UNPROVED
+from permway.diagnosis.verdict_words import INCOMPLETE
 from permway.report.compare.tables import NOTABLE_DB
 from permway.report.diagnosis.acting import (
     MOST_RIVALS,
@@ -22,8 +24,9 @@ from permway.report.diagnosis.acting import (
 from permway.report.diagnosis.assumed import assumed
 from permway.report.diagnosis.better import LEVEL_DB, curve_pictures, first_curve, gain_picture, parameter_picture
 from permway.report.diagnosis.changes import MOST_CURVES, changes
+from permway.report.diagnosis.parameters import stated_rows
 from permway.report.diagnosis.places import along, map_picture, ringed
-from permway.report.diagnosis.tables import change_table, detectable_rows, held_out_rows, parameter_rows
+from permway.report.diagnosis.tables import change_table, detectable_rows, held_out_rows
 from permway.report.readout import Drawn
 
 
@@ -67,6 +70,7 @@ def render_verdict(diagnosis: Diagnosis, drawn: Mapping[str, Drawn]) -> str:
         sentence=verdict.sentence,
         right=verdict.status in RIGHT,
         missing=verdict.status not in UNPROVED,
+        explained=verdict.status in RIGHT and (verdict.evidence.misfit_before or np.inf) < INCOMPLETE,
         facts_first=facts_first(verdict),
         effects=effect_cards(verdict),
         steps=next_steps(diagnosis),
@@ -80,7 +84,7 @@ def render_verdict(diagnosis: Diagnosis, drawn: Mapping[str, Drawn]) -> str:
         amended=diagnosis.after is not None,
         tables=[change_table(change) for change in changes(diagnosis)],
         detectable=detectable_rows(verdict),
-        parameters=parameter_rows(diagnosis),
+        parameters=stated_rows(diagnosis),
         assumed=assumed(diagnosis) | {"ruled_out": [name_of(one) for one in verdict.ruled_out]},
         most_curves=MOST_CURVES,
         notable_dB=NOTABLE_DB,
