@@ -17,8 +17,8 @@ from permway.diagnosis.weighed import Along, Aside, Weighed
 from permway.report.compare.looks import FONT, plain
 from permway.report.diagnosis.track import HALF, Colour, Drawing, Stripe, draw, drawing
 
-COLOURS = ("#a8321a", "#0a6fb4", "#c77800", "#0b8f6b", "#6a4fa0", "#8a6d00", "#c2548f", "#59606b")
-"""Of families, the most probable first."""
+COLOURS = ("#a8321a", "#0a6fb4", "#0b8f6b", "#6a4fa0", "#8a6d00", "#c2548f", "#59606b")
+"""Of families, the most probable first; amber is the hammer's."""
 
 WIDTH_IN = 5.6
 """As wide as a phone's screen can show with type that can be read."""
@@ -168,7 +168,7 @@ def _mark_sensors(
             fontsize=FONT,
             color=colour,
             zorder=8,
-            bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.85},
+            bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.7},
         )
 
 
