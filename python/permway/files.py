@@ -87,8 +87,15 @@ def check_output(path: Path, suffixes: tuple[str, ...]) -> None:
         raise InputError("there is no such folder", where=str(path.parent), remedy="make it first")
 
 
-def write_bytes(path: Path, content: bytes) -> Path:
+def write_bytes(path: Path, content: bytes, *, durable: bool = False) -> Path:
     """Write a file whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+    content : bytes
+    durable : bool
+        Also if power fails: the content is on the disk before the name is.
 
     Raises
     ------
@@ -101,6 +108,9 @@ def write_bytes(path: Path, content: bytes) -> Path:
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
         with os.fdopen(handle, "wb") as file:
             file.write(content)
+            if durable:
+                file.flush()
+                os.fsync(file.fileno())
         # mkstemp's files are for the user alone; a report is as public as any other file.
         Path(temporary).chmod(0o666 & ~_umask())
         os.replace(temporary, path)

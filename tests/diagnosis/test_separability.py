@@ -87,4 +87,4 @@ def test_of_a_suspicion_it_is_said_what_would_make_sure(case: Simulated) -> None
     assert {one.separates for one in advised} == {("fastener_loss", "recalibrated")}
     assert all((one.separation_after or 0.0) > (one.separation_before or 0.0) for one in advised)
     words = _advised(Verdict(status="insufficient", next=advised))
-    assert words == f"to be sure of fastener_loss, measure: {advised[0].measurement}"
+    assert words == f"to be sure of lost fasteners, measure: {advised[0].measurement}"

@@ -31,7 +31,7 @@ def test_softer_pads_than_stated_are_reported(seed: int, tmp_path: Path) -> None
     assert verdict.status == "outside_tolerance"
     assert "Nothing is missing" not in verdict.sentence
     assert verdict.sentence.startswith("The model fits only with pad.k at ")
-    assert f"{100.0 * (1.0 - pad.value / pad.prior):.3g} % below the stated 3e7" in verdict.sentence
+    assert f"{100.0 * (1.0 - pad.value / pad.prior):.3g} % below the stated 30 MN/m" in verdict.sentence
     told = write_diagnosis(found, tmp_path / "d")
     page = (tmp_path / "d" / "report.html").read_text(encoding="utf-8")
     assert told["status"] == "outside_tolerance"

@@ -83,7 +83,7 @@ def test_a_verdict_says_what_was_spoilt() -> None:
     unsure = with_spoilt(Verdict(status="insufficient"), [CLIPPED])
     assert unsure.status == "insufficient"
     assert "suspicion" not in unsure.sentence
-    assert "at fault is axlebox2: run: 4 samples flat at 3; left out (clipping)" in unsure.sentence
+    assert "at fault is clipping at axlebox2: run: 4 samples flat at 3; left out" in unsure.sentence
     lost = Effect(
         domain="path",
         place=Place(joint="pad"),

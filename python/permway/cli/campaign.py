@@ -108,6 +108,8 @@ def diagnose(
     from permway.diagnosis.journal import FOLDER, keeping, key_of
     from permway.files import prepare_folder
     from permway.posterior.diagnose import diagnose as explain
+    from permway.posterior.journal import keeping as searching
+    from permway.posterior.journal import key_of as searched
     from permway.report.diagnosis import write_diagnosis
 
     ruled_out = known(rule_out or ())
@@ -117,9 +119,12 @@ def diagnose(
     for blunder in checked.blunders:
         print_message(f"{'asked' if blunder.asked else 'put right first'}: {blunder.sentence}")
     if posterior:
-        with stage_bar("diagnosing", as_json) as progress:
-            by_posterior = explain(described, ruled_out=ruled_out, threads=threads, progress=progress)
-        print_result(write_diagnosis(doubted(by_posterior, checked), folder, page=not no_report), as_json)
+        with searching(folder / FOLDER, searched(described, ruled_out)) as steps:
+            with stage_bar("diagnosing", as_json) as progress:
+                by_posterior = explain(described, ruled_out=ruled_out, threads=threads, progress=progress)
+            written = write_diagnosis(doubted(by_posterior, checked), folder, page=not no_report)
+            steps.close()
+        print_result(written, as_json)
         return
     with keeping(folder / FOLDER, key_of(described, seed, ruled_out)) as journal:
         with stage_bar("diagnosing", as_json) as progress:

@@ -20,6 +20,7 @@ def recalibrated_of(fit: Fit) -> dict[str, Moved]:
             z=float(z),
             low=ends[f.name][0],
             high=ends[f.name][1],
+            unit=known[f.name].parameter.unit,
         )
         for f, z in zip(fit.free, fit.z, strict=True)
         if f.name in known

@@ -13,6 +13,7 @@ from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Where
 from permway.diagnosis.spot import Found
 from permway.diagnosis.verdict import Verdict
+from permway.diagnosis.weighed import Weighed
 
 Stage = Literal["screened", "quick", "full"]
 
@@ -78,6 +79,8 @@ class Diagnosis:
         What a free stiffness at that spot would add to the amended model: with the law, what the records ask for.
     inconstant : tuple of Inconstant
         Parameters of the base that would be others over part of the records, the least constant first.
+    weighed : Weighed, optional
+        What the posterior says of places and of sets of effects.
     """
 
     verdict: Verdict
@@ -92,3 +95,4 @@ class Diagnosis:
     seconds: Mapping[str, float]
     inconstant: tuple[Inconstant, ...] = ()
     remaining: Found | None = None
+    weighed: Weighed | None = None

@@ -122,6 +122,8 @@ class Effect(VerdictPart):
     """Its mechanics."""
     parameters: dict[str, Estimate] = Field(default_factory=dict)
     """Its parameters with 90 % intervals."""
+    size: Named | None = None
+    """The one of them that says how strong it is; null if none does, or none was said to."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -201,6 +203,8 @@ class Moved(VerdictPart):
     """Lower end of the 90 % interval by the fit's covariance."""
     high: Number | None = None
     """Upper end of the 90 % interval."""
+    unit: str = "1"
+    """Of value and interval; "1" of a ratio, and where an older file does not say."""
 
 
 class Recalibrated(VerdictPart):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
+from permway.diagnosis.plain_names import chance, ends, estimate, name_of, parameter_of, seen, stated, stretch
 from permway.diagnosis.tolerances import outside
 from permway.diagnosis.verdict import NOVEL, Effect, Estimate, HeldOutGain, Moved, Smallest, Verdict
 from permway.diagnosis.verdict_parts import E_VALUE, RECALIBRATED, Condition
@@ -90,7 +91,9 @@ def _of_physics(verdict: Verdict) -> str:
     if verdict.status != "outside_tolerance":
         parts.append(_beyond(verdict))
     if verdict.ruled_out:
-        parts.append(f"not considered, for somebody had ruled it out: {', '.join(verdict.ruled_out)}")
+        parts.append(
+            f"not considered, for somebody had ruled it out: {', '.join(map(name_of, verdict.ruled_out))}"
+        )
     text = "; ".join(part for part in parts if part)
     return f"{text[:1].upper()}{text[1:]}."
 
@@ -119,19 +122,7 @@ def interval(one: Estimate | Moved) -> str:
 
 def smallest(name: str, one: Smallest) -> str:
     """What would have been seen of an effect."""
-    return f"a {name} with {one.parameter} {size(one)}"
-
-
-def size(one: Smallest) -> str:
-    """The side on which it would have been seen, and the value."""
-    if one.value is None:
-        return "of no size"
-    side = "below" if one.none is None or one.value < one.none else "above"
-    if one.none:
-        # Three digits of 1.002 would say nothing.
-        percent = quantity(100.0 * abs(one.value / one.none - 1.0))
-        return f"more than {percent} % {side} {quantity(one.none, one.unit)}"
-    return f"{side} {quantity(one.value, one.unit)}"
+    return f"{name_of(name)} ({seen(one)})"
 
 
 def probability(effect: Effect) -> float | None:
@@ -149,17 +140,32 @@ def strongest(verdict: Verdict) -> tuple[str, HeldOutGain] | None:
 
 
 def _named(effect: Effect) -> str:
-    chance = probability(effect)
-    name = effect.name or " or ".join(member.name for member in effect.class_)
-    sure = "" if chance is None or effect.name is None else f"probability {chance:.2f}"
-    said = ", ".join(part for part in (name, sure) if part)
-    what = effect.law.words or _values(effect)
-    text = ": ".join(part for part in (effect.place.label, what) if part) or "an effect"
-    return f"{text} ({said})" if said else text
+    """What, where, how much, how surely, with 90 % intervals."""
+    known = probability(effect)
+    names = [effect.name] if effect.name else [member.name for member in effect.class_]
+    place = f"{effect.place.label}{_within(effect)}"
+    text = " at ".join(part for part in (" or ".join(name_of(one) for one in names), place) if part)
+    what = f"{effect.law.words or _values(effect)}{_strength(effect)}"
+    text = ": ".join(part for part in (text, what) if part) or "an effect"
+    return text if known is None or effect.name is None else f"{text}, probability {chance(known)}"
+
+
+def _strength(effect: Effect) -> str:
+    """The 90 % interval of what says how strong it is."""
+    one = effect.parameters.get(effect.size or "")
+    return "" if one is None or not ends(one) else f" (90 %: {parameter_of(effect.size or '')} {ends(one)})"
+
+
+def _within(effect: Effect) -> str:
+    """The 90 % interval of its place, where that is not only its most probable one."""
+    x, within = effect.place.x, effect.place.within
+    if not effect.size or x is None or within is None or stretch(*x) == stretch(*within):
+        return ""
+    return f" (90 %: {stretch(*within)})"
 
 
 def _values(effect: Effect) -> str:
-    return ", ".join(f"{name} {quantity(one.value, one.unit)}" for name, one in effect.parameters.items())
+    return ", ".join(f"{parameter_of(name)} {estimate(one)}" for name, one in effect.parameters.items())
 
 
 def _at(effect: Effect) -> str:
@@ -170,7 +176,7 @@ def _at(effect: Effect) -> str:
 
 
 def _rivals(effect: Effect) -> str:
-    names = " or ".join(f"{m.name} ({m.probability:.2f})" for m in effect.class_)
+    names = " or ".join(f"{name_of(m.name)} ({chance(m.probability)})" for m in effect.class_)
     return f"{_at(effect)} physics is missing that these records allow to be {names}"
 
 
@@ -190,6 +196,9 @@ def _better(verdict: Verdict) -> str:
     if found is None:
         return ""
     before, after = found[1].db_before or 0.0, found[1].db_after or 0.0
+    if found[1].gain_nats > 0.0 and f"{before:.1f}" == f"{after:.1f}":
+        nats = quantity(found[1].gain_nats)
+        return f"held-out records become more probable by {nats} nats, their levels stay within {after:.1f} dB"
     moves = "improves" if after < before else "does not improve:"
     return f"the prediction of held-out records {moves} from {before:.1f} to {after:.1f} dB"
 
@@ -233,8 +242,8 @@ def _beyond(verdict: Verdict) -> str:
     # What an effect of its own says already.
     told = {effect.place.body for effect in verdict.effects if effect.name == STATED}
     said = [
-        f"{name} has to be {quantity(known[name].value)} for it, {quantity(abs(known[name].z))} standard "
-        f"deviations from the owner's {quantity(known[name].prior)}"
+        f"{name} has to be {estimate(known[name])} for it, {quantity(abs(known[name].z))} standard "
+        f"deviations from the owner's {stated(known[name].prior, known[name].unit)}"
         for name in [name for name in outside(known) if name not in told][:MOST_OUTSIDE]
     ]
     return " and ".join(said)
@@ -253,23 +262,25 @@ def _outside(verdict: Verdict) -> str:
 
 def _off(name: str, one: Moved) -> str:
     """A parameter's value, and how far from the stated one."""
-    ends = f" (90 %: {text})" if (text := interval(one)) else ""
+    spread = f" (90 %: {text})" if (text := ends(one)) else ""
     share = one.value / one.prior - 1.0 if one.prior else 0.0
     percent = (
         f"{quantity(100.0 * abs(share))} % {'below' if share < 0.0 else 'above'} " if share else "in place of "
     )
     return (
-        f"{name} at {quantity(one.value)}{ends}, {percent}the stated {quantity(one.prior)} and "
+        f"{name} at {estimate(one)}{spread}, {percent}the stated {stated(one.prior, one.unit)} and "
         f"{quantity(abs(one.z))} standard deviations of its tolerance away"
     )
 
 
 def _seen(verdict: Verdict) -> str:
-    sizes = [smallest(name, one) for name, one in verdict.detectable.items() if one.value is not None]
+    # A share of what is there is plainer than a parameter of its own.
+    known = [(not one.none, name, one) for name, one in verdict.detectable.items() if one.value is not None]
+    sizes = [smallest(name, one) for _, name, one in sorted(known, key=lambda row: row[0])]
     if not sizes:
         return ""
-    more = f" (and {len(sizes) - MOST_SIZES} more effects by size)" if len(sizes) > MOST_SIZES else ""
-    return f"{' or '.join(sizes[:MOST_SIZES])} would have been seen{more}"
+    more = f" and {len(sizes) - MOST_SIZES} more" if len(sizes) > MOST_SIZES else ""
+    return f"would have been seen: {', '.join(sizes[:MOST_SIZES])}{more}"
 
 
 def _advice(verdict: Verdict) -> str:
@@ -277,7 +288,8 @@ def _advice(verdict: Verdict) -> str:
         return ""
     first = verdict.next[0]
     suspected, rival = first.separates
-    aim = f"be sure of {suspected}" if rival == RECALIBRATED else f"tell {suspected} from {rival}"
+    sure = rival == RECALIBRATED
+    aim = f"be sure of {name_of(suspected)}" if sure else f"tell {name_of(suspected)} from {name_of(rival)}"
     return f"to {aim}, measure: {first.measurement}"
 
 
@@ -286,11 +298,12 @@ def html_table(verdict: Verdict) -> str:
     rows = []
     for effect in verdict.effects:
         values = ", ".join(
-            f"{name} {quantity(one.value, one.unit)}" + (f" ({ends})" if (ends := interval(one)) else "")
+            f"{parameter_of(name)} {estimate(one)}" + (f" ({ends(one)})" if ends(one) else "")
             for name, one in effect.parameters.items()
         )
-        rivals = ", ".join(f"{m.name} {m.probability:.2f}" for m in effect.class_)
-        cells = (DOMAIN[effect.domain], effect.place.label, effect.name or "", rivals, values)
+        rivals = ", ".join(f"{name_of(m.name)} {chance(m.probability)}" for m in effect.class_)
+        name = name_of(effect.name) if effect.name else ""
+        cells = (DOMAIN[effect.domain], effect.place.label, name, rivals, values)
         rows.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
     heads = ("domain", "place", "name", "class", "parameters (90 %)")
     head = "<tr>" + "".join(f"<th>{one}</th>" for one in heads) + "</tr>"

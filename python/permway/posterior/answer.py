@@ -114,6 +114,7 @@ def _effect(masses: Masses, index: int) -> Effect:
         class_=members,
         law=Mechanics(words=hypothesis.law(values)),
         parameters=estimates,
+        size=hypothesis.size or None,
     )
 
 

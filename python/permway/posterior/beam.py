@@ -21,6 +21,7 @@ from permway.posterior.cells import SOMETHING, Cell
 from permway.posterior.estimate import estimated
 from permway.posterior.fit import Fit, Fitter, Model, grown
 from permway.posterior.hyper import Hyper
+from permway.posterior.journal import kept_trials
 from permway.posterior.neighbours import STRETCH, rested
 
 STEPS = (4, 8, 8, 20)
@@ -199,7 +200,10 @@ def _shared(
         found = work(trial)
         return None if found is None else replace(found, cell=None)  # type: ignore[arg-type]
 
-    found = each(bare, trials, threads=fitter.frame.evidence.threads, least=2, told=progress)
+    def take() -> list[Trial | None]:
+        return each(bare, trials, threads=fitter.frame.evidence.threads, least=2, told=progress)
+
+    found = kept_trials(take, trials)
     return [replace(one, cell=trial.cell) for one, trial in zip(found, trials, strict=True) if one is not None]
 
 

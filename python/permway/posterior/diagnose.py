@@ -32,6 +32,7 @@ from permway.posterior.detectable import detectable
 from permway.posterior.fit import Fit, Fitter
 from permway.posterior.held_out import gains
 from permway.posterior.masses import Masses
+from permway.posterior.places import weighed
 from permway.posterior.search import explored
 
 ENOUGH = 20_000
@@ -106,6 +107,7 @@ def diagnose(
         after=None if amended is None else assemble(amended.evidence, amended, left_out=left_out),
         law_dZ={},
         seconds=clock.seconds(),
+        weighed=weighed(masses, search.small[0]),
     )
 
 
@@ -150,7 +152,8 @@ def with_moved(after: Mapping[str, Moved], member: Member) -> dict[str, Moved]:
         both = np.array([1.0, per_z])
         half = WIDTH * float(np.sqrt(both @ member.fit.spread[np.ix_([at, own], [at, own])] @ both))
         low, high = (known[name].value(end) for end in (z - half, z + half))
-        found[name] = Moved(value=known[name].value(z), prior=found[name].prior, z=z, low=low, high=high)
+        moved = {"value": known[name].value(z), "z": z, "low": low, "high": high}
+        found[name] = found[name].model_copy(update=moved)
     return found
 
 

@@ -22,6 +22,7 @@ from permway.posterior.cells import Cell
 from permway.posterior.covariance import Roots
 from permway.posterior.fit import Fit, grown
 from permway.posterior.hyper import Hyper
+from permway.posterior.journal import kept_table
 
 BATCH = 64
 """Cells whose residuals are held at once."""
@@ -91,6 +92,13 @@ def screened(
     others : sequence of Hyper
         Hyperparameters with which a gain counts, too, less what the fit itself loses by them.
     """
+    logs = [hyper.log for hyper in others]
+    given = (fit.state.deviations, fit.z, fit.hyper.log, *logs, len(cells), *(cell.z for cell in cells))
+    return kept_table(lambda: _looked(fit, cells, progress, others), Scores, *given)
+
+
+def _looked(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object], others: Sequence[Hyper]) -> Scores:
+    """In hammer tests first where there are runs, too."""
     kinds = {block.dataset.record.statistic for block in fit.frame.evidence.blocks}
     if not {"frf", "csd"} <= kinds:
         return _scored(fit, cells, progress, others)

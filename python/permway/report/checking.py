@@ -55,7 +55,7 @@ def draw_check(checked: Checked, folder: Path, *, dpi: int = 130) -> Path | None
     figure = Figure(figsize=(WIDTH_IN, sum(heights) + 0.5), layout="constrained")
     top, *panels = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
     axes = top.subplots()
-    draw(axes, checked.campaign, plan, (), colormaps["YlOrRd"], Normalize(0.0, 1.0))
+    draw(axes, checked.campaign, plan, {})
     _coloured(axes, checked, plan.level)
     axes.set_xlabel("x, m", fontsize=FONT)
     axes.tick_params(axis="x", labelsize=FONT)

@@ -81,10 +81,20 @@ def curve_pictures(diagnosis: Diagnosis) -> Iterator[tuple[str, Figure]]:
             yield f"curves-{file_name(change.name)}", _curves(change, mine)
 
 
-def _curves(change: Change, channels: list[int]) -> Figure:
+def first_curve(diagnosis: Diagnosis) -> Iterator[tuple[str, Figure]]:
+    """The channel that gains most of the amendment, as `curve`; without one, the channel that deviates most."""
+    every = changes(diagnosis)
+    ranked = [(float(np.nan_to_num(change.gain()).max()), -i) for i, change in enumerate(every)]
+    if ranked:
+        change = every[-max(ranked)[1]]
+        yield "curve", _curves(change, [int(np.argmax(np.nan_to_num(change.gain())))], height_in=3.7)
+
+
+def _curves(change: Change, channels: list[int], height_in: float = 3.0) -> Figure:
     columns = min(2, len(channels))
     rows = -(-len(channels) // columns)
-    figure = Figure(figsize=(3.7 * columns if columns > 1 else 5.2, 0.5 + 3.0 * rows), layout="constrained")
+    size = 3.7 * columns if columns > 1 else 5.6, 0.5 + height_in * rows
+    figure = Figure(figsize=size, layout="constrained")
     cells = figure.subplots(2 * rows, columns, squeeze=False, height_ratios=[2.4, 1.0] * rows)
     for place in range(rows * columns):
         row, column = divmod(place, columns)

@@ -44,6 +44,11 @@ class Change:
         before, after = self.mean_square()
         return np.asarray(np.abs(before - (0.0 if after is None else after)))
 
+    def gain(self) -> Reals:
+        """By channel: by how much its mean square fell, dB2; without an amendment the mean square itself."""
+        before, after = self.mean_square()
+        return np.asarray(before - (0.0 if after is None else after))
+
     def order(self) -> list[int]:
         """Channels by how much they changed; without an amendment by how much they deviate."""
         worth = self.worth()

@@ -8,11 +8,12 @@ import numpy as np
 
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.compare_tables import LEFT
+from permway.diagnosis.plain_names import name_of, seen
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.speak import LARGEST_E
 from permway.diagnosis.verdict import NOVEL, Effect, HeldOutGain, Moved, Verdict
 from permway.diagnosis.verdict_parts import E_VALUE, RECALIBRATED
-from permway.diagnosis.verdict_words import DOMAIN, INCOMPLETE, STATUS, interval, probability, quantity, size, span
+from permway.diagnosis.verdict_words import DOMAIN, INCOMPLETE, STATUS, interval, probability, quantity, span
 from permway.report.compare.tables import NOTABLE_DB, BandTable, decibels, signed
 from permway.report.diagnosis.changes import Change
 
@@ -274,9 +275,8 @@ def detectable_rows(verdict: Verdict) -> list[dict[str, str]]:
     """What would have been seen."""
     return [
         {
-            "name": name,
-            "parameter": one.parameter,
-            "size": "none would have been seen" if one.value is None else size(one),
+            "name": name_of(name).capitalize(),
+            "size": seen(one),
         }
         for name, one in verdict.detectable.items()
     ]

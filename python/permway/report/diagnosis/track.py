@@ -1,4 +1,4 @@
-"""The track drawing: bodies, joints, sensors and force points along x, coloured by a value at each place."""
+"""The track drawing: bodies, joints, sensors and force points along x, in colours that are given."""
 
 from __future__ import annotations
 
@@ -9,10 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import Colormap, Normalize
 
 from permway.campaign.campaign import Campaign
-from permway.diagnosis.spot import Found
 from permway.model.bodies import Mass
 from permway.model.line import Line
 from permway.report.compare.looks import FONT, INK
@@ -22,6 +20,19 @@ HALF = 0.13
 
 UNKNOWN = "0.86"
 """Colour of what was not scanned."""
+
+
+Colour = str | tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Stripe:
+    """A coloured stretch of a body, or of one of its segments."""
+
+    what: str
+    from_m: float
+    to_m: float
+    colour: Colour
 
 
 @dataclass(frozen=True)
@@ -82,18 +93,28 @@ def _reach(campaign: Campaign) -> tuple[float, float]:
 
 
 def draw(
-    axes: Axes, campaign: Campaign, plan: Drawing, found: Sequence[Found], palette: Colormap, scale: Normalize
+    axes: Axes, campaign: Campaign, plan: Drawing, joints: Mapping[int, Colour], stripes: Sequence[Stripe] = ()
 ) -> None:
-    """Draw the line, each joint and each stretch of a body coloured by what a free stiffness explains there."""
+    """Draw the line with sensors and hammer points.
+
+    Parameters
+    ----------
+    axes : Axes
+    campaign : Campaign
+    plan : Drawing
+    joints : mapping of int to colour
+        By the joint's number; others are grey.
+    stripes : sequence of Stripe
+        Coloured stretches of bodies; what is not covered is grey.
+    """
     low, high = plan.reach_m
     line = campaign.model.line
     table, segments = line.joint_table(), line.segments()
-    gain = {j: max(f.surplus, 0.0) for f in found for j in f.spot.joints}
     lines, colours = [], []
     for j, x in enumerate(table.x.tolist()):
         upper, lower = (plan.level[segments[i].body] if i >= 0 else 0.0 for i in (table.upper[j], table.lower[j]))
         lines.append([(x, upper - HALF), (x, lower + (HALF if lower else 0.0))])
-        colours.append(palette(scale(gain[j])) if j in gain else UNKNOWN)
+        colours.append(joints.get(j, UNKNOWN))
     # Wide enough to be seen, and apart from each other where there is room.
     width = float(np.clip(160.0 / max(1, np.unique(table.x).size), 1.2, 5.0))
     # A pale joint on white paper needs an edge.
@@ -108,14 +129,11 @@ def draw(
         start, stop = max(segment.start, low), min(segment.stop, high)
         if stop <= start:
             continue
-        here = sorted((f.spot.x_m[0], max(f.surplus, 0.0)) for f in found if _is(f, segment.name, start, stop))
         axes.fill_between([start, stop], level - HALF, level + HALF, color=UNKNOWN, linewidth=0)
-        if here:
-            x = np.array([one[0] for one in here])
-            edges = np.concatenate([[start], 0.5 * (x[1:] + x[:-1]), [stop]])
-            values = np.array([[one[1] for one in here]])
-            rows = [level - HALF, level + HALF]
-            axes.pcolormesh(edges, rows, values, cmap=palette, norm=scale, rasterized=True)
+        for stripe in stripes:
+            ends = max(stripe.from_m, start), min(stripe.to_m, stop)
+            if stripe.what in (segment.name, segment.body) and ends[0] < ends[1]:
+                axes.fill_between(ends, level - HALF, level + HALF, color=stripe.colour, linewidth=0)
         axes.plot(
             [start, stop, stop, start, start],
             [level - HALF, level - HALF, level + HALF, level + HALF, level - HALF],
@@ -130,11 +148,6 @@ def draw(
     axes.set_xlim(low, high)
     axes.tick_params(axis="y", length=0, labelsize=FONT)
     axes.spines[["top", "right", "left"]].set_visible(False)
-
-
-def _is(found: Found, segment: str, start: float, stop: float) -> bool:
-    x = found.spot.x_m[0]
-    return found.spot.kind == "body" and found.spot.name == segment and start <= x <= stop
 
 
 def _held_at(campaign: Campaign, mass: str) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
@@ -10,10 +12,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, MaxNLocator, NullLocator
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.spot import Found
 from permway.report.compare.looks import FONT, edges, plain
-from permway.report.diagnosis.track import draw, drawing
+from permway.report.diagnosis.track import Colour, Drawing, Stripe, draw, drawing
 
 COLOURS = ("#0a6fb4", "#c77800", "#0b8f6b", "#a8321a", "#6a4fa0", "#59606b", "#8a6d00", "#c2548f")
 PLACE = "#a8321a"
@@ -50,7 +53,8 @@ def track_picture(diagnosis: Diagnosis) -> Figure:
     plain(above)
     above.tick_params(labelbottom=False)
     palette, scale = colormaps["YlOrRd"], PowerNorm(0.5, 0.0, max(highest, QUIET * found[0].degrees))
-    draw(below, campaign, plan, found, palette, scale)
+    colours = {j: palette(scale(max(f.surplus, 0.0))) for f in found for j in f.spot.joints}
+    draw(below, campaign, plan, colours, _stripes(campaign, plan, found, lambda gain: palette(scale(gain))))
     below.set_xlabel("x, m", fontsize=FONT + 0.5)
     below.tick_params(axis="x", labelsize=FONT)
     for axes in (above, below):
@@ -67,6 +71,25 @@ def track_picture(diagnosis: Diagnosis) -> Figure:
         frameon=False,
     )
     return figure
+
+
+def _stripes(
+    campaign: Campaign, plan: Drawing, found: Sequence[Found], colour: Callable[[float], Colour]
+) -> list[Stripe]:
+    """Each scanned place of a body's segment, to halfway to its neighbours."""
+    stripes = []
+    for segment in campaign.model.line.segments():
+        start, stop = max(segment.start, plan.reach_m[0]), min(segment.stop, plan.reach_m[1])
+        here = sorted(
+            (f.spot.x_m[0], max(f.surplus, 0.0))
+            for f in found
+            if f.spot.kind == "body" and f.spot.name == segment.name and start <= f.spot.x_m[0] <= stop
+        )
+        x = np.array([one[0] for one in here])
+        borders = [start, *(0.5 * (x[1:] + x[:-1])).tolist(), stop]
+        for (_, gain), low, high in zip(here, borders, borders[1:], strict=False):
+            stripes.append(Stripe(segment.name, low, high, colour(gain)))
+    return stripes
 
 
 def frequency_picture(diagnosis: Diagnosis) -> Figure:

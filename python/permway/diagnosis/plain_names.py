@@ -1,0 +1,164 @@
+"""Effects, parameters and sizes as an engineer says them: words, units that fit, digits that are known."""
+
+from __future__ import annotations
+
+import math
+
+from permway.diagnosis.verdict_parts import Estimate, Moved, Smallest
+
+NAMES = {
+    "ballast_frequency": "ballast stiffer with frequency",
+    "contact_filter": "averaging over the contact patch",
+    "contact_nonlinear": "contact stiffness at work",
+    "damper_series_stiffness": "springs in series with dampers",
+    "fastener_loss": "lost fasteners",
+    "girder_crack": "crack of the girder",
+    "girder_shear": "shear of the girder",
+    "irregularity_level": "level of the irregularity",
+    "layer_damping": "damping law of a layer",
+    "level_friction": "friction that changes with level",
+    "level_stiffness": "stiffness that changes with level",
+    "mains_lines": "lines of the mains",
+    "mortar_void": "void below the slab",
+    "noise_floor": "noise of a channel",
+    "novel": "something the catalogue does not hold",
+    "owner_value": "wrong stated value",
+    "pad_amplitude": "pads softer with amplitude",
+    "pad_frequency": "pads stiffer with frequency",
+    "pad_preload": "pads that change under load",
+    "pad_temperature": "pads that change with temperature",
+    "parametric_support": "rolling over the supports",
+    "recalibrated": "nothing missing",
+    "sensor_delay": "delay of a sensor",
+    "sensor_gain": "gain of a sensor",
+    "sensor_labels": "swapped labels",
+    "sensor_mounting": "mounting of a sensor",
+    "sensor_polarity": "polarity of a sensor",
+    "speed_error": "wrong speed",
+    "support_gradient": "gradient of support stiffness",
+    "support_scatter": "scatter of support stiffness",
+    "wheel_polygon": "polygonal wheel",
+}
+"""Of effects whose identifier, its underscores taken away, is not what an engineer says."""
+
+PREFIXES = (("G", 1e9), ("M", 1e6), ("k", 1e3))
+"""Of what is counted in newtons and pascals."""
+
+SMALL = (("m", 1e-3), ("µ", 1e-6))
+"""Of metres and seconds, below a tenth of each."""
+
+SUFFIXES = ("_N2_per_Hz", "_N_per_m", "_m_per_s", "_kg_per_m", "_dB_per_octave", "_per_K", "_per_10K")
+"""Units at the end of parameters' names, beside those of one part."""
+
+UNITS = ("_m", "_s", "_kg", "_Hz", "_dB", "_N")
+
+MOST = 3
+"""Significant digits, at most."""
+
+
+def name_of(identifier: str) -> str:
+    """Of an effect of the catalogue, or of several that are joined by " and "."""
+    return " and ".join(NAMES.get(one, one.replace("_", " ")) for one in identifier.split(" and "))
+
+
+def parameter_of(identifier: str) -> str:
+    """Of an effect's parameter, without its unit."""
+    for suffix in (*SUFFIXES, *UNITS):
+        if identifier.endswith(suffix):
+            identifier = identifier.removesuffix(suffix)
+            break
+    return identifier.replace("_", " ")
+
+
+def chance(probability: float) -> str:
+    """A probability with two digits; what rounds to 1 or 0 is called more or less than the last before it."""
+    if probability >= 0.995:
+        return "above 0.99"
+    return "below 0.01" if probability < 0.005 else f"{probability:.2f}"
+
+
+def measured(value: float, unit: str, digits: int = MOST) -> str:
+    """A number with its unit, whose prefix is such that few zeros are left."""
+    factor, named = _scale(abs(value), unit)
+    return _with(_text(value / factor, _decimals(value / factor, digits)), named)
+
+
+def stated(value: float, unit: str) -> str:
+    """A number that somebody has stated, with its unit and no nought at its end."""
+    factor, named = _scale(abs(value), unit)
+    text = f"{value / factor:.4g}".replace("e+0", "e").replace("e+", "e").replace("e-0", "e-")
+    return _with(text.replace("-", "−"), named)
+
+
+def estimate(one: Estimate | Moved) -> str:
+    """A value with its unit, with the digits that its 90 % interval leaves."""
+    factor, named = _scale(abs(one.value), one.unit)
+    return _with(_text(one.value / factor, _known(one, factor)), named)
+
+
+def ends(one: Estimate | Moved) -> str:
+    """The 90 % interval with its unit, or "" where it is not known or adds no digit to the value."""
+    if one.low is None or one.high is None:
+        return ""
+    factor, named = _scale(abs(one.value), one.unit)
+    decimals = _known(one, factor)
+    low, high = (_text(end / factor, decimals) for end in (one.low, one.high))
+    return "" if low == high else _with(f"{low} to {high}", named)
+
+
+def stretch(low: float, high: float) -> str:
+    """From and to along the line, to the decimetre, or to the centimetre where that is known."""
+    decimals = 2 if high - low < 0.2 else 1
+    return f"{low:.{decimals}f} to {high:.{decimals}f} m".replace("-", "−")
+
+
+def seen(one: Smallest) -> str:
+    """The smallest size that would have been seen."""
+    if one.value is None:
+        return "none would have been seen"
+    if one.none:
+        return f"a change of {_text(percent := 100.0 * abs(one.value / one.none - 1.0), _decimals(percent, 2))} %"
+    side = "below" if one.none is None or one.value < one.none else "above"
+    return f"{parameter_of(one.parameter)} {side} {measured(one.value, one.unit, 2)}"
+
+
+def _known(one: Estimate | Moved, factor: float) -> int:
+    """Decimals of a value in a unit: down to the first digit of half the interval, three digits at most."""
+    if one.low is None or one.high is None or not one.high > one.low:
+        return _decimals(one.value / factor, MOST)
+    half = 0.5 * (one.high - one.low) / factor
+    most = _decimals(max(abs(one.value / factor), half), MOST)
+    # Ends that share their digits with the value would say nothing.
+    return min(most, -math.floor(math.log10(half)) + (half < 2.0 * 10.0 ** math.floor(math.log10(half))))
+
+
+def _scale(size: float, unit: str) -> tuple[float, str]:
+    """By what a number is divided, and the unit then."""
+    if unit.startswith(("N", "Pa")):
+        for prefix, factor in PREFIXES:
+            if size >= factor:
+                return factor, prefix + unit
+    if unit in ("m", "s") and 0.0 < size < 0.1:
+        for prefix, factor in SMALL:
+            if size >= factor:
+                return factor, prefix + unit
+    return 1.0, "" if unit == "1" else unit
+
+
+def _decimals(value: float, digits: int) -> int:
+    return digits - 1 - math.floor(math.log10(abs(value))) if value else 0
+
+
+def _text(value: float, decimals: int) -> str:
+    # Without a sign of nought.
+    rounded = round(value, decimals) + 0.0
+    if rounded and not 1e-4 <= abs(rounded) < 1e6:
+        plain = f"{rounded:.{max(0, decimals + math.floor(math.log10(abs(rounded))))}e}"
+        plain = plain.replace("e+0", "e").replace("e+", "e").replace("e-0", "e-")
+    else:
+        plain = f"{rounded:.{max(decimals, 0)}f}"
+    return plain.replace("-", "−")
+
+
+def _with(text: str, unit: str) -> str:
+    return f"{text} {unit}" if unit else text

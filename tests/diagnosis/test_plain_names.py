@@ -1,0 +1,81 @@
+"""What people read: no underscores, units that fit, and no digit that is not known."""
+
+from __future__ import annotations
+
+import pytest
+from permway.diagnosis.catalogue import entries
+from permway.diagnosis.plain_names import (
+    NAMES,
+    chance,
+    ends,
+    estimate,
+    measured,
+    name_of,
+    parameter_of,
+    seen,
+    stated,
+    stretch,
+)
+from permway.diagnosis.verdict_parts import Estimate, Smallest
+
+
+def test_no_effect_or_parameter_is_said_with_an_underscore() -> None:
+    for name, entry in entries().items():
+        assert "_" not in name_of(name)
+        assert all("_" not in parameter_of(one) for one in entry.PARAMETERS)
+    assert name_of("fastener_loss and wheel_flat") == "lost fasteners and wheel flat"
+    # A word for an effect that is gone would never be missed.
+    assert set(NAMES) - set(entries()) == {"novel", "owner_value", "recalibrated", "sensor_labels"}
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "unit", "said", "interval"),
+    [
+        (0.05, 0.0499, 0.0501, "1", "0.0500", "0.0499 to 0.0501"),
+        (0.05, 0.04999, 0.05001, "1", "0.0500", ""),
+        (0.05, 0.03, 0.08, "1", "0.05", "0.03 to 0.08"),
+        (-1.019, -1.09, -0.94, "1", "−1.02", "−1.09 to −0.94"),
+        (2.123e7, 1.9e7, 2.4e7, "N/m", "21 MN/m", "19 to 24 MN/m"),
+        (2.55e-4, 2.4e-4, 2.7e-4, "s", "255 µs", "240 to 270 µs"),
+        (73.15, 73.0, 73.3, "Hz", "73.2 Hz", "73.0 to 73.3 Hz"),
+        (1234.0, 1000.0, 1500.0, "kg", "1200 kg", "1000 to 1500 kg"),
+        (0.0, -0.1, 0.1, "dB", "0.00 dB", "−0.10 to 0.10 dB"),
+    ],
+)
+def test_a_value_has_the_digits_that_its_interval_leaves(
+    value: float, low: float, high: float, unit: str, said: str, interval: str
+) -> None:
+    one = Estimate(value=value, low=low, high=high, unit=unit)
+    assert estimate(one) == said
+    assert ends(one) == interval
+
+
+def test_without_an_interval_three_digits_are_said() -> None:
+    one = Estimate(value=0.123456, unit="1")
+    assert (estimate(one), ends(one)) == ("0.123", "")
+    assert measured(3.1e-6, "m") == "3.10 µm"
+    assert measured(4.2e8, "N/m", 2) == "420 MN/m"
+    assert stated(3.0e7, "N/m") == "30 MN/m"
+    assert stated(-0.05, "1") == "−0.05"
+
+
+def test_a_probability_that_rounds_to_one_is_called_more_than_its_last_digit() -> None:
+    assert [chance(p) for p in (1.0, 0.996, 0.994, 0.5, 0.004)] == [
+        "above 0.99",
+        "above 0.99",
+        "0.99",
+        "0.50",
+        "below 0.01",
+    ]
+
+
+def test_what_would_have_been_seen_is_a_change_or_a_size_with_its_unit() -> None:
+    assert seen(Smallest(parameter="factor", value=0.62, unit="1", none=1.0)) == "a change of 38 %"
+    assert seen(Smallest(parameter="mass_kg", value=0.1275, unit="kg")) == "mass above 0.13 kg"
+    assert seen(Smallest(parameter="mount_Hz", value=912.0, unit="Hz", none=None)) == "mount below 910 Hz"
+    assert seen(Smallest(parameter="length_m", value=None, unit="m")) == "none would have been seen"
+
+
+def test_a_stretch_is_said_to_the_decimetre() -> None:
+    assert stretch(5.7254, 7.6214) == "5.7 to 7.6 m"
+    assert stretch(6.005, 6.05) == "6.00 to 6.05 m"

@@ -1,0 +1,258 @@
+"""The page of a diagnosis by the posterior: what is acted on first, with its map, and no underscore for people."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from browser import DESK, PHONE, hidden, opened, overflow, pictures, smallest_print
+from permway.campaign.campaign import Campaign
+from permway.diagnosis.catalogue import entries
+from permway.diagnosis.catalogue._change import with_chain
+from permway.diagnosis.catalogue._interval import weakened
+from permway.diagnosis.result import Diagnosis
+from permway.diagnosis.verdict import NOVEL
+from permway.diagnosis.verdict_parts import (
+    ClassMember,
+    Doubt,
+    Mechanics,
+    Moved,
+    NextMeasurement,
+    Place,
+    Recalibrated,
+)
+from permway.posterior import cells
+from permway.posterior.diagnose import diagnose
+from permway.report.diagnosis import write_report
+from permway.report.diagnosis.acting import next_steps, rival_rows
+from permway.report.diagnosis.places import map_picture
+from permway.report.diagnosis.verdict_page import render_verdict
+from simulated import simulate
+
+FEW = {"fastener_loss", "sensor_gain"}
+"""Effects that are tried, so that it takes seconds."""
+
+
+def lost(campaign: Campaign) -> Campaign:
+    """Three pads about the drive point keep 0.3."""
+    return weakened(campaign, "pad", 6.0, 1.2, 0.3)
+
+
+def loud(campaign: Campaign) -> Campaign:
+    """A sensor reads 1.4 times what is there."""
+    chain = campaign.sensor("deck@3").chain
+    return with_chain(campaign, "deck@3", chain.model_copy(update={"gain": 1.4}))
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Diagnosis]:
+    folder = tmp_path_factory.mktemp("made")
+    others = set(entries()) - FEW
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cells, "BESIDE", {})
+        return {
+            name: diagnose(simulate(folder / name, 41, amend=amend).campaign, threads=1, ruled_out=others)
+            for name, amend in (("lost", lost), ("loud", loud), ("nothing", lambda c: c))
+        }
+
+
+@pytest.fixture(scope="module")
+def pages(found: dict[str, Diagnosis], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("written")
+    return {name: write_report(one, folder / name, dpi=60) for name, one in found.items()}
+
+
+def text_of(path: Path) -> str:
+    return read(path.read_text("utf-8"))
+
+
+def read(page: str) -> str:
+    """What is read of a page."""
+    bare = re.sub(r"<style>.*?</style>|<script.*?</script>", " ", page, flags=re.DOTALL)
+    return " ".join(re.sub(r"<[^>]+>", " ", bare).split())
+
+
+def test_what_to_act_on_comes_first_and_what_it_rests_on_is_folded(pages: dict[str, Path]) -> None:
+    page = pages["lost"].read_text("utf-8")
+    order = [
+        page.index(f'id="{name}"') for name in ("verdict", "next", "where", "curve", "what", "sure", "rivals")
+    ]
+    assert order == sorted(order)
+    assert page.index("<details") > page.index('id="sure"')
+    assert "<details open" not in page
+    assert not re.search(r"https?://|<script[^>]+src|@import|<link", page)
+    text = text_of(pages["lost"])
+    assert "Lost fasteners at pad from 5.4 to 6.6 m" in text
+    assert "probability above 0.99" in text
+    assert "Look at the pad from 5.4 to 6.6 m" in text
+    assert "of the stiffness is left (90 %: factor 0.3" in text or "(90 %: factor 0.29" in text
+
+
+@pytest.mark.parametrize("name", ["lost", "loud", "nothing"])
+def test_nobody_reads_an_underscore(pages: dict[str, Path], name: str) -> None:
+    assert re.findall(r"\b\w*[A-Za-z]_[A-Za-z]\w*", text_of(pages[name])) == []
+
+
+def test_the_map_has_the_probability_at_its_joints(found: dict[str, Diagnosis]) -> None:
+    figure = map_picture(found["lost"])
+    above, below = figure.axes
+    bars = {round(float(b.get_x() + 0.5 * b.get_width()), 3): float(b.get_height()) for b in above.patches}
+    assert all(bars[x] > 0.9 for x in (5.4, 6.0, 6.6))
+    assert sum(bars.values()) < 3.5
+    assert below.get_xlabel() == "x, m"
+    assert {"sensor", "hammer point"} <= set(below.get_legend_handles_labels()[1])
+
+
+def test_a_sensor_at_fault_is_ringed_with_its_probability(found: dict[str, Diagnosis]) -> None:
+    (only,) = map_picture(found["loud"]).axes
+    (note,) = [one.get_text() for one in only.texts]
+    assert note == "deck@3: 1.00"
+
+
+def test_where_nothing_is_missing_the_map_shows_where_was_looked(
+    found: dict[str, Diagnosis], pages: dict[str, Path]
+) -> None:
+    weighed = found["nothing"].weighed
+    assert weighed is not None
+    assert weighed.along == ()
+    assert weighed.tried["pad"].size > 10
+    (only,) = map_picture(found["nothing"]).axes
+    assert {"sensor", "hammer point"} <= set(only.get_legend_handles_labels()[1])
+    text = text_of(pages["nothing"])
+    assert "Where was looked" in text
+    assert text.index("What would have been seen") < text.index("What it rests on")
+    assert re.search(r"Lost fasteners a change of [0-9.]+ %", text)
+
+
+def test_rivals_are_ranked_by_probability_and_all_sum_to_one(found: dict[str, Diagnosis]) -> None:
+    for one in found.values():
+        assert one.weighed is not None
+        shares = [rival.probability for rival in one.weighed.rivals]
+        assert sum(shares) + one.weighed.unknown == pytest.approx(1.0)
+        assert shares == sorted(shares, reverse=True)
+        assert min(rival.behind_nats for rival in one.weighed.rivals) == 0.0
+    lost_rows = rival_rows(found["lost"].weighed)  # type: ignore[arg-type]
+    assert lost_rows[0]["names"] == "Lost fasteners"
+    assert "pad from 5.4 to 6.6 m" in lost_rows[0]["what"]
+    assert lost_rows[-1]["names"] == "Nothing missing"
+    assert float(lost_rows[-1]["behind"]) > 20.0
+
+
+def test_parameters_have_units_that_fit(pages: dict[str, Path]) -> None:
+    text = text_of(pages["lost"])
+    assert re.search(r"pad\.k 30 MN/m 2[0-9] to 4[0-9] MN/m [0-9.]+ MN/m [0-9.]+ to [0-9.]+ MN/m", text)
+    assert re.search(r"deck\.E 34 GPa", text)
+
+
+def test_held_out_groups_have_nats_and_decibels(found: dict[str, Diagnosis], pages: dict[str, Path]) -> None:
+    text = text_of(pages["lost"])
+    assert found["lost"].verdict.held_out
+    for name in found["lost"].verdict.held_out:
+        assert re.search(rf"{re.escape(name)} −?[0-9.]+ [0-9.]+ dB [0-9.]+ dB", text), name
+
+
+def test_each_status_says_what_to_do(found: dict[str, Diagnosis]) -> None:
+    loud_one, fine = found["loud"], found["nothing"]
+    assert next_steps(loud_one)[0].startswith("Check deck@3: mounting")
+    assert next_steps(fine)[0].startswith("Nothing to repair")
+    far = Recalibrated(before={"pad.k": Moved(value=2.1e7, prior=3e7, z=-4.4)})
+    off = fine.verdict.model_copy(update={"status": "outside_tolerance", "recalibrated": far})
+    assert next_steps(replace(fine, verdict=off))[0].startswith("Check what was stated of pad.k")
+    unsure = fine.verdict.model_copy(update={"status": "insufficient"})
+    assert "do not decide" in next_steps(replace(fine, verdict=unsure))[0]
+    advice = NextMeasurement(
+        measurement="a blow on the deck at 7.5 m",
+        separates=("fastener_loss", "recalibrated"),
+        separation_before=4.0,
+        separation_after=31.0,
+    )
+    advised = unsure.model_copy(update={"next": (advice,)})
+    assert next_steps(replace(fine, verdict=advised)) == [
+        "Measure: a blow on the deck at 7.5 m. It tells lost fasteners from nothing missing."
+    ]
+    doubt = Doubt(kind="sign", where="records.blows", what="has the other sign", remedy='sign = "-"')
+    doubted = fine.verdict.model_copy(update={"blunders": (doubt,)})
+    assert next_steps(replace(fine, verdict=doubted))[0] == (
+        'Put right in the campaign file: records.blows: sign = "-".'
+    )
+
+
+LOST, VOID = ClassMember(name="fastener_loss", probability=0.6), ClassMember(name="mortar_void", probability=0.4)
+SURE = ClassMember(name=NOVEL, probability=0.95)
+
+
+@pytest.mark.parametrize(
+    ("status", "changes", "said"),
+    [
+        ("ambiguous", {"name": None, "class_": (LOST, VOID)}, ("Lost fasteners or void below the slab", "(0.40)")),
+        ("insufficient", {}, ("What is suspected", "Lost fasteners")),
+        (
+            "described",
+            {"name": None, "class_": (SURE,), "law": Mechanics(words="spring of 3 MN/m")},
+            ("acts what the catalogue does not hold", "expect something the catalogue does not hold"),
+        ),
+        (
+            "located",
+            {"name": None, "class_": (SURE,), "parameters": {}, "size": None, "law": Mechanics()},
+            ("physics is missing that these records cannot describe", "Look at the pad from 5.4 to 6.6 m"),
+        ),
+        (
+            "measurement",
+            {"domain": "measurement", "name": "sensor_labels", "class_": (), "place": Place(channels=("a", "b"))},
+            ("Swapped labels", "Check a and b: mounting"),
+        ),
+        (
+            "named",
+            {"name": "owner_value", "class_": (), "place": Place(body="pad.k"), "parameters": {}, "size": None},
+            ("Wrong stated value", "Check what was stated of pad.k"),
+        ),
+        (
+            "named",
+            {"domain": "vehicle", "name": "air_spring", "place": Place()},
+            ("Air spring", "Look at the vehicle"),
+        ),
+    ],
+)
+def test_a_page_of_every_status_says_its_effect(
+    found: dict[str, Diagnosis], status: str, changes: dict[str, object], said: tuple[str, ...]
+) -> None:
+    one = found["lost"]
+    effect = one.verdict.effects[0].model_copy(update=changes)
+    verdict = one.verdict.model_copy(update={"status": status, "effects": (effect,)})
+    text = read(render_verdict(replace(one, verdict=verdict), {}))
+    for words in said:
+        assert words in text, words
+    assert re.findall(r"\b\w*[A-Za-z]_[A-Za-z]\w*", text) == []
+
+
+def test_text_of_a_campaign_is_no_markup(found: dict[str, Diagnosis]) -> None:
+    one = found["lost"]
+    effect = one.verdict.effects[0].model_copy(update={"law": Mechanics(words="<script>alert(1)</script>")})
+    page = render_verdict(replace(one, verdict=one.verdict.model_copy(update={"effects": (effect,)})), {})
+    assert "<script>alert" not in page
+    assert "&lt;script&gt;" in page
+
+
+def test_the_same_diagnosis_gives_the_same_page(
+    found: dict[str, Diagnosis], pages: dict[str, Path], tmp_path: Path
+) -> None:
+    again = write_report(found["loud"], tmp_path / "again", dpi=60)
+    assert again.read_text("utf-8") == pages["loud"].read_text("utf-8")
+
+
+@pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
+def test_in_a_browser_nothing_is_cut_off(pages: dict[str, Path], size: tuple[int, int]) -> None:
+    with opened(pages["lost"], size) as (page, complaints):
+        assert complaints == []
+        assert overflow(page) <= 0
+        assert pictures(page)[1] == 0
+        assert page.evaluate("[...document.querySelectorAll('details')].every((one) => !one.open)")
+        page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
+        assert overflow(page) <= 0
+        assert hidden(page) == []
+        assert smallest_print(page) >= 11.0
+        wide = page.evaluate("[...document.images].map((i) => i.getBoundingClientRect().width)")
+        assert np.max(wide) <= size[0]
