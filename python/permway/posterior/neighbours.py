@@ -100,7 +100,9 @@ def _moves(fit: Fit, own: slice, hypothesis: Hypothesis) -> Iterator[tuple[Reals
     if all(name in names for name in STRETCH):
         for low, high in _stretches(values, stations_of(line, what) if what in line.laws else None, hypothesis):
             to = {"centre_m": 0.5 * (low + high), "length_m": high - low}
-            if hypothesis.size in names and np.isfinite(hypothesis.none):
+            here = hypothesis.locate(values).x_m
+            same = here is not None and bool(np.allclose((low, high), here))
+            if not same and hypothesis.size in names and np.isfinite(hypothesis.none):
                 # More joints have less each: halfway between as much each and as much together.
                 share = np.sqrt((values["length_m"] + step) / (high - low + step))
                 to[hypothesis.size] = hypothesis.none + share * (values[hypothesis.size] - hypothesis.none)
