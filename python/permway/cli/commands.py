@@ -247,15 +247,27 @@ def sweep(
         raise typer.Exit(1)
 
 
-@app.command(epilog=examples("permway doctor", "permway doctor --json | jq .vectors"))
-def doctor(as_json: Json = False) -> None:
+@app.command(epilog=examples("permway doctor", "permway doctor --json | jq .vectors", "permway doctor --bench"))
+def doctor(
+    bench: Annotated[
+        bool, typer.Option("--bench", help="Also time three lines and a small diagnosis: some 20 seconds.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
     """Machine, versions, and whether the core works.
 
-    Holds the core's answer for a mass on a spring against the closed form; status 1 if it is wrong.
+    Holds the core's answer for a mass on a spring against the closed form; status 1 if it is wrong. With --bench
+    also how fast this machine is, and one number to compare machines by, the score: the cores of a reference that
+    it is worth. Other programs should rest meanwhile.
     """
     from permway.cli.machine import account
 
     result = account()
+    if bench and result["self_test"] == "passed":
+        from permway.cli.bench import bench as measure
+
+        with progress_bar("measuring", as_json):
+            result |= measure()
     print_result(result, as_json)
     if result["self_test"] != "passed":
         raise typer.Exit(1)
