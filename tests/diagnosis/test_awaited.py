@@ -15,12 +15,13 @@ from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.predict import predict
 from permway.diagnosis.catalogue._change import hung_mass, with_joints
 from permway.diagnosis.catalogue._pads import factors, with_factors
-from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.gather import gather
-from permway.diagnosis.recalibrate import UNFIT, recalibrate
+from permway.diagnosis.recalibrate import UNFIT
 from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.laws.toml import to_toml
 from permway.model.joints import GROUND, Joints
+from permway.posterior.diagnose import diagnose
+from searched import recalibrated_base
 from simulated import CAMPAIGN, MODEL, simulate
 from small_sizes import mass_on_a_spring
 
@@ -134,7 +135,7 @@ def test_intervals_hold_the_truth_where_the_model_does_not_fit(tmp_path: Path) -
     inside, misfits = [], []
     for seed in range(1, 25):
         case = simulate(tmp_path / f"c{seed}", seed, noise=0.02, smooth=ROUGH_NEPER, octaves=ROUGH_OCTAVES)
-        fit = recalibrate(gather(case.campaign, threads=1))
+        fit = recalibrated_base(gather(case.campaign, threads=1))
         misfits.append(fit.heat)
         for name, one in recalibrated_of(fit).items():
             assert one.low is not None

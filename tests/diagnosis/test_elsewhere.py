@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_factors
-from permway.diagnosis.diagnose import diagnose
+from permway.posterior.diagnose import diagnose
 from simulated import simulate
 
 
