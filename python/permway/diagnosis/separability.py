@@ -120,7 +120,7 @@ def separability(
     stated = np.zeros(len(free_parameters(campaign)))
     fit = _untouched(recalibrate(evidence, start=stated, most_steps=0))
     base = _Base(fit)
-    offered = list(hypotheses(Situation(fit, tuple(_places(fit)))))
+    offered = list(hypotheses(Situation(fit, tuple(places(fit)))))
     kept: list[tuple[Hypothesis, Reals, Reals, Reals]] = []
     for index, hypothesis in enumerate(offered):
         say("effects", index, len(offered))
@@ -159,7 +159,7 @@ def _untouched(fit: Fit) -> Fit:
     return replace(fit, deviations=nothing, clean=nothing, chi2=0.0, prior=0.0, heat=1.0)
 
 
-def _places(fit: Fit) -> Iterator[Found]:
+def places(fit: Fit) -> Iterator[Found]:
     """A quarter, the middle and three quarters of each layer and body, as places of which nothing is known yet."""
     line, rows = fit.campaign.model.line, fit.evidence.rows
     frequency = np.geomspace(float(rows.frequency_Hz.min()), float(rows.frequency_Hz.max()), BANDS)
