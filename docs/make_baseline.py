@@ -38,8 +38,8 @@ HEAD = """# Results on small campaigns
 finite elements that share no code with the solver. What each column counts is shown there. Shares are hits/cases
 with their 90 % intervals.
 
-`permway diagnose` is the second of two methods. Of the first only these figures are left, for the second to be held
-against.
+`permway diagnose` is the second of two methods. Of the first only these figures are left, for the second to be
+held against.
 
 Both methods call nothing, or next to nothing, where nothing is missing. **The first method finds few effects**
 on layouts that it was not made on, it names pads at the point struck falsely, and its intervals are too narrow
