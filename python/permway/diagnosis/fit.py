@@ -61,7 +61,7 @@ class Fit:
     campaign : Campaign
         With these values.
     evidence : Evidence
-        With the sizes of smooth errors learnt.
+        With the sizes of smooth errors.
     deviations : ndarray, shape (n,)
         Standardised, smooth errors not taken out.
     clean : ndarray, shape (n,)

@@ -1,4 +1,4 @@
-"""A hypothesis as far as it was followed while the base moves linearly, and with the base under it."""
+"""A base with an effect on top, and an effect with a smaller size."""
 
 from __future__ import annotations
 
