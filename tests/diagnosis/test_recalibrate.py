@@ -70,7 +70,7 @@ def test_the_owners_values_deviate_and_the_found_ones_do_not(cases: list[tuple[S
 @pytest.mark.xfail(
     strict=True,
     raises=AssertionError,
-    reason="of one sensor in twenty 1.29 times the noise is left, for errors of chains are taken out by other functions",
+    reason="of one sensor in twenty 1.29 times the noise is left: errors are taken out by other functions",
 )
 def test_what_is_left_is_as_large_as_the_noise(cases: list[tuple[Simulated, Evidence, Fit]]) -> None:
     for made, _, fit in cases:
