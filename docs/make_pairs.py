@@ -33,7 +33,7 @@ What was expected was written down before the first run.
 
 
 NOTES = """
-By `--posterior`, with `benches/pairs/run.py`; empty rows are not run yet. After a first trial the tolerance of the
+With `benches/pairs/run.py`; empty rows are not run yet. After a first trial the tolerance of the
 cart's damper was widened to 50 %. Of the carts "right" counts a damper recalibrated within 8 %; the class holds
 the cause in 22 of 30 (asked: 27). Silverbox at five levels was run twice: the first time friction
 alone was named, for softening had no bound at 0.

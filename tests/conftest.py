@@ -22,23 +22,16 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
 HERE = Path(__file__).parent
 LONG = {
     "fits": """
-        cli/test_check.py docs/test_examples.py
-        posterior recordings/test_skeleton.py recordings/test_skeleton_wide.py recordings/test_spoilt.py
-        report/test_compare.py report/test_demo.py report/test_diagnosis_page.py report/test_one_source.py
-        sealed challenge/test_clipped.py challenge/test_rivals.py challenge/test_follow.py
-        first_hour checking/test_stated.py checking/test_noise_floors.py checking/test_blunders.py
-        diagnosis/effects diagnosis/test_awaited.py diagnosis/test_bases.py diagnosis/test_bent_valley.py
-        diagnosis/test_blunt.py diagnosis/test_credit.py diagnosis/test_crossed.py diagnosis/test_diagnose.py
-        diagnosis/test_elsewhere.py diagnosis/test_felt.py diagnosis/test_frf_block.py diagnosis/test_gained.py
-        diagnosis/test_grammar.py diagnosis/test_heldout.py diagnosis/test_heldout_lines.py diagnosis/test_hung.py
-        diagnosis/test_idealised.py diagnosis/test_in_detail.py diagnosis/test_journal.py diagnosis/test_kept.py
-        diagnosis/test_locate.py diagnosis/test_lost_stretch.py diagnosis/test_nearby.py diagnosis/test_noise.py
-        diagnosis/test_one_place.py diagnosis/test_passage.py diagnosis/test_ragged.py
-        diagnosis/test_recalibrate.py diagnosis/test_recovered.py diagnosis/test_refit.py
-        diagnosis/test_resonances.py diagnosis/test_restarted.py diagnosis/test_ruled_out.py
-        diagnosis/test_sampling.py diagnosis/test_separability.py diagnosis/test_side_by_side.py
-        diagnosis/test_slips.py diagnosis/test_small_sizes.py diagnosis/test_smooth.py
-        diagnosis/test_table_of_modes.py diagnosis/test_thermometers.py diagnosis/test_tolerances.py
+        cli/test_check.py docs/test_examples.py posterior recordings/test_skeleton.py
+        recordings/test_skeleton_wide.py recordings/test_spoilt.py report/test_compare.py report/test_demo.py
+        report/test_diagnosis_page.py report/test_one_source.py sealed challenge/test_clipped.py
+        challenge/test_follow.py first_hour checking/test_stated.py checking/test_noise_floors.py
+        checking/test_blunders.py diagnosis/effects diagnosis/test_awaited.py diagnosis/test_bent_valley.py
+        diagnosis/test_diagnose.py diagnosis/test_elsewhere.py diagnosis/test_frf_block.py
+        diagnosis/test_idealised.py diagnosis/test_nearby.py diagnosis/test_noise.py diagnosis/test_one_place.py
+        diagnosis/test_passage.py diagnosis/test_recalibrate.py diagnosis/test_ruled_out.py
+        diagnosis/test_separability.py diagnosis/test_side_by_side.py diagnosis/test_small_sizes.py
+        diagnosis/test_smooth.py diagnosis/test_table_of_modes.py diagnosis/test_tolerances.py
     """,
     "campaigns": """
         challenge/test_challenge_and_sliding.py challenge/test_challenge_and_solver.py

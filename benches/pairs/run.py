@@ -2,8 +2,7 @@
 
 Needs the recordings beside the repository. What is in FOLDER already is not made or diagnosed again; NAME takes
 those whose names begin so. Prints a line each: seconds of processor, status, what is stated with its class,
-decibels of what was left out, before and after. `--first` takes the first method. Each has four minutes of
-processor at most.
+decibels of what was left out, before and after. Each has four minutes of processor at most.
 """
 
 from __future__ import annotations
@@ -77,10 +76,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("names", nargs="*", default=[""])
-    parser.add_argument("--first", action="store_true")
     given = parser.parse_args()
     given.folder.mkdir(parents=True, exist_ok=True)
-    out = "first" if given.first else "out"
     for begins, make in MADE.items():
         if not any(begins.startswith(name[: len(begins)]) for name in given.names):
             continue
@@ -89,12 +86,11 @@ def main() -> None:
         for name, path in (made or make(given.folder)).items():
             if not name.startswith(tuple(given.names)):
                 continue
-            into = path.parent / out
+            into = path.parent / "out"
             before = _processor_s()
             if not (into / "verdict.json").exists():
-                method = [] if given.first else ["--posterior"]
                 where = ["--allow-outside", "--threads", "1", "-o", str(into)]
-                command = [sys.executable, "-m", "permway", "diagnose", *method, str(path), *where]
+                command = [sys.executable, "-m", "permway", "diagnose", str(path), *where]
                 done = subprocess.run(command, capture_output=True, text=True, preexec_fn=_limited, check=False)
                 if done.returncode:
                     last = (done.stderr.strip().splitlines() or ["no message"])[-1]

@@ -58,7 +58,7 @@ def compare(
     InputError
         If the campaign or a record cannot be used.
     """
-    from permway.diagnosis.compare import compare as run
+    from permway.posterior.compare import compare as run
 
     return run(_campaign(campaign), raw_only=raw_only, threads=threads, progress=progress)
 
@@ -66,10 +66,7 @@ def compare(
 def diagnose(
     campaign: Campaign | str | Path,
     *,
-    posterior: bool = False,
-    seed: int = 0,
     ruled_out: Collection[str] = (),
-    draws: int = 0,
     threads: int | None = None,
     progress: Stages | None = None,
 ) -> Diagnosis:
@@ -78,14 +75,8 @@ def diagnose(
     Parameters
     ----------
     campaign : Campaign or path
-    posterior : bool
-        By the second method; `seed` and `draws` then do not act.
-    seed : int
-        Of simulated campaigns with nothing missing.
     ruled_out : collection of str
         Effects of the catalogue that cannot be.
-    draws : int
-        Of the parameters, for intervals; 0 for curvature alone.
     threads : int, optional
         Processes that share the work.
     progress : callable, optional
@@ -97,16 +88,12 @@ def diagnose(
         If no record can be used, or what is ruled out is not in the catalogue.
     """
     from permway.checking.check import check as run_check
-    from permway.diagnosis.diagnose import diagnose as run
     from permway.diagnosis.doubts import doubted
-    from permway.posterior.diagnose import diagnose as explain
+    from permway.posterior.diagnose import diagnose as run
 
     read = _campaign(campaign)
     checked = run_check(read, threads=threads)
-    if posterior:
-        found = explain(read, ruled_out=ruled_out, threads=threads, progress=progress)
-    else:
-        found = run(read, seed=seed, ruled_out=ruled_out, draws=draws, threads=threads, progress=progress)
+    found = run(read, ruled_out=ruled_out, threads=threads, progress=progress)
     return doubted(found, checked)
 
 

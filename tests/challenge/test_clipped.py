@@ -12,9 +12,9 @@ from permway.challenge import write
 from permway.challenge.case import write_truth
 from permway.challenge.effects.recorders import Clipping
 from permway.challenge.score import score
-from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.speak_measurement import with_spoilt
 from permway.diagnosis.verdict import Verdict
+from permway.posterior.diagnose import diagnose
 from short_deck import small_case
 
 

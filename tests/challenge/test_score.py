@@ -14,7 +14,6 @@ from permway.challenge.layout import draw_layout, draw_tests
 from permway.challenge.score import score
 from permway.challenge.summary import interval, summary
 from permway.cli import app
-from permway.diagnosis.rivals import RIVALS
 from permway.errors import InputError
 from typer.testing import CliRunner
 
@@ -187,60 +186,3 @@ def test_scores_of_verdicts_without_times_are_json(tmp_path: Path) -> None:
     assert ended.exit_code == 0
     (case,) = json.loads(ended.stdout)["cases"]
     assert (case["found"], case["seconds"]) == (True, None)
-
-
-def test_rivals_are_told_beside_the_diagnosis_on_the_campaigns_that_they_answered_on(tmp_path: Path) -> None:
-    lost = verdict("named", effect("fastener_loss", "fastener_loss"))
-    lost["held_out"]["band"] = {"gain_nats": 9.0, "standard_error": 1.0}
-    nothing = verdict("recalibrated")
-    place = folder(
-        tmp_path,
-        {"single-1": (truth(LOST), lost), "single-2": (truth(LOST), nothing), "null-1": (truth(), nothing)},
-    )
-    held = {rival: {"held_out": {"place": {"gain_nats": 4.0, "standard_error": 1.0}}} for rival in RIVALS}
-    held["classifier"] = {"held_out": {"place": {"gain_nats": 6.0, "standard_error": 1.0}}}
-    for name in ("single-1", "null-1"):
-        (place / "verdicts" / name / "campaign").mkdir()
-        (place / "verdicts" / name / "campaign" / "campaign.toml").write_text("")
-        for rival in RIVALS:
-            answer = place / "rivals" / rival / name / "verdict.json"
-            answer.parent.mkdir(parents=True)
-            answer.write_text(json.dumps({**(lost if rival == "classifier" else nothing), **held[rival]}))
-    ended = CliRunner().invoke(app, ["challenge", "rivals", str(place), "--json"])
-    assert ended.exit_code == 0, ended.output
-    rows = {(row["rival"], row["tier"]): row for row in json.loads(ended.stdout)["rivals"]}
-    assert {name for name, _ in rows} == {"permway", *RIVALS}
-    assert rows["permway", "something concealed"]["found"].startswith("1/1")
-    assert rows["permway", "null"]["called"].startswith("0/1")
-    assert rows["classifier", "null"]["called"].startswith("1/1")
-    assert rows["BIC, independent errors", "something concealed"]["found"].startswith("0/1")
-    # The diagnosis gains 5 nats.
-    assert str(rows["BIC, independent errors", "something concealed"]["outdone"]).startswith("1/1")
-    assert str(rows["classifier", "something concealed"]["outdone"]).startswith("0/1")
-    # Which of the two is right where one alone is.
-    assert str(rows["BIC, independent errors", "something concealed"]["alone_placed"]).startswith("1/1")
-    assert str(rows["classifier", "null"]["alone_quiet"]).startswith("1/1")
-    assert "alone_placed" not in rows["classifier", "something concealed"]
-    assert "alone_quiet" not in rows["BIC, independent errors", "null"]
-    # Where it states nothing, it foretells nothing that the base does not.
-    assert "outdone" not in rows["classifier", "null"]
-
-
-def test_names_are_claims_and_what_no_catalogue_has_is_novel(tmp_path: Path) -> None:
-    said = effect("sensor_gain", "sensor_gain", "novel")
-    right = verdict("named", effect("fastener_loss", "fastener_loss", "novel"))
-    right["held_out"] = {"place": {"gain_nats": 5.0, "standard_error": 1.0, "db_before": 2.0, "db_after": 0.5}}
-    cases = {
-        "outside-1": (truth({**LOST, "id": None, "mechanical": "a spring"}), verdict("named", said)),
-        "single-1": (truth(LOST), right),
-        "single-2": (truth(LOST), verdict("insufficient", said)),
-    }
-    outside, single, quiet = score(folder(tmp_path, cases), FAMILIES)
-    assert [(c.name, c.probability, c.true) for c in outside.claims] == [
-        ("sensor_gain", 0.5, False),
-        ("novel", 0.5, True),
-    ]
-    assert [c.true for c in single.claims] == [True, False]
-    assert (single.concealed_family, single.said_family, single.gain_dB) == ("local loss", "local loss", 1.5)
-    # A suspicion claims nothing.
-    assert (quiet.claims, quiet.said_family, quiet.gain_dB) == ((), "insufficient", None)

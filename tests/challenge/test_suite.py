@@ -9,15 +9,13 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Future
 from pathlib import Path
-from typing import Any
 
 import pytest
 from permway.challenge import suite as module
 from permway.challenge.pool import processes
-from permway.challenge.rivals import ANSWERS
 from permway.challenge.run import FAILED, VERDICT
 from permway.challenge.suite import CASES, run_suite, suite_of
 from permway.errors import InputError, SolveError
@@ -42,10 +40,6 @@ def never(_: Path) -> Callable[[Path], float]:
     raise SolveError("no such model")
 
 
-def same(_: Path, __: Sequence[str]) -> dict[str, Any]:
-    return {"always": {"status": "named", "effects": [], "held_out": {}}}
-
-
 def finished(folder: Path, count: int) -> None:
     """Campaigns of a suite that were made and diagnosed before."""
     for one in suite_of(1)[:count]:
@@ -60,10 +54,9 @@ def finished(folder: Path, count: int) -> None:
 def test_what_is_there_is_left_alone_and_only_what_was_asked_for_is_done(tmp_path: Path) -> None:
     finished(tmp_path, 3)
     seen: list[tuple[int, int]] = []
-    done = run_suite(tmp_path, 1, always, cases=3, ask=same, progress=lambda *at: seen.append(at))
+    done = run_suite(tmp_path, 1, always, cases=3, progress=lambda *at: seen.append(at))
     assert done == {"verdicts": 3, "failed": 0}
     assert seen == [(1, 3), (2, 3), (3, 3)]
-    assert len(list(tmp_path.glob(f"{ANSWERS}/always/*/verdict.json"))) == 3
     assert not list(tmp_path.glob("*/sheet.json"))
 
 
@@ -126,5 +119,5 @@ def test_what_cannot_be_weighed_is_kept_with_its_reason(tmp_path: Path) -> None:
     one = suite_of(1)[0]
     truth = tmp_path / "truth" / f"{one.name}.json"
     truth.write_text(json.dumps({"effects": [{"id": "x"}], "seed": 3, "tier": "single"}))
-    assert not module._one(tmp_path, one, 1, never, None)
+    assert not module._one(tmp_path, one, 1, never)
     assert "no such model" in (tmp_path / "verdicts" / one.name / FAILED).read_text()

@@ -12,8 +12,8 @@ from permway.challenge import write
 from permway.challenge.effects.fasteners import FastenersLost
 from permway.challenge.score import Scored
 from permway.challenge.weigh import twin_of, weigh, weights
-from permway.diagnosis.deviance import against_folder
 from permway.errors import InputError
+from permway.posterior.deviance import against_folder
 from short_deck import small_case, small_site
 
 

@@ -43,9 +43,9 @@ def test_all_starts_lead_to_the_same_place(tmp_path: Path, noise: float) -> None
         dense = values["density"] + values["more"] / deck.area_m2
         return with_fields(made, "deck", density_kg_per_m3=dense)
 
-    begun = recalibrate(evidence, learn=False).z
+    begun = recalibrate(evidence).z
     fits = [
-        recalibrate(evidence, build=build, free=free, start=np.array([*begun, *z]), learn=False)
+        recalibrate(evidence, build=build, free=free, start=np.array([*begun, *z]))
         for z in ((-6.0, -0.1), (-4.0, 0.0), (0.0, -1.6), (2.0, -1.0))
     ]
     for fit in fits:

@@ -9,7 +9,6 @@ import pytest
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue._change import with_chain
-from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.gather import gather
 from permway.recordings.channel import Chain
 from simulated import simulate
@@ -39,8 +38,9 @@ def _noisy(folder: Path, seed: int) -> Lines:
     made = simulate(folder, seed, noise=NOISE, smooth=0.0)
     evidence = gather(made.campaign.with_values(made.truth), threads=1)
     solved = evidence.predicted(evidence.campaign)
-    block = evidence.reweighed(solved).blocks[0]
+    block = evidence.blocks[0]
     assert isinstance(block, FrfBlock)
+    block = block.with_reference(solved.datasets[0], np.zeros(block.measured.shape, dtype=np.complex128))
     block = block.with_pair(NO_ERROR).with_floor(NO_ERROR)
     # Which lines are noisy is told by the prediction: by the measured ones noise would choose for itself.
     relative = block.sigma / np.abs(solved.datasets[0]["frf"].values)
@@ -114,29 +114,3 @@ def test_what_smooth_errors_undo_leaves_nothing_where_noise_hides_the_response(
     left = np.abs(undone - block.off(solved)[hidden]) / np.abs(block._there[hidden])
     assert left.max() < 0.4 * abs(off) ** 2
     assert left.max() < 0.012
-
-
-def test_errors_are_those_of_the_columns(tmp_path: Path) -> None:
-    evidence = gather(simulate(tmp_path, 5, noise=1e-4, smooth=0.0).campaign, threads=1)
-    block = evidence.blocks[0]
-    assert isinstance(block, FrfBlock)
-    block = block.with_pair(NO_ERROR)
-    coefficients = np.random.default_rng(6).standard_normal(block.smooth.columns.gram().shape[0])
-    moved = block.errors(coefficients) * block.measured * block.weight
-    assert moved.shape == block.measured.shape
-    pushed = block.smooth.columns.push(coefficients)
-    assert pushed == pytest.approx(np.concatenate([moved.real.reshape(-1), moved.imag.reshape(-1)]), rel=1e-6)
-
-
-def test_what_a_base_that_fits_nothing_leaves_is_no_error_of_chains(tmp_path: Path) -> None:
-    """Else what is missing would be where responses hide in noise, and nothing there would tell of it."""
-
-    def lost(campaign: Campaign) -> Campaign:
-        return weakened(campaign, "pad", 6.0, 1.2, 0.05)
-
-    for name, amend, taken in (("plain", lambda campaign: campaign, True), ("lost", lost, False)):
-        made = simulate(tmp_path / name, 3, noise=1.0, smooth=0.1, amend=amend)
-        evidence = gather(made.campaign.with_values(made.truth), threads=1)
-        block = evidence.reweighed(evidence.predicted(evidence.campaign)).blocks[0]
-        assert isinstance(block, FrfBlock)
-        assert bool(np.any(np.abs(block._gain - 1.0) > 1e-4)) is taken

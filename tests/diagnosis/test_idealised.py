@@ -37,7 +37,7 @@ def _refit(evidence: Evidence, frf: np.ndarray) -> Fit:
     """To other responses, weighed alike."""
     dataset = evidence.datasets[0]
     measured = dataset.data.assign(frf=(dataset.data["frf"].dims, frf))
-    return recalibrate(evidence.of(evidence.campaign, [replace(dataset, data=measured)]), learn=False)
+    return recalibrate(evidence.of(evidence.campaign, [replace(dataset, data=measured)]))
 
 
 def test_parameters_come_out_wrong_by_as_much_as_is_said(tmp_path: Path) -> None:
@@ -47,7 +47,7 @@ def test_parameters_come_out_wrong_by_as_much_as_is_said(tmp_path: Path) -> None
     evidence = gather(campaign.with_values(made.truth), threads=1)
     solved = evidence.predicted(evidence.campaign)
     nearby, plain = Nearby(evidence, solved), solved.datasets[0]["frf"].values
-    fit = recalibrate(evidence, learn=False)
+    fit = recalibrate(evidence)
     sigma = np.sqrt(idealised(fit))
     random, pulls = np.random.default_rng(5), []
     for _ in range(DRAWS):

@@ -88,7 +88,7 @@ def test_a_speed_noted_wrongly_is_found(tmp_path: Path) -> None:
     noted = owner.condition("fast").speed_m_per_s
     assert noted is not None
     evidence = gather(owner, drawn(owner.with_values({"speed.fast": 0.996 * noted}), 6), threads=1)
-    fit = recalibrate(evidence, learn=False)
+    fit = recalibrate(evidence)
     low, high = fit.intervals()["speed.fast"]
     assert fit.values()["speed.fast"] == pytest.approx(0.996 * noted, rel=5e-4)
     assert 0.5 * (high - low) < 5e-4 * noted

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.predict import predict
-from permway.diagnosis.compare import compare
-from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.separability import separability
 from permway.errors import InputError
 from permway.laws.toml import to_toml
 from permway.model.place import Place
+from permway.posterior.compare import compare
+from permway.posterior.diagnose import diagnose
 from permway.response.receptance import receptance
 from simulated import BLOWS, CAMPAIGN, FREQUENCY, MODEL
 

@@ -13,11 +13,11 @@ from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.load import Dataset
 from permway.campaign.predict import predict
 from permway.diagnosis.blocks_passage import ABOUT, FLOOR, PassageBlock
-from permway.diagnosis.compare import compare
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import first_size, gather
 from permway.diagnosis.speeds import begin
 from permway.diagnosis.tangent import Problem
+from permway.posterior.compare import compare
 from permway.posterior.covariance import Frame
 from permway.posterior.estimate import estimated
 from permway.posterior.fit import Fit, Fitter, Model

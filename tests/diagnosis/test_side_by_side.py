@@ -8,26 +8,18 @@ import signal
 import sys
 import time
 from multiprocessing import active_children, get_context
-from pathlib import Path
 
 import numpy as np
 import pytest
 from permway.campaign.campaign import Campaign
-from permway.diagnosis import journal
-from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.catalogue._relaxing import relaxing
 from permway.diagnosis.evidence import Evidence
-from permway.diagnosis.fit import Fit, free_parameters
+from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather
-from permway.diagnosis.hypothesis import Situation
-from permway.diagnosis.locate import scanned
-from permway.diagnosis.recalibrate import recalibrate
-from permway.diagnosis.refit import moved
-from permway.diagnosis.search import Round, search
-from permway.diagnosis.several_fits import relearnt_all
 from permway.diagnosis.side_by_side import each, one_thread_of_blas
 from permway.diagnosis.tangent import Problem
 from permway.errors import InputError, SolveError
+from searched import searched
 from simulated import simulate
 from threadpoolctl import threadpool_info, threadpool_limits
 
@@ -141,12 +133,6 @@ def test_blas_has_one_thread_within_and_as_many_as_before_after() -> None:
         assert set(threads()) == {2}
 
 
-def test_parts_of_what_is_kept_as_a_whole_are_not_kept(tmp_path: Path) -> None:
-    with journal.keeping(tmp_path / "kept", "key"):
-        assert each(lambda _: journal.current() is None, range(3), threads=1) == [True] * 3
-        assert journal.current() is not None
-
-
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
     return simulate(tmp_path_factory.mktemp("side") / "c", 5, amend=_softer).campaign
@@ -169,46 +155,12 @@ def test_slopes_are_the_same_to_the_last_digit(campaign: Campaign) -> None:
     np.testing.assert_array_equal(one, two)
 
 
-def test_a_round_is_the_same_whoever_worked_on_it(campaign: Campaign) -> None:
-    def found(threads: int) -> Round:
-        fit = recalibrate(gather(campaign, threads=threads))
-        return search(
-            fit,
-            hypotheses(Situation(fit, scanned(fit))),
-            learnt_base=fit,
-            prefix="1.",
-            threshold=lambda ring, screened: 10.0,
-            progress=lambda stage, done, total: None,
-        )
-
-    one, two = found(1), found(2)
-    assert [q.hypothesis.form for q in one.screened] == [q.hypothesis.form for q in two.screened]
-    np.testing.assert_array_equal([q.gain for q in one.screened], [q.gain for q in two.screened])
-    for first, second in zip(one.followed, two.followed, strict=True):
-        assert first.hypothesis.form == second.hypothesis.form
-        np.testing.assert_array_equal(first.z, second.z)
-    assert [f.hypothesis.form for f in one.finalists] == [f.hypothesis.form for f in two.finalists]
-    assert len(one.followed) > 1
-    assert one.finalists
-
-
-def test_what_a_rival_learnt_elsewhere_is_learnt_here(campaign: Campaign) -> None:
-    """Numbers and sizes of errors of fits that were made in a fork, which comes back without its evidence."""
-
-    def learnt(threads: int) -> list[Fit]:
-        evidence = gather(campaign, threads=threads)
-        base = recalibrate(evidence)
-        rivals = [base, moved(base, {"pad.k": 0.5}), moved(base, {"pad.k": -0.5})]
-        found = relearnt_all(rivals, evidence, best=np.inf, told=lambda begun: None)
-        return [one for one in found if one is not None]
-
-    alone, shared = learnt(1), learnt(2)
-    assert len(alone) == len(shared) == 3
-    for one, two in zip(alone, shared, strict=True):
-        np.testing.assert_array_equal(one.z, two.z)
-        assert one.objective == two.objective
-        assert one.evidence.sizes == two.evidence.sizes
-        assert one.evidence.length == two.evidence.length
-        # The evidence that it came back to tells of the same deviations.
-        again = two.evidence.deviations(two.evidence.predicted(two.campaign).datasets)
-        np.testing.assert_allclose(again, two.deviations, rtol=0.0, atol=1e-9)
+def test_a_search_is_the_same_whoever_worked_on_it(campaign: Campaign) -> None:
+    one, two = (
+        searched(gather(campaign, threads=threads), "pad_frequency", "sensor_gain").members for threads in (1, 2)
+    )
+    assert [member.names for member in one] == [member.names for member in two]
+    for first, second in zip(one, two, strict=True):
+        np.testing.assert_array_equal(first.fit.z, second.fit.z)
+        assert first.log_mass == second.log_mass
+    assert any(member.amendments for member in one)

@@ -21,11 +21,11 @@ from permway.campaign.parameters import Known
 from permway.cli import app
 from permway.diagnosis.bounded import bounded_step
 from permway.diagnosis.catalogue._change import with_chain, with_factors
-from permway.diagnosis.compare import RAW, RECALIBRATED, compare
-from permway.diagnosis.diagnose import diagnose
-from permway.diagnosis.journal import keeping
+from permway.diagnosis.compare import RAW, RECALIBRATED
 from permway.diagnosis.separability import separability
 from permway.diagnosis.verdict import UNPROVED, Verdict
+from permway.posterior.compare import compare
+from permway.posterior.diagnose import diagnose
 from permway.report.compare import write_comparison
 from permway.report.diagnosis import write_diagnosis
 from simulated import CAMPAIGN, FREQUENCY, MODEL, simulate
@@ -202,25 +202,3 @@ def test_the_commands_take_a_campaign_of_few_parameters(command: str, parameters
         assert Verdict.read(tmp_path / "out" / "verdict.json").status == said["status"]
     else:
         assert {"fastener_loss", "sensor_gain"} <= {one["effect"] for one in said["effects"]}
-
-
-def test_a_diagnosis_without_parameters_goes_on_where_it_was(tmp_path: Path) -> None:
-    case = SIZES["no parameters"].made(tmp_path / "c", amend=softened)
-    verdicts, recalled = [], []
-    for _ in range(2):
-        with keeping(tmp_path / "unfinished", "a key") as journal:
-            verdicts.append(diagnose(case.campaign, threads=1).verdict)
-            recalled.append(journal.recalled)
-    assert verdicts[0] == verdicts[1]
-    assert recalled[0] == 0
-    assert recalled[1] > 3
-
-
-@pytest.mark.filterwarnings("ignore:.*draws of")
-def test_draws_need_no_parameters(tmp_path: Path) -> None:
-    case = SIZES["no parameters"].made(tmp_path / "c", amend=softened)
-    (effect,) = diagnose(case.campaign, draws=60, threads=1).verdict.effects
-    factor = effect.parameters["factor"]
-    assert factor.low is not None
-    assert factor.high is not None
-    assert 0.0 <= factor.low < factor.value < factor.high <= 1.0

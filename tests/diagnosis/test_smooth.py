@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from permway.campaign.excitation import Dips
 from permway.diagnosis.blocks_spectra import LEVEL
-from permway.diagnosis.gather import gather
-from permway.diagnosis.learning import learnt
 from permway.diagnosis.smooth import Origin, PairColumns, PlainColumns, Smooth
-from permway.diagnosis.wander import LENGTHS, SHORTEST, Wander
+from permway.diagnosis.wander import SHORTEST, Wander
 from permway.diagnosis.whitener import AllColumns, Whitener
-from simulated import simulate
 
 Reals = np.ndarray
 
@@ -25,7 +19,7 @@ def correlation(x: Reals, length: float) -> Reals:
     return np.exp(-0.5 * ((x[:, None] - x[None, :]) / length) ** 2)
 
 
-@pytest.mark.parametrize("length", [one for one in LENGTHS if one >= SHORTEST])
+@pytest.mark.parametrize("length", [SHORTEST, 1.0, 1.4, 2.0, 2.8, 4.0])
 def test_a_wander_has_the_correlation_that_it_says(length: float) -> None:
     """The covariance of the functions' sum is squared-exponential, but for a rough percent."""
     frequency = np.geomspace(2.0, 400.0, 90)
@@ -79,8 +73,6 @@ def test_columns_of_pairs_are_those_of_a_dense_matrix(
     np.testing.assert_allclose(columns.pull(values[:, 0]), matrix.T @ values[:, 0], atol=1e-10)
     np.testing.assert_allclose(columns.push(coefficients), matrix @ coefficients, atol=1e-10)
     np.testing.assert_allclose(columns.gram(), matrix.T @ matrix, atol=1e-9)
-    rows = np.tile(random.random(matrix.shape[0] // 2) < 0.5, 2)
-    np.testing.assert_allclose(columns.masked(rows).gram(), matrix[rows].T @ matrix[rows], atol=1e-9)
 
 
 def test_a_whitener_is_the_inverse_of_the_covariance() -> None:
@@ -108,40 +100,6 @@ def test_a_whitener_is_the_inverse_of_the_covariance() -> None:
     # What is explained, taken out, leaves the noise's share: V^-1 times the values.
     left = values - whitener.smooth(whitener.explained(values), values.size)
     np.testing.assert_allclose(left, np.linalg.solve(covariance, values), atol=1e-9)
-    inverse = np.linalg.inv(np.eye(whitener.count) + whitener.pull(np.eye(sum(rows))) @ _roots(whitener, matrix))
-    np.testing.assert_allclose(whitener.variances(), np.diag(inverse), atol=1e-9)
-
-
-def _roots(whitener: Whitener, matrix: Reals) -> Reals:
-    """B R, from R' B' on the unit vectors."""
-    return whitener.pull(np.eye(matrix.shape[0])).T
-
-
-def test_size_and_length_of_smooth_errors_are_learnt(tmp_path: Path) -> None:
-    """Errors put on what a model predicts of the sensors come back with their size, and with their length."""
-    campaign = simulate(tmp_path / "c", 1).campaign
-    plain = gather(campaign, threads=1)
-    solved = plain.predicted(campaign)
-    random = np.random.default_rng(11)
-    moved = []
-    for dataset, predicted in zip(plain.datasets, solved.datasets, strict=True):
-        if dataset.record.statistic != "frf":
-            continue
-        frequency, frf = dataset.data["frequency"].values, predicted["frf"].values.copy()
-        root = np.linalg.cholesky(correlation(np.log2(frequency), 2.0) + 1e-8 * np.eye(frequency.size))
-        for row in range(frf.shape[0]):
-            errors = 0.1 * root @ random.standard_normal((frequency.size, 2))
-            frf[row] *= np.exp(errors[:, 0] + 1j * errors[:, 1])
-        moved.append(replace(dataset, data=dataset.data.assign(frf=(dataset.data["frf"].dims, frf))))
-    found = gather(campaign, moved, threads=1)
-    solved = found.predicted(campaign)
-    for _ in range(4):
-        found, _ = learnt(found, solved)
-    sensors = [size for name, size in found.sizes.items() if name.startswith("sensor")]
-    forces = [size for name, size in found.sizes.items() if name.startswith("force")]
-    assert np.sqrt(np.mean(np.square(sensors))) == pytest.approx(0.1, rel=0.4)
-    assert max(forces) < 0.03
-    assert found.length in (1.4, 2.0, 2.8)
 
 
 def test_a_level_takes_up_a_hump_of_what_its_owner_allows() -> None:

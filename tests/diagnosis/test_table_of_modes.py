@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import tables_of_modes as tables
 from permway.campaign.campaign import read_campaign
-from permway.diagnosis.compare import compare
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.tangent import Problem
 from permway.errors import InputError
+from permway.posterior.compare import compare
 from permway.posterior.covariance import Frame
 from permway.posterior.fit import Fitter, Model
 

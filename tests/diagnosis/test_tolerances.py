@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 from permway.diagnosis.catalogue._change import with_factors
-from permway.diagnosis.diagnose import diagnose
+from permway.posterior.diagnose import diagnose
 from permway.report.diagnosis import write_diagnosis
 from simulated import CAMPAIGN, FREQUENCY, simulate
 
 
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="it is named, as a value that is stated wrongly")
 @pytest.mark.parametrize("seed", [1, 2])
 def test_softer_pads_than_stated_are_reported(seed: int, tmp_path: Path) -> None:
     campaign = copy.deepcopy(CAMPAIGN)

@@ -60,7 +60,7 @@ def test_the_tutorial_s_diagnosis_says_what_its_page_says(tmp_path: Path) -> Non
     """Half a minute: the two fasteners that carry 5 %, in folders made as the tutorial makes them."""
     import numpy as np
     from permway.campaign.campaign import read_campaign
-    from permway.diagnosis.diagnose import diagnose
+    from permway.posterior.diagnose import diagnose
 
     import_module("make_deck").write(tmp_path)
     np.savez(tmp_path / "blows.npz", **import_module("blows_to_frf").responses(tmp_path))
@@ -105,7 +105,7 @@ def test_the_survey_is_read_from_csv_as_its_page_says(tmp_path: Path) -> None:
 def test_the_survey_s_diagnosis_says_what_its_page_says(tmp_path: Path) -> None:
     """Most of a minute: the four fasteners that keep 6 %."""
     from permway.campaign.campaign import read_campaign
-    from permway.diagnosis.diagnose import diagnose
+    from permway.posterior.diagnose import diagnose
 
     verdict = diagnose(read_campaign(survey(tmp_path)), threads=1).verdict
     page = (DOCS / "tutorials" / "survey.md").read_text("utf-8")

@@ -1,7 +1,7 @@
 """The first hour: ten campaigns that differ from their model in one thing each, and what is stated about them.
 
 Made by finite elements that share no code with the solver. What a user runs is `permway check`, then
-`permway diagnose --posterior`; the diagnoses take half a minute of processor each, and are marked.
+`permway diagnose`; the diagnoses take half a minute of processor each, and are marked.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`permway diagnose --posterior`, as a user calls it."""
+"""`permway diagnose`, as a user calls it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from simulated import simulate
 def test_it_leaves_a_page_a_verdict_and_a_model(tmp_path: Path) -> None:
     path = simulate(tmp_path / "c", 41, amend=lambda c: weakened(c, "pad", 6.0, 1.2, 0.05)).path
     out = tmp_path / "out"
-    command = [sys.executable, "-m", "permway", "diagnose", str(path), "-o", str(out), "--posterior", "--json"]
+    command = [sys.executable, "-m", "permway", "diagnose", str(path), "-o", str(out), "--json"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stderr
     verdict = Verdict.read(out / "verdict.json")

@@ -19,11 +19,11 @@ from permway.campaign.importers.sheet import import_sheet
 from permway.campaign.importers.track_decay import import_track_decay
 from permway.campaign.load import Dataset
 from permway.campaign.predict import predict
-from permway.diagnosis.diagnose import diagnose
 from permway.laws import TFDV, FractionalKelvinVoigt, FractionalZener, Hysteretic, Pad
 from permway.model.bodies import Mass
 from permway.model.changes import Change
 from permway.model.joints import Joints
+from permway.posterior.diagnose import diagnose
 from permway.problem.model import Model
 from scipy import optimize
 

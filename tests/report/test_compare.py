@@ -14,9 +14,10 @@ import xarray as xr
 from permway.campaign.campaign import read_campaign
 from permway.campaign.compare import curves, third_octaves
 from permway.campaign.predict import predict
-from permway.diagnosis.compare import CLEAN, RAW, RECALIBRATED, Comparison, compare
+from permway.diagnosis.compare import CLEAN, RAW, RECALIBRATED, Comparison
 from permway.diagnosis.residuals import lag_correlation
 from permway.errors import InputError
+from permway.posterior.compare import compare
 from permway.report.compare import write_comparison
 from permway.report.compare.maps import ordered
 from permway.report.compare.tables import quantity, signed

@@ -16,11 +16,11 @@ from permway.campaign.campaign import Campaign
 from permway.campaign.paths import parse_path, value_at
 from permway.diagnosis.catalogue._change import with_chain, with_factors
 from permway.diagnosis.catalogue._interval import weakened
-from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.plain_names import name_of, seen
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.verdict_parts import Smallest
 from permway.formats.model_file import read_model
+from permway.posterior.diagnose import diagnose
 from permway.problem.model import Model
 from permway.report.compare.tables import parameter_rows
 from permway.report.diagnosis import write_diagnosis

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -65,8 +65,6 @@ class Scored:
         Against the best recalibrated base, if it was weighed.
     gain_dB : float or None
         By which records that were left out are predicted better, the median of all ways to leave some out.
-    foretold : mapping of str to float
-        Gain of log predictive density of every part of the records that was left out, nats.
     claims : tuple of Claim
         All names of all effects, "novel" among them.
     concealed_family, said_family : str
@@ -90,7 +88,6 @@ class Scored:
     all_found: bool | None = None
     mechanics: bool | None = None
     gain_dB: float | None = None
-    foretold: Mapping[str, float] = field(default_factory=dict)
     claims: tuple[Claim, ...] = ()
     concealed_family: str = ""
     said_family: str = ""
@@ -206,7 +203,6 @@ def _scored(
         else None,
         mechanics=_described(concealed[0], effects) if concealed and concealed[0].get("words") else None,
         gain_dB=_gained(verdict) if effects else None,
-        foretold={part: float(g["gain_nats"]) for part, g in verdict["held_out"].items()},
         claims=tuple(_claims(concealed, effects)),
         concealed_family=families.get(concealed[0]["id"], "") if concealed and concealed[0]["id"] else "",
         said_family=_family(concealed, effects, families) or str(verdict["status"]),

@@ -1,4 +1,4 @@
-"""The whole proof: campaigns of all tiers made, diagnosed, weighed, answered by rivals and scored."""
+"""The whole proof: campaigns of all tiers made, diagnosed, weighed and scored."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from pathlib import Path
 from permway.challenge.case import Tier
 from permway.challenge.make import make
 from permway.challenge.pool import processes
-from permway.challenge.rivals import Ask, answer
 from permway.challenge.run import FAILED, VERDICT, diagnosed, ruled_out, threads_of
 from permway.challenge.tiers import number_of
 from permway.challenge.weigh import Against, weigh_one, whole
@@ -68,7 +67,6 @@ def run_suite(
     against: Against,
     *,
     cases: int | None = None,
-    ask: Ask | None = None,
     workers: int = 1,
     progress: Progress | None = None,
 ) -> dict[str, int]:
@@ -77,14 +75,12 @@ def run_suite(
     Parameters
     ----------
     folder : Path
-        Gets campaigns, truths, verdicts, weights and answers.
+        Gets campaigns, truths, verdicts and weights.
     seed : int
     against : callable
         See :func:`permway.challenge.weigh.weigh`.
     cases : int, optional
         How many of them; by default all.
-    ask : callable, optional
-        See :func:`permway.challenge.rivals.answered`; without it no rival answers.
     workers : int
         Campaigns at the same time.
     progress : callable, optional
@@ -109,7 +105,7 @@ def run_suite(
     chosen = suite_of(seed)[:cases]
     fine = 0
     with processes(workers) as pool:
-        jobs = [pool.submit(_one, Path(folder), one, threads_of(workers), against, ask) for one in chosen]
+        jobs = [pool.submit(_one, Path(folder), one, threads_of(workers), against) for one in chosen]
         for done, job in enumerate(as_completed(jobs), start=1):
             fine += job.result()
             if progress is not None:
@@ -117,8 +113,8 @@ def run_suite(
     return {"verdicts": fine, "failed": len(chosen) - fine}
 
 
-def _one(folder: Path, one: Numbered, threads: int, against: Against, ask: Ask | None) -> bool:
-    """Make, diagnose, weigh and let rivals answer."""
+def _one(folder: Path, one: Numbered, threads: int, against: Against) -> bool:
+    """Make, diagnose and weigh."""
     if not (folder / "truth" / f"{one.name}.json").is_file():
         make(one.seed, 1, one.tier, folder, against=against)
     verdict = folder / "verdicts" / one.name / VERDICT
@@ -128,9 +124,7 @@ def _one(folder: Path, one: Numbered, threads: int, against: Against, ask: Ask |
             return False
     try:
         weigh_one(folder, one.name, against)
-        if ask is not None:
-            answer(folder, one.name, ask)
     except (InputError, SolveError) as error:
-        whole(verdict.with_name(FAILED), f"weighing, or a rival: {error}\n")
+        whole(verdict.with_name(FAILED), f"weighing: {error}\n")
         return False
     return True

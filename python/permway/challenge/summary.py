@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -46,45 +46,6 @@ def summary(scored: Iterable[Scored]) -> list[dict[str, Any]]:
             row["seconds"] = round(float(np.median(took)), 1)
         rows.append(row)
     return rows
-
-
-def foretold_better(own: Sequence[Scored], other: Sequence[Scored]) -> str | None:
-    """Share of campaigns of which one method foretells what was left out better than another.
-
-    By the log predictive density of all parts that both foretell; None if there are none.
-    """
-    theirs = {one.name: one.foretold for one in other}
-    shares = []
-    for one in own:
-        parts = one.foretold.keys() & theirs.get(one.name, {}).keys()
-        if parts:
-            shares.append(sum(one.foretold[p] - theirs[one.name][p] for p in parts) > 0.0)
-    return share(shares) if shares else None
-
-
-RIGHT: dict[str, Callable[[Scored], bool | None]] = {
-    "quiet": lambda s: None if s.found is not None else s.status not in FOUND,
-    "placed": lambda s: s.placed,
-    "family": lambda s: s.family,
-    "no_false_name": lambda s: not s.false_name,
-}
-"""What an answer may have right; None where that does not apply. Quiet calls nothing where nothing is missing."""
-
-
-def right_alone(own: Sequence[Scored], other: Sequence[Scored]) -> dict[str, str]:
-    """Of campaigns that one of two methods alone has right, the share of the first, by what is right.
-
-    As of McNemar's test (1947): both answer the same campaigns, and where both are right or both wrong neither is
-    better. Left out where they never differ.
-    """
-    theirs = {one.name: one for one in other}
-    found = {}
-    for what, right in RIGHT.items():
-        pairs = [(right(one), right(theirs[one.name])) for one in own if one.name in theirs]
-        alone = [bool(mine) for mine, its in pairs if mine is not None and mine != its]
-        if alone:
-            found[f"alone_{what}"] = share(alone)
-    return found
 
 
 def share(values: Sequence[bool]) -> str:

@@ -42,8 +42,8 @@ def compare(
     With the nominal values, and recalibrated within the tolerances that the campaign file states.
     """
     from permway.campaign.campaign import read_campaign
-    from permway.diagnosis.compare import compare as run
     from permway.files import prepare_folder
+    from permway.posterior.compare import compare as run
     from permway.report.compare import write_comparison
 
     described = read_campaign(campaign, allow_outside=allow_outside)
@@ -67,27 +67,10 @@ def diagnose(
             "--output", "-o", help="Folder for report, verdict and model; by default beside the campaign."
         ),
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Of simulated campaigns with nothing missing.")] = 0,
     rule_out: Annotated[
         list[str] | None,
         typer.Option("--rule-out", metavar="EFFECT", help="Of the catalogue, what cannot be; may be repeated."),
     ] = None,
-    draws: Annotated[
-        int,
-        typer.Option(
-            min=0,
-            max=1_000_000,
-            help="Draws of the parameters of what is found, for its intervals and class: 400, say, a solve each. "
-            "By default from curvature.",
-        ),
-    ] = 0,
-    posterior: Annotated[
-        bool,
-        typer.Option(
-            "--posterior",
-            help="By one posterior over sets of effects; --seed and --draws do not act.",
-        ),
-    ] = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Without report.html.")] = False,
     allow_outside: Outside = False,
     threads: Threads = None,
@@ -95,21 +78,18 @@ def diagnose(
 ) -> None:
     """What a model leaves out, where, how surely.
 
-    First states what is probably stated wrongly, as `permway check` does. Then recalibrates the model, looks for
-    what no value of it explains, names the effect or states that the records do not decide, and proves it on
-    records that were not fitted. Writes report.html, verdict.json and amended.toml; takes minutes. The same seed
-    gives the same verdict. Stopped and called again, it goes on where it was.
+    First states what is probably stated wrongly, as `permway check` does. Then weighs sets of effects against each
+    other and against nothing missing, names what is probable enough or states that the records do not decide, and
+    says how much better it predicts records that are left out. Writes report.html, verdict.json and amended.toml;
+    takes minutes.
     """
     from permway.campaign.campaign import read_campaign
     from permway.checking.check import check
     from permway.diagnosis.catalogue import known
-    from permway.diagnosis.diagnose import diagnose as run
     from permway.diagnosis.doubts import doubted
-    from permway.diagnosis.journal import FOLDER, keeping, key_of
     from permway.files import prepare_folder
-    from permway.posterior.diagnose import diagnose as explain
-    from permway.posterior.journal import keeping as searching
-    from permway.posterior.journal import key_of as searched
+    from permway.posterior.diagnose import diagnose as run
+    from permway.posterior.journal import FOLDER, keeping, key_of
     from permway.report.diagnosis import write_diagnosis
 
     ruled_out = known(rule_out or ())
@@ -118,21 +98,11 @@ def diagnose(
     checked = check(described, threads=threads)
     for blunder in checked.blunders:
         print_message(f"{'asked' if blunder.asked else 'put right first'}: {blunder.sentence}")
-    if posterior:
-        with searching(folder / FOLDER, searched(described, ruled_out)) as steps:
-            with stage_bar("diagnosing", as_json) as progress:
-                by_posterior = explain(described, ruled_out=ruled_out, threads=threads, progress=progress)
-            written = write_diagnosis(doubted(by_posterior, checked), folder, page=not no_report)
-            steps.close()
-        print_result(written, as_json)
-        return
-    with keeping(folder / FOLDER, key_of(described, seed, ruled_out)) as journal:
+    with keeping(folder / FOLDER, key_of(described, ruled_out)) as steps:
         with stage_bar("diagnosing", as_json) as progress:
-            result = run(
-                described, seed=seed, ruled_out=ruled_out, draws=draws, threads=threads, progress=progress
-            )
+            result = run(described, ruled_out=ruled_out, threads=threads, progress=progress)
         written = write_diagnosis(doubted(result, checked), folder, page=not no_report)
-        journal.close()
+        steps.close()
     print_result(written, as_json)
 
 

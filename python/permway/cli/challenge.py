@@ -45,7 +45,7 @@ def challenge_make(
     from permway.challenge.make import make
     from permway.challenge.small.suite import TIERS as SMALL_TIERS
     from permway.challenge.small.suite import made, names_of
-    from permway.diagnosis.deviance import against_folder
+    from permway.posterior.deviance import against_folder
 
     if tier in SMALL_TIERS:
         with progress_bar("making", as_json) as progress:
@@ -80,25 +80,6 @@ def challenge_run(
     print_result(dict(result), as_json)
 
 
-@challenges.command("rivals", epilog=examples("permway challenge rivals cases --workers 2"))
-def challenge_rivals(
-    folder: Folder,
-    workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
-    as_json: Json = False,
-) -> None:
-    """What simpler methods say, scored on the same campaigns.
-
-    Of campaigns that were run: recalibration alone, the smallest residual, BIC with independent errors, random
-    answers, a Gaussian process for what the model lacks, and a classifier trained on simulations.
-    """
-    from permway.challenge.rivals import answered
-    from permway.diagnosis.rivals import of_file
-
-    with progress_bar("rivals", as_json) as progress:
-        answered(folder, of_file, workers=workers, progress=progress)
-    print_result({"rivals": _rivals(folder)}, as_json)
-
-
 @challenges.command("weigh", epilog=examples("permway challenge weigh cases --workers 2"))
 def challenge_weigh(
     folder: Folder,
@@ -112,7 +93,7 @@ def challenge_weigh(
     do not tell.
     """
     from permway.challenge.weigh import weigh
-    from permway.diagnosis.deviance import against_folder
+    from permway.posterior.deviance import against_folder
 
     with progress_bar("weighing", as_json) as progress:
         found = weigh(folder, against_folder, workers=workers, progress=progress)
@@ -177,7 +158,6 @@ def challenge_suite(
         int | None, typer.Option(min=1, help="How many, tiers mixed by their share; by default all.")
     ] = None,
     workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
-    rivals: Annotated[bool, typer.Option("--rivals", help="Let simpler methods answer, too.")] = False,
     tiers: Annotated[
         str | None,
         typer.Option(help="small, fixture, or both with a comma between: a suite of its own, see below."),
@@ -190,9 +170,6 @@ def challenge_suite(
             help="Of small campaigns: another installation's `permway`, or a command that ends in `-m permway`.",
         ),
     ] = None,
-    posterior: Annotated[
-        bool, typer.Option("--posterior", help="Of small campaigns: by `permway diagnose --posterior`.")
-    ] = False,
     limit: Annotated[
         float, typer.Option(min=1.0, help="Of small campaigns: processor time of one diagnosis, s.")
     ] = 120.0,
@@ -211,14 +188,11 @@ def challenge_suite(
     from permway._core import __version__
     from permway.challenge.suite import run_suite
     from permway.challenge.weigh import whole
-    from permway.diagnosis.deviance import against_folder
-    from permway.diagnosis.rivals import of_file
+    from permway.posterior.deviance import against_folder
 
     if tiers is not None:
-        print_result(_small(output, tiers, seed, cases, workers, method, posterior, limit, as_json), as_json)
+        print_result(_small(output, tiers, seed, cases, workers, method, limit, as_json), as_json)
         return
-    if posterior:
-        raise InputError("goes with --tiers", where="--posterior")
     if method is not None:
         raise InputError("goes with --tiers", where="--diagnose", value=method)
     with progress_bar("suite", as_json) as progress:
@@ -227,15 +201,12 @@ def challenge_suite(
             seed,
             against_folder,
             cases=cases,
-            ask=of_file if rivals else None,
             workers=workers,
             progress=progress,
         )
     count = "" if cases is None else f" --cases {cases}"
-    command = f"permway challenge suite -o suite --seed {seed}{count}{' --rivals' if rivals else ''}"
+    command = f"permway challenge suite -o suite --seed {seed}{count}"
     scores = {"version": __version__, "seed": seed, "commands": [command], **_scores(output)}
-    if rivals:
-        scores["rivals"] = _rivals(output)
     whole(output / "score.json", json.dumps(scores, indent=1) + "\n")
     print_result({**result, "scores": str(output / "score.json")}, as_json)
 
@@ -247,13 +218,11 @@ def _small(
     cases: int | None,
     workers: int,
     method: str | None,
-    posterior: bool,
     limit: float,
     as_json: bool,
 ) -> dict[str, object]:
     """The suite of small campaigns and its table."""
     from permway._core import __version__
-    from permway.challenge.small.diagnose import FIRST
     from permway.challenge.small.judge import judged
     from permway.challenge.small.suite import run_small
     from permway.challenge.small.table import as_json as lines_of
@@ -271,12 +240,10 @@ def _small(
             workers=workers,
             method=method,
             limit_s=limit,
-            module="permway.posterior.diagnose" if posterior else FIRST,
             progress=progress,
         )
     count = "" if cases is None else f" --cases {cases}"
     command = f"permway challenge suite -o suite --tiers {tiers} --seed {seed}{count}"
-    command += " --posterior" if posterior else ""
     found = table(judged(folder, names, {name: entry.FAMILY for name, entry in entries().items()}))
     scores = {"version": __version__, "command": command, **found}
     whole(folder / "score.json", lines_of(scores))
@@ -323,33 +290,3 @@ def _scores(folder: Path) -> dict[str, object]:
         "cases": cases,
         "parameters": by_parameter(pulls(folder, scored)),
     }
-
-
-def _rivals(folder: Path) -> list[dict[str, object]]:
-    """Scores of the rivals, and of the diagnosis on the campaigns that they answered on: nulls and all others."""
-    from dataclasses import replace
-
-    from permway.challenge.rivals import ANSWERS
-    from permway.challenge.score import score
-    from permway.challenge.summary import foretold_better, right_alone, summary
-    from permway.diagnosis.catalogue import entries
-    from permway.diagnosis.rivals import RIVALS
-
-    families = {name: entry.FAMILY for name, entry in entries().items()}
-    theirs = {name: score(folder, families, folder / ANSWERS / name) for name in RIVALS}
-    asked = {one.name for scored in theirs.values() for one in scored}
-    own = [one for one in score(folder, families) if one.name in asked]
-    rows: list[dict[str, object]] = []
-    for name, scored in {"permway": own, **theirs}.items():
-        for row in summary(
-            replace(one, tier="null" if one.found is None else "something concealed", deviance=None)
-            for one in scored
-        ):
-            against = {}
-            if name != "permway":
-                alike = [one for one in own if (one.found is None) == (row["tier"] == "null")]
-                against = right_alone(alike, scored)
-                if better := foretold_better(alike, scored):
-                    against["outdone"] = better
-            rows.append({"rival": name, **row, **against})
-    return rows

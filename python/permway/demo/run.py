@@ -52,7 +52,7 @@ def run(
         If the folder cannot be written.
     """
     from permway.campaign.campaign import read_campaign
-    from permway.diagnosis.diagnose import diagnose
+    from permway.posterior.diagnose import diagnose
     from permway.report.diagnosis import write_diagnosis
 
     prepare_folder(Path(folder))

@@ -21,9 +21,6 @@ FLOOR = 0.003
 REACH = 2
 """Lines to either side over which the variance of noise is taken together."""
 
-MOST_PAIR_STEPS, PAIR_CLOSE = 50, 1e-3
-"""Of the fixed point for the size of pairs' errors, and the change of its logarithm that is none."""
-
 
 class FrfBlock:
     """Frequency responses: complex deviations by the noise of each line, from coherence, and a floor.
@@ -141,25 +138,9 @@ class FrfBlock:
         """The same with another relative error, of all lines or pair by pair."""
         return self._other(floor=floor)
 
-    def error(self, predicted: xr.Dataset) -> Reals:
-        """Root mean square of the logarithm of measured over predicted by pair, shape (sensors, points, 1)."""
-        squares = np.zeros(self._logarithmic.shape)
-        squares[self._logarithmic] = _square(self._logarithms(predicted["frf"].values))
-        total = squares.sum(axis=-1, keepdims=True)
-        return np.asarray(np.sqrt(total / np.maximum(self._logarithmic.sum(axis=-1, keepdims=True), 1)))
-
     def with_reference(self, reference: xr.Dataset, errors: Complexes) -> FrfBlock:
         """The same with another prediction, and errors of chains, where noise hides what is there."""
         return self._other(reference=reference, errors=errors)
-
-    def errors(self, coefficients: Reals) -> Complexes:
-        """Log gain and phase by coefficients of the smooth errors, shape (sensors, points, F)."""
-        wander = Wander(*self._span)
-        gain, phase = (
-            np.moveaxis(coefficients.reshape(-1, 2, wander.count), 1, 0) @ wander.values(self.frequency).T
-        )
-        each, sensors = gain + 1j * phase, self.measured.shape[0]
-        return np.asarray(each[:sensors, None] + each[sensors:])
 
     def of(self, dataset: Dataset) -> FrfBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
@@ -246,35 +227,6 @@ class FrfBlock:
         """By what a change of the predicted response changes it, reversed: 1 where they agree."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(np.where(self._logarithmic, self._measured / predicted["frf"].values, self._gain))
-
-    def learnt_pair(self, clean: Reals, low: float, high: float) -> float:
-        """The size of the pairs' errors, by MacKay's fixed point (1992): each counts by as much as is told of it.
-
-        Parameters
-        ----------
-        clean : ndarray, shape (n,)
-            Deviations without what errors of chains explain, which all pairs of a sensor or of a point share.
-        low, high : float
-            Between which it lies.
-        """
-        half = clean.size // 2
-        white = (clean[:half] + 1j * clean[half:]).reshape(self.measured.shape)
-        # Along its directions each pair's error was shrunk: taken back, it is of its own size again.
-        within = as_complex(self._within(as_parts((white * self._phase.conj())[..., None])))[..., 0] / (
-            1.0 - self._shrink
-        )
-        pair = self.pair
-        for _ in range(MOST_PAIR_STEPS):
-            variance = (pair * self._singular) ** 2
-            told = variance / (1.0 + variance)
-            # What a direction tells of its coefficient, in which nothing may be told at all.
-            coefficients = pair**2 * self._singular / (1.0 + variance) * within
-            power = 0.5 * float((np.abs(coefficients) ** 2).sum())
-            new = float(np.clip(np.sqrt(power / max(float(told.sum()), 1e-300)), low, high))
-            close, pair = abs(np.log(new / pair)) < PAIR_CLOSE, new
-            if close:
-                break
-        return pair
 
     @cached_property
     def smooth(self) -> Smooth:

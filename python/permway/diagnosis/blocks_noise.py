@@ -78,10 +78,6 @@ class NoiseBlock:
             np.full(count, UNKNOWN),
         )
 
-    def held(self, lines: np.ndarray) -> np.ndarray:
-        """Rows most of whose lines are marked, (n,), from marks of (sensors, points, F)."""
-        return np.asarray(lines.mean(axis=(1, 2)) > 0.5)
-
     @staticmethod
     def tells(dataset: Dataset) -> bool:
         """Whether a dataset has enough sensors, and their coherence."""

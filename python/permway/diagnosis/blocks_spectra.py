@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
 import xarray as xr
-from scipy import sparse
 from scipy.special import polygamma
 
 from permway.arrays import Complexes, Reals
 from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import SURE, Rows
-from permway.diagnosis.blocks_shared import apart, covariance
 from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
 from permway.diagnosis.spectra_errors import Moved, Part, at_most
 from permway.diagnosis.spectra_parts import coherence, mean_of_logarithm, remainder, transfer, tree_of
 from permway.diagnosis.wander import Wander
 from permway.errors import InputError
-
-LEAST_LINES = 20
-"""Of a part, from which its scatter is learnt."""
 
 FIRST_LINE = 4
 """From zero, from which lines are used: Hann's window reaches over four: nearer ones hold what is beyond zero."""
@@ -54,12 +48,6 @@ class SpectraBlock:
         see :func:`permway.campaign.predict.away_from_lines`. By default they act on nothing.
     floor : float
         Relative error of transfers that adds to their scatter.
-    scatter : sequence of float, optional
-        Of each part, by how much its lines scatter more than so many averages of a stationary record would: the
-        level of a track changes from place to place.
-    shared : ndarray, optional
-        Covariance of kinds of rows at one line: of powers, remainders, real and imaginary parts of transfers, in
-        the order of the parts. By default they are independent.
     span : (float, float), optional
         Hz, over which chains' errors wander, where other records of the same channels reach further.
     """
@@ -75,12 +63,9 @@ class SpectraBlock:
         floor: float = 0.01,
         added: Reals,
         away: Complexes | None = None,
-        scatter: Sequence[float] = (),
-        shared: Reals | None = None,
         span: tuple[float, float] | None = None,
     ) -> None:
         self.dataset, self._expected, self._floor, self._added = dataset, expected, floor, added
-        self._scatter, self._shared = tuple(scatter), shared
         self._away: Complexes = np.zeros(added.shape, dtype=np.complex128) if away is None else away
         data = dataset.data
         known_Hz, segment_s = data["frequency"].values, dataset.record.segment_s
@@ -117,10 +102,7 @@ class SpectraBlock:
 
         def add(what: str, channel: int, other: int, at: np.ndarray, sigma: Reals) -> None:
             copies = 2 if what == "transfer" else 1
-            more = scatter[len(self._parts)] if scatter else 1.0
-            sigma = more * sigma
             self._parts.append((what, channel, other, at, sigma))
-            self.log_determinant += 2.0 * copies * at.size * float(np.log(more))
             text = names[channel] if what == "power" else f"{names[channel]} {what} {names[other]}"
             for _ in range(copies):
                 labels.extend([text] * at.size)
@@ -146,25 +128,9 @@ class SpectraBlock:
             np.concatenate(scale),
         )
         self._span = span or (float(self.frequency[0]), float(self.frequency[-1]))
-        self._apart: sparse.csr_array | None = None
-        if shared is not None:
-            rows = self._by_kind(np.arange(text.size, dtype=np.float64))
-            self._apart, more = apart(np.isfinite(rows), np.nan_to_num(rows).astype(int), shared)
-            self.log_determinant += more
-
-    @property
-    def scatter(self) -> list[tuple[str, float]]:
-        """Of every part its channel, and by how much its lines scatter more than those of a steady record."""
-        names = self.dataset.data["channel"].values.astype(str)
-        learnt = self._scatter or [1.0] * len(self._parts)
-        return [(names[part[1]], float(size)) for part, size in zip(self._parts, learnt, strict=True)]
 
     def deviations(self, predicted: xr.Dataset) -> Reals:
-        """Part by part, transfers as real then imaginary; each less what earlier ones at its line say of it."""
-        found = self._deviations(predicted)
-        return found if self._apart is None else np.asarray(self._apart @ found)
-
-    def _deviations(self, predicted: xr.Dataset) -> Reals:
+        """Part by part, transfers as real then imaginary."""
         model = predicted["csd"].values[:, :, self._lines]
         found = []
         for what, c, o, at, sigma in self._parts:
@@ -192,8 +158,7 @@ class SpectraBlock:
             found.extend([np.zeros(at.size)] * (1 + (what == "transfer")))
             if what == "rest":
                 found[-1] = 1.0 / sigma
-        column = np.concatenate(found)
-        return column if self._apart is None else np.asarray(self._apart @ column)
+        return np.concatenate(found)
 
     def levels_dB(self, predicted: xr.Dataset) -> Reals:
         """See :class:`permway.diagnosis.blocks.Block`; imaginary parts of transfers are phases."""
@@ -202,43 +167,10 @@ class SpectraBlock:
             parts.append(np.ones(at.size))
             if what == "transfer":
                 parts.append(np.full(at.size, np.nan))
-        return np.asarray(self._deviations(predicted) * self.rows.scale_dB * np.concatenate(parts))
-
-    def _by_kind(self, values: Reals) -> Reals:
-        """Values of rows by kind and line, shape (kinds, F): one kind a power or a remainder, two a transfer."""
-        found, start = [], 0
-        for what, _, _, at, _ in self._parts:
-            for _ in range(2 if what == "transfer" else 1):
-                kind = np.full(self.frequency.size, np.nan)
-                kind[at] = values[start : start + at.size]
-                found.append(kind)
-                start += at.size
-        return np.array(found)
-
-    def scattered(self, predicted: xr.Dataset) -> SpectraBlock:
-        """The same with scatter and correlations of its parts, by how lines differ from their neighbours."""
-        plain = self.expecting(self._expected, self._added, self._away)
-        deviations, scatter, start = plain.deviations(predicted), [], 0
-        for what, _, _, at, _ in plain._parts:
-            size = (2 if what == "transfer" else 1) * at.size
-            # The second half of a transfer is its imaginary part: one difference of all is none of neighbours.
-            steps = np.diff(deviations[start : start + size])
-            typical = 1.4826 / np.sqrt(2.0) * float(np.median(np.abs(steps))) if size > LEAST_LINES else 1.0
-            scatter.append(max(1.0, typical))
-            start += size
-        return SpectraBlock(
-            self.dataset,
-            self._expected,
-            added=self._added,
-            away=self._away,
-            floor=self._floor,
-            scatter=scatter,
-            shared=covariance(plain._by_kind(deviations)),
-            span=self._span,
-        )
+        return np.asarray(self.deviations(predicted) * self.rows.scale_dB * np.concatenate(parts))
 
     def expecting(self, expected: xr.Dataset, added: Reals, away: Complexes) -> SpectraBlock:
-        """The same weighed by another prediction, with the scatter of a stationary record."""
+        """The same weighed by another prediction."""
         return SpectraBlock(self.dataset, expected, added=added, away=away, floor=self._floor, span=self._span)
 
     def of(self, dataset: Dataset) -> SpectraBlock:
@@ -249,8 +181,6 @@ class SpectraBlock:
             added=self._added,
             away=self._away,
             floor=self._floor,
-            scatter=self._scatter,
-            shared=self._shared,
             span=self._span,
         )
 
@@ -276,10 +206,7 @@ class SpectraBlock:
             half = np.full(names.size, 0.5, dtype=np.complex128)
             origins.append(Origin("irregularity", LEVEL, 1, chain=False))
             columns.append(moved.columns(half, LEVEL, self.frequency / speed, step_Hz / speed))
-        whole = np.hstack(columns)
-        if self._apart is not None:
-            whole = np.asarray(self._apart @ whole)
-        return Smooth(tuple(origins), PlainColumns(whole))
+        return Smooth(tuple(origins), PlainColumns(np.hstack(columns)))
 
 
 LEVEL = Wander(0.005, 20.0, shortest=0.7)

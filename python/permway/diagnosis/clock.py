@@ -18,24 +18,15 @@ class Clock:
     _times: dict[str, float] = field(default_factory=dict)
     _stage: str = ""
     _since: float = 0.0
-    _ticks: int = 0
 
     def __call__(self, stage: str, done: int = 0, total: int = 0) -> None:
         """A stage begins, or is so far."""
         now = perf_counter()
         if self._stage:
             self._times[self._stage] = self._times.get(self._stage, 0.0) + now - self._since
-        if stage != self._stage:
-            self._ticks = 0
         self._stage, self._since = stage, now
         if self.progress is not None:
             self.progress(stage, done, total)
-
-    def tick(self) -> None:
-        """A step of a stage whose length is not known."""
-        self._ticks += 1
-        if self.progress is not None:
-            self.progress(self._stage, self._ticks, 0)
 
     def seconds(self) -> dict[str, float]:
         """By stage."""

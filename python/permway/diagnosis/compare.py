@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,10 +19,7 @@ from permway.diagnosis.blocks_passage import PassageBlock
 from permway.diagnosis.compare_tables import parameters_of, smooth_of
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.fit import Fit, Free, free_parameters
-from permway.diagnosis.gather import gather, predictable
-from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.residuals import standardised
-from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.tangent import STEP
 
 RAW, RECALIBRATED, CLEAN = "raw", "recalibrated", "smooth errors out"
@@ -37,8 +34,6 @@ KIND = {
     "modes": "modes",
     "passage": "passages",
 }
-
-Progress = Callable[[int, int], object]
 
 
 @dataclass(frozen=True)
@@ -128,42 +123,11 @@ class Comparison:
         return found
 
 
-@one_thread_of_blas()
-def compare(
-    campaign: Campaign, *, raw_only: bool = False, threads: int | None = None, progress: Progress | None = None
-) -> Comparison:
-    """Hold what a campaign's model predicts against what was measured.
-
-    Parameters
-    ----------
-    campaign : Campaign
-    raw_only : bool
-        Whether to leave recalibration out, which takes all of the time.
-    threads : int, optional
-        Of the solver, or processes that share the work.
-    progress : callable, optional
-        Called with steps done and how many there may be.
-
-    Raises
-    ------
-    InputError
-        If no record can be predicted, or a file cannot be read.
-    """
-    steps = _Steps(progress, 3 if raw_only else 34)
-    kept, left_out, _ = predictable(campaign)
-    steps.one()
-    evidence = gather(campaign, kept, threads=threads)
-    steps.one()
-    fit = None if raw_only else recalibrate(evidence, progress=steps.one)
-    return assemble(evidence, fit, left_out=left_out, finished=steps.all)
-
-
 def assemble(
     evidence: Evidence,
     fit: Fit | None,
     *,
     left_out: Mapping[str, str] | None = None,
-    finished: Callable[[], object] | None = None,
 ) -> Comparison:
     """The comparison of records that are read, and of a model that is recalibrated, already.
 
@@ -202,7 +166,7 @@ def assemble(
         if fit is not None:
             predictions[CLEAN] = predictions[RECALIBRATED]
         deviations.append(standardised(block, own, predictions))
-    found = Comparison(
+    return Comparison(
         campaign=campaign,
         fit=fit,
         records=tuple(records),
@@ -212,9 +176,6 @@ def assemble(
         smooth=smooth_of(measure),
         left_out=dict(left_out or {}),
     )
-    if finished is not None:
-        finished()
-    return found
 
 
 def _scatter_dB(block: Block) -> Reals:
@@ -255,20 +216,3 @@ def _spread(evidence: Evidence, free: Sequence[Free], z: Reals, covariance: Real
         variance = np.einsum("cfp,pq,cfq->cf", jacobian, covariance, jacobian, optimize=True)
         found.append(scale * np.sqrt(np.maximum(variance, 0.0)))
     return found
-
-
-class _Steps:
-    """Counts steps for a bar; more than were thought of stay at the last but one."""
-
-    def __init__(self, progress: Progress | None, total: int) -> None:
-        self._progress, self._total, self._done = progress, total, 0
-
-    def one(self, _words: str = "") -> None:
-        self._done = min(self._done + 1, self._total - 1)
-        if self._progress is not None:
-            self._progress(self._done, self._total)
-
-    def all(self) -> None:
-        self._done = self._total
-        if self._progress is not None:
-            self._progress(self._total, self._total)

@@ -7,20 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from permway.diagnosis.catalogue._change import constant_loss, fixed_mass, hung_mass
+from permway.diagnosis.catalogue._change import constant_loss, fixed_mass
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import between_free, linear_free, log_free
 from permway.laws import Hysteretic, Maxwell, Parallel, Scaled, Springpot
 from permway.laws.base import Law
 
-ROD_MODES = 4
-"""Of a rod that are modelled; those above count as mass."""
-
 AT_HZ = 100.0
 """Where the stiffness of a springpot is counted."""
-
-DOUBLED, LEAST = float(np.log(2.0)), 5e-4
-"""Logarithm of a law's factor that is one standard deviation, and the smallest factor."""
 
 Values = Mapping[str, float]
 
@@ -37,15 +31,12 @@ class Element:
     law : callable
         From the constants to the law that is added.
     words : callable
-    ground : bool
-        Whether it hangs on one body; else it ties what a joint ties.
     """
 
     name: str
     free: Callable[[float, float], tuple[Free, ...]]
     law: Callable[[Values], Law]
     words: Callable[[Values], str]
-    ground: bool = False
 
 
 def _spring(v: Values) -> Law:
@@ -74,52 +65,9 @@ def _inerter(v: Values) -> Law:
     return fixed_mass(v["inertance_kg"])
 
 
-def _resonator(v: Values) -> Law:
-    return hung_mass(v["mass_kg"], v["frequency_Hz"], v["loss_factor"])
-
-
-def _rod(v: Values) -> Law:
-    """A rod that is held below and free above: of its modes, 1, 3, 5 ... quarter waves long, each carries less."""
-    law: Law = fixed_mass(0.0)
-    left = v["mass_kg"]
-    for odd in range(1, 2 * ROD_MODES, 2):
-        mass = 8.0 / (np.pi * odd) ** 2 * v["mass_kg"]
-        law = Parallel(first=law, second=hung_mass(mass, odd * v["frequency_Hz"], v["loss_factor"]))
-        left -= mass
-    # The modes above move with the body.
-    return Parallel(first=law, second=fixed_mass(left))
-
-
 def _signed(name: str, unit: str, size: float) -> Free:
     return linear_free(name, unit, 0.0, size, -8.0 * size, 8.0 * size)
 
-
-def _hung(k: float, f: float) -> tuple[Free, ...]:
-    """Of what hangs on a body."""
-    return (
-        log_free("mass_kg", "kg", k / (2.0 * np.pi * f) ** 2, 5.0),
-        log_free("frequency_Hz", "Hz", f, 2.0),
-        log_free("loss_factor", "1", 0.1, 2.5),
-    )
-
-
-def share_of(z: float) -> float:
-    """More of a law, or less, by the logarithm of what is there then: of lost joints, how little is left."""
-    return float(np.expm1(DOUBLED * z))
-
-
-def coordinate_of(share: float) -> float:
-    """The other way round."""
-    return float(np.log1p(share) / DOUBLED)
-
-
-PART = Element(
-    "part",
-    lambda *_: (Free("share", "1", share_of, (coordinate_of(LEAST - 1.0), coordinate_of(4.0))),),
-    lambda v: Hysteretic(stiffness=v["share"]),
-    lambda v: f"a spring of {v['share']:.3g} times the joint's own, as much of its loss with it",
-)
-"""More, or less, of what a joint has: its law is a factor of the joint's."""
 
 ELEMENTS = (
     Element(
@@ -157,25 +105,5 @@ ELEMENTS = (
         lambda k, f: (log_free("inertance_kg", "kg", k / (2.0 * np.pi * f) ** 2, 3.0),),
         _inerter,
         lambda v: f"an inertance of {v['inertance_kg']:.3g} kg",
-    ),
-    Element(
-        "resonator",
-        _hung,
-        _resonator,
-        lambda v: (
-            f"a resonator of {v['mass_kg']:.3g} kg at {v['frequency_Hz']:.3g} Hz, loss factor "
-            f"{v['loss_factor']:.2g}"
-        ),
-        ground=True,
-    ),
-    Element(
-        "rod",
-        _hung,
-        _rod,
-        lambda v: (
-            f"a standing rod of {v['mass_kg']:.3g} kg, a quarter wave long at {v['frequency_Hz']:.3g} Hz, loss "
-            f"factor {v['loss_factor']:.2g}"
-        ),
-        ground=True,
     ),
 )

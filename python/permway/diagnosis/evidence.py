@@ -16,31 +16,17 @@ from permway.campaign.predict import (
     Key,
     Request,
     Result,
-    added_to,
-    away_from_lines,
     plan,
     predict_one,
     request_of,
     solve,
 )
 from permway.diagnosis.blocks import Block, Rows
-from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
-from permway.diagnosis.blocks_passage import PassageBlock
-from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.side_by_side import threads_of_solver
 from permway.diagnosis.thinning import thinned
 from permway.diagnosis.wander import FIRST_LENGTH
 from permway.diagnosis.whitener import AllColumns, Whitener
-
-SMALLEST_SMOOTH, LARGEST_SMOOTH = 0.001, 0.2
-"""Between which the size of smooth errors is learnt, neper or rad: 0.009 and 1.7 dB."""
-
-FITS = 1.5
-"""Mean square of the deviations below which what smooth errors explain is taken for errors of chains."""
-
-LARGEST_PAIR = 0.03
-"""Of the errors of a pair of sensor and point, 0.26 dB: what is larger is not of where a hammer fell."""
 
 
 @dataclass(frozen=True)
@@ -192,13 +178,6 @@ class Evidence:
         """What takes out the smooth errors."""
         return Whitener.of(self.columns, self.sizes, self.length)
 
-    def forget(self) -> None:
-        """Let go of what takes much memory and is made again when it is asked for."""
-        for name in ("columns", "whitener"):
-            self.__dict__.pop(name, None)
-        for block in self.blocks:
-            block.__dict__.pop("smooth", None)
-
     @property
     def log_determinant(self) -> float:
         """Of the covariance by which the blocks' own smooth errors are taken out."""
@@ -214,78 +193,6 @@ class Evidence:
     def with_blocks(self, blocks: tuple[Block, ...]) -> Evidence:
         """The same records as other blocks."""
         return replace(self, blocks=blocks)
-
-    def blunted(self, floor: float, about: Solved | None = None) -> Evidence:
-        """The same with a larger relative error of every frequency response.
-
-        What one place does to a few pairs then bends a base less that all other pairs hold.
-
-        Parameters
-        ----------
-        floor : float
-        about : Solved, optional
-            Pairs that this prediction misses by more count with an error of as much.
-        """
-        blocks: list[Block] = []
-        for index, block in enumerate(self.blocks):
-            if isinstance(block, FrfBlock):
-                missed = floor if about is None else np.maximum(floor, block.error(about.datasets[index]))
-                block = block.with_floor(missed)
-            blocks.append(block)
-        return replace(self, blocks=tuple(blocks))
-
-    def missed(self, error: float, about: Solved) -> float:
-        """Share of the pairs of frequency responses that a prediction misses by more, neper; 0 without any."""
-        each = [
-            block.error(about.datasets[index]).reshape(-1)
-            for index, block in enumerate(self.blocks)
-            if isinstance(block, FrfBlock)
-        ]
-        return float(np.mean(np.concatenate(each) > error)) if each else 0.0
-
-    def reweighed(self, solved: Solved) -> Evidence:
-        """The same with spectra weighed by what a fit predicts, and not by what the owner's values do.
-
-        And with what it predicts of frequency responses where noise hides them, chains off as other lines say, if
-        these fit: else it is not chains that are off.
-        """
-        deviations = self.deviations(solved.datasets)
-        explained = self.whitener.explained(deviations)
-        if self.whitener.square(deviations) > FITS * deviations.size:
-            explained = np.zeros_like(explained)
-        blocks: list[Block] = []
-        for index, (block, prediction) in enumerate(zip(self.blocks, solved.datasets, strict=True)):
-            if isinstance(block, SpectraBlock):
-                campaign, need = solved.campaign, solved.needs[index]
-                assert need is not None
-                away = away_from_lines(campaign, block.dataset, need, solved.answers[need.key])
-                block = block.expecting(prediction, added_to(campaign, block.dataset), away)
-            elif isinstance(block, FrfBlock):
-                block = block.with_reference(prediction, block.errors(self.whitener.of_part(explained, index)))
-            elif isinstance(block, PassageBlock):
-                block = block.with_reference(prediction)
-            blocks.append(block)
-        return replace(self, blocks=tuple(blocks))
-
-    def learnt_scatter(self, predicted: Sequence[xr.Dataset], clean: Reals) -> Evidence:
-        """The same with the size of the errors of pairs, and the scatter of spectra, learnt.
-
-        Parameters
-        ----------
-        predicted : sequence of Dataset
-        clean : ndarray, shape (n,)
-            Deviations without what smooth errors explain.
-        """
-        blocks: list[Block] = []
-        block_of = self.block_of
-        for index, (block, prediction) in enumerate(zip(self.blocks, predicted, strict=True)):
-            if isinstance(block, FrfBlock):
-                size = block.learnt_pair(clean[block_of == index], SMALLEST_SMOOTH, LARGEST_PAIR)
-                block = block.with_pair(size) if abs(np.log(size / block.pair)) > 0.02 else block
-            elif isinstance(block, SpectraBlock):
-                block = block.scattered(prediction)
-            blocks.append(block)
-        return replace(self, blocks=tuple(blocks))
 
     def of(self, campaign: Campaign, datasets: Sequence[Dataset]) -> Evidence:
         """Other records of the same channels and lines, with the same errors.

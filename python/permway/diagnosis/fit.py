@@ -61,7 +61,7 @@ class Fit:
     campaign : Campaign
         With these values.
     evidence : Evidence
-        With the sizes of smooth errors learnt.
+        With the sizes of smooth errors.
     deviations : ndarray, shape (n,)
         Standardised, smooth errors not taken out.
     clean : ndarray, shape (n,)
@@ -134,18 +134,6 @@ class Fit:
             f.name: (f.value(float(z - width * s)), f.value(float(z + width * s)))
             for f, z, s in zip(self.free, self.z, sigma, strict=True)
         }
-
-
-def gained(base: Fit, amended: Fit) -> float:
-    """By how much an amendment lowers the objective, in records that weigh alike.
-
-    The sizes of errors are learnt on both sides, and never to the end: the base is given the better of its own and
-    of those that the amended model has learnt, so that learning on is no gain.
-    """
-    evidence = amended.evidence
-    deviations = evidence.deviations(evidence.predicted(base.campaign).datasets)
-    other = evidence.whitener.square(deviations) + evidence.log_determinant + evidence.whitener.log_determinant
-    return min(base.objective, other + base.prior) - amended.objective
 
 
 def free_parameters(campaign: Campaign) -> tuple[Free, ...]:

@@ -102,12 +102,8 @@ class Hypothesis:
         The value of `size` at which there is no effect.
     variant : str
         What tells forms of the effect apart that have the same parameters.
-    about : mapping of str to float
-        Coordinates z of parameters of the base, by name, that it is tried from where the base's own lead astray.
     moves : str
         Nominal parameter that the first of its own moves, in standard deviations of that one's prior; "" for none.
-    finer : callable, optional
-        From values to the same effect told in more detail, begun from them; None where there is no more to tell.
     """
 
     entry: str
@@ -121,9 +117,7 @@ class Hypothesis:
     size: str = ""
     none: float = 0.0
     variant: str = ""
-    about: Mapping[str, float] = field(default_factory=dict)
     moves: str = ""
-    finer: Callable[[Mapping[str, float]], Hypothesis | None] = field(default=lambda _: None)
 
     @property
     def form(self) -> tuple[str, ...]:

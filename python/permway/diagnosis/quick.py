@@ -1,10 +1,8 @@
-"""A hypothesis as far as it was followed while the base moves linearly, and with the base under it."""
+"""A base with an effect on top, and an effect with a smaller size."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from typing import Any
 
 import numpy as np
 from scipy import optimize
@@ -13,49 +11,6 @@ from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.hypothesis import Hypothesis
-
-
-@dataclass(frozen=True)
-class Quick:
-    """What a hypothesis gains while the base moves linearly.
-
-    Attributes
-    ----------
-    hypothesis : Hypothesis
-    z : ndarray
-        Of the effect's parameters.
-    base_z : ndarray
-        Of the base's parameters, moved along.
-    gain : float
-        Of the heated objective; minus infinity if the amended model cannot be solved.
-    columns : ndarray of float32, shape (n, p), optional
-        Derivative of the deviations by z, where it was last taken.
-    direction : ndarray of float32, shape (n,), optional
-        What the start that it was screened from does to the deviations.
-    start : ndarray, optional
-        Coordinates of that start.
-    promise : float
-        What the change that the start makes would gain, if it could be taken in any measure.
-    """
-
-    hypothesis: Hypothesis
-    z: Reals
-    base_z: Reals
-    gain: float
-    columns: np.ndarray | None = None
-    direction: np.ndarray | None = None
-    start: Reals | None = None
-    promise: float = 0.0
-
-    @property
-    def numbers(self) -> dict[str, Any]:
-        """All but the hypothesis, by name."""
-        return {one.name: getattr(self, one.name) for one in fields(self) if one.name != "hypothesis"}
-
-    @property
-    def values(self) -> dict[str, float]:
-        """Of the effect's parameters, by name."""
-        return {f.name: f.value(float(v)) for f, v in zip(self.hypothesis.free, self.z, strict=True)}
 
 
 def stacked(

@@ -6,9 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from permway.arrays import Complexes
 from permway.diagnosis.compare import Comparison
-from permway.diagnosis.constancy import Inconstant
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.hypothesis import Where
 from permway.diagnosis.spot import Found
@@ -71,14 +69,8 @@ class Diagnosis:
         Of the owner's values and the recalibrated.
     after : Comparison, optional
         Of the amended model: its last model is the amended, recalibrated.
-    law_dZ : mapping of str to ndarray of complex128, shape (F,)
-        Stiffness that named laws add, N/m, over the frequencies of the best found spot; may be empty.
     seconds : mapping of stage to float
         Time taken.
-    remaining : Found, optional
-        What a free stiffness at that spot would add to the amended model: with the law, what the records ask for.
-    inconstant : tuple of Inconstant
-        Parameters of the base that would be others over part of the records, the least constant first.
     weighed : Weighed, optional
         What the posterior says of places and of sets of effects.
     """
@@ -91,8 +83,5 @@ class Diagnosis:
     candidates: tuple[Candidate, ...]
     comparison: Comparison
     after: Comparison | None
-    law_dZ: Mapping[str, Complexes]
     seconds: Mapping[str, float]
-    inconstant: tuple[Inconstant, ...] = ()
-    remaining: Found | None = None
     weighed: Weighed | None = None

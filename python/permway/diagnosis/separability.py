@@ -7,6 +7,7 @@ could do at any size. Measured values play no part: only where, what and how wel
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,14 +18,25 @@ from permway.campaign.campaign import Campaign
 from permway.campaign.predict import predict
 from permway.diagnosis.catalogue import hypotheses
 from permway.diagnosis.clock import Progress
-from permway.diagnosis.compete import Ring
-from permway.diagnosis.decide import CLASS_DEVIANCE
+from permway.diagnosis.fit import Fit, free_parameters, limits_of
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Hypothesis, Situation
-from permway.diagnosis.locate import unseen
-from permway.diagnosis.refit import untouched
+from permway.diagnosis.quick import stacked
+from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.side_by_side import one_thread_of_blas
-from permway.errors import InputError
+from permway.diagnosis.spot import Found, Spot
+from permway.diagnosis.tangent import Problem
+from permway.errors import InputError, SolveError
+from permway.model.line import Line
+
+CLASS_DEVIANCE = 9.0
+"""Deviance below which two effects are one class, and an effect and nothing are."""
+
+SHARES = (0.5, 0.25, 0.75)
+"""Of a layer or a body, where an effect is put."""
+
+BANDS = 24
+"""Frequencies with which a place is handed on that was not looked at."""
 
 
 @dataclass(frozen=True)
@@ -104,26 +116,28 @@ def separability(
         replace(dataset, data=dataset.data.assign({name: right[name] for name in right.data_vars}))
         for dataset, right in zip(datasets, predict(campaign, datasets, threads=threads), strict=True)
     ]
-    fit = untouched(gather(campaign, datasets, threads=threads))
-    ring = Ring(fit)
-    offered = list(hypotheses(Situation(fit, tuple(unseen(fit)))))
+    evidence = gather(campaign, datasets, threads=threads)
+    stated = np.zeros(len(free_parameters(campaign)))
+    fit = _untouched(recalibrate(evidence, start=stated, most_steps=0))
+    base = _Base(fit)
+    offered = list(hypotheses(Situation(fit, tuple(places(fit)))))
     kept: list[tuple[Hypothesis, Reals, Reals, Reals]] = []
     for index, hypothesis in enumerate(offered):
         say("effects", index, len(offered))
-        tried = ring.effect(hypothesis)
+        tried = base.effect(hypothesis)
         if tried is not None:
             kept.append((hypothesis, *tried))
     say("compare", 0, 0)
     if not kept:
         raise InputError("no effect of the catalogue can be in this model", where="model")
     directions = np.column_stack([d for _, _, d, _ in kept])
-    seen = np.maximum(np.diag(ring.projected(directions, directions)), 0.0)
+    seen = np.maximum(np.diag(base.projected(directions, directions)), 0.0)
     apart = np.zeros((len(kept), len(kept)))
     for j, (_, _, direction, slopes) in enumerate(kept):
         # At any size of its own, and at any near values.
         columns = np.column_stack([direction, slopes])
-        inner = ring.projected(columns, columns) + np.eye(columns.shape[1])
-        across = ring.projected(directions, columns)
+        inner = base.projected(columns, columns) + np.eye(columns.shape[1])
+        across = base.projected(directions, columns)
         explained = np.einsum("ip,pi->i", across, linalg.solve(inner, across.T, assume_a="pos"))
         apart[:, j] = np.maximum(seen - explained, 0.0)
     values = [{f.name: f.value(float(v)) for f, v in zip(h.free, z, strict=True)} for h, z, _, _ in kept]
@@ -137,3 +151,75 @@ def separability(
         seen=seen,
         apart=apart,
     )
+
+
+def _untouched(fit: Fit) -> Fit:
+    """As if the records were what a fit predicts: its slopes and covariance, and no residual."""
+    nothing = np.zeros_like(fit.deviations)
+    return replace(fit, deviations=nothing, clean=nothing, chi2=0.0, prior=0.0, heat=1.0)
+
+
+def places(fit: Fit) -> Iterator[Found]:
+    """A quarter, the middle and three quarters of each layer and body, as places of which nothing is known yet."""
+    line, rows = fit.campaign.model.line, fit.evidence.rows
+    frequency = np.geomspace(float(rows.frequency_Hz.min()), float(rows.frequency_Hz.max()), BANDS)
+    nothing, flat = np.zeros(BANDS, dtype=np.complex128), np.ones(BANDS)
+    for share in SHARES:
+        for spots in _spots(line):
+            spot = spots[round(share * (len(spots) - 1))]
+            yield Found(spot, 0.0, 0, frequency, nothing, flat, flat, 1.0)
+
+
+def _spots(line: Line) -> Iterator[list[Spot]]:
+    """The joints of each layer and the places of each body, in order."""
+    table = line.joint_table()
+    order = np.argsort(table.x, kind="stable")
+    for index, law in enumerate(line.laws):
+        mine = [int(j) for j in order if table.law[j] == index]
+        if mine:
+            yield [Spot("joint", law, (float(table.x[j]), float(table.x[j])), (j,)) for j in mine]
+    if not table.x.size:
+        return
+    for _, segment in line.beams():
+        low, high = max(segment.start, float(table.x.min())), min(segment.stop, float(table.x.max()))
+        if high > low:
+            inside = np.linspace(low, high, max(2, round(high - low) + 1))
+            yield [Spot("body", segment.name, (float(x), float(x))) for x in inside]
+
+
+class _Base:
+    """The owner's model, and what its moves and smooth errors take out of a change of the residuals."""
+
+    def __init__(self, fit: Fit) -> None:
+        self.fit, self.whitener = fit, fit.evidence.whitener
+        self._solved = fit.evidence.predicted(fit.campaign)
+        self._plain = fit.evidence.deviations(self._solved.datasets)
+        self._reduced = self.whitener.reduce(fit.jacobian)
+        normal = fit.jacobian.T @ fit.jacobian - self._reduced.T @ self._reduced
+        self._factor = linalg.cho_factor(normal + np.eye(fit.z.size))
+
+    def effect(self, hypothesis: Hypothesis) -> tuple[Reals, Reals, Reals] | None:
+        """The first start that can be solved: its coordinates, its change of the residuals, the slopes there."""
+        fit, own = self.fit, self.fit.z.size
+        build, free = stacked(fit.build, hypothesis, "effect.", fit.evidence.campaign)
+        problem = Problem(fit.evidence, build, (*fit.free, *free))
+        low, high = limits_of(hypothesis.free)
+        for start in hypothesis.starts:
+            z = np.clip(np.array(start, dtype=np.float64), low, high)
+            state = problem.at(np.concatenate([fit.z, z]), self._solved)
+            if state is None:
+                continue
+            try:
+                slopes = problem.columns(state, range(own, own + z.size))
+            except (InputError, SolveError):
+                continue
+            return z, state.deviations - self._plain, slopes
+        return None
+
+    def projected(self, columns: Reals, other: Reals) -> Reals:
+        """Products of columns, (n, p) and (n, q), smooth errors and all moves of the base taken out."""
+        mine, theirs = self.whitener.reduce(columns), self.whitener.reduce(other)
+        left = columns.T @ self.fit.jacobian - mine.T @ self._reduced
+        right = other.T @ self.fit.jacobian - theirs.T @ self._reduced
+        inner = columns.T @ other - mine.T @ theirs
+        return np.asarray(inner - left @ linalg.cho_solve(self._factor, right.T))

@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from threadpoolctl import threadpool_limits
 
-from permway.diagnosis import journal
 from permway.errors import SolveError
 
 if TYPE_CHECKING:
@@ -76,12 +75,11 @@ def each(
     # A daemon, as those of multiprocessing's pools are, may have no processes of its own.
     if others < 1 or _shared or sys.platform != "linux" or current_process().daemon:
         found = []
-        with journal.silent():
-            for index, item in enumerate(items):
-                told(index)
-                found.append(work(item))
+        for index, item in enumerate(items):
+            told(index)
+            found.append(work(item))
         return found
-    with journal.silent(), _sharing():
+    with _sharing():
         return _forked(work, items, others, told)
 
 

@@ -62,9 +62,6 @@ class Columns(Protocol):
     def gram(self) -> Reals:
         """Transposed times itself, (c, c)."""
 
-    def masked(self, rows: np.ndarray) -> Columns:
-        """The same with nothing outside some rows."""
-
 
 @dataclass(frozen=True)
 class Smooth:
@@ -103,10 +100,6 @@ class PlainColumns:
     def gram(self) -> Reals:
         """See :class:`Columns`."""
         return np.asarray(self.matrix.T @ self.matrix)
-
-    def masked(self, rows: np.ndarray) -> PlainColumns:
-        """See :class:`Columns`."""
-        return PlainColumns(self.matrix * rows[:, None])
 
 
 @dataclass(frozen=True)
@@ -160,11 +153,6 @@ class PairColumns:
             whole[sensors:, part, :, :sensors, part] = pairs.transpose(1, 2, 0, 3)
         size = 2 * (sensors + points) * count
         return whole.reshape(size, size)
-
-    def masked(self, rows: np.ndarray) -> PairColumns:
-        """See :class:`Columns`; a line is left out with both its parts."""
-        half = rows[: rows.size // 2]
-        return PairColumns(self.gains * half.reshape(self.phase.shape)[..., None], self.phase)
 
 
 def as_parts(values: Complexes) -> Reals:

@@ -104,10 +104,6 @@ class Problem:
             return None
         return State(z, predicted, deviations) if np.isfinite(deviations).all() else None
 
-    def again(self, state: State) -> State:
-        """The same with the sizes that were learnt."""
-        return State(state.z, state.solved, self.evidence.deviations(state.solved.datasets))
-
     def tangent(self, state: State, slopes: Reals | None = None) -> Tangent:
         """About a state, by finite differences unless slopes are given."""
         slopes = self.jacobian(state) if slopes is None else slopes

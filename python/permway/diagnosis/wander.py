@@ -15,9 +15,6 @@ from scipy import linalg
 
 from permway.arrays import Reals
 
-LENGTHS = (0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0)
-"""Octaves over which smooth errors may correlate; which, the records say."""
-
 FIRST_LENGTH = 1.0
 """Octaves, where nothing is known yet."""
 

@@ -80,11 +80,6 @@ class AllColumns:
         """Coefficients of every part of every origin, in their order."""
         return [o.wander.count for o in self.origins for _ in range(o.parts)]
 
-    def masked(self, keep: np.ndarray) -> AllColumns:
-        """The same with nothing outside some rows."""
-        parts = [(rows, place, columns.masked(keep[rows])) for rows, place, columns in self.parts]
-        return AllColumns(self.origins, tuple(parts), _gram(parts, self.gram.shape[0]))
-
 
 def _gram(parts: Sequence[tuple[slice, np.ndarray, Columns]], count: int) -> Reals:
     whole = np.zeros((count, count))
@@ -169,26 +164,9 @@ class Whitener:
                 pulled[place] = solve(factor, mine)
         return pulled
 
-    def variances(self) -> Reals:
-        """Of the coefficients afterwards."""
-        found = np.empty(self.count)
-        for place, factor in self.factors:
-            inverse, _ = linalg.lapack.dtrtri(factor, lower=1)
-            found[place] = (np.tril(inverse) ** 2).sum(axis=0)
-        return found
-
     def smooth(self, coefficients: Reals, size: int) -> Reals:
         """What coefficients do to so many deviations."""
         return self.columns.push(_rooted(coefficients, self.roots), size)
-
-    def of_part(self, coefficients: Reals, index: int) -> Reals:
-        """Coefficients of one block's columns, nepers and rad of them, in the order of its origins."""
-        moved = _rooted(coefficients, self.roots)
-        return np.asarray(moved[self.columns.parts[index][1]])
-
-    def of_origin(self) -> np.ndarray:
-        """Index of each coefficient's origin."""
-        return np.repeat(np.arange(len(self.columns.origins)), [o.count for o in self.columns.origins])
 
     @property
     def log_determinant(self) -> float:

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from permway.arrays import Reals
 from permway.diagnosis.fit import WIDTH
-from permway.diagnosis.speak_effect import bands_of
 from permway.diagnosis.tolerances import outside
 from permway.diagnosis.verdict import NOVEL, RIGHT, Status, Verdict
 from permway.diagnosis.verdict_parts import (
@@ -24,6 +24,9 @@ from permway.diagnosis.verdict_parts import (
 from permway.posterior.fit import Fit
 from permway.posterior.held_out import Gain
 from permway.posterior.masses import CLASS, LIKELY, Masses
+
+SHOWN = 0.8
+"""Share of an effect's gain that its bands hold."""
 
 NAMED = 0.9
 """Posterior probability from which an effect is named."""
@@ -109,7 +112,7 @@ def _effect(masses: Masses, index: int) -> Effect:
     return Effect(
         domain=hypothesis.domain,
         place=Place.of(where, line, within=(min(ends), max(ends)) if ends else None),
-        bands=bands_of(best.fit.frame.evidence.rows.frequency_Hz, gained),
+        bands=_bands(best.fit.frame.evidence.rows.frequency_Hz, gained),
         name=members[0].name if named else None,
         class_=members,
         law=Mechanics(words=hypothesis.law(values)),
@@ -127,6 +130,27 @@ def _class(names: Sequence[tuple[str, float]]) -> tuple[ClassMember, ...]:
         if held >= CLASS * whole:
             break
     return tuple(kept)
+
+
+def _bands(frequency_Hz: Reals, shown: Reals) -> tuple[tuple[float, float], ...]:
+    """Bands, of whole third octaves, that hold most of what an effect shows."""
+    cell = np.floor(3.0 * np.log2(frequency_Hz)).astype(np.int64)
+    cells = np.arange(cell.min(), cell.max() + 1)
+    share = np.bincount(cell - cell.min(), weights=np.maximum(shown, 0.0), minlength=cells.size)
+    if share.sum() <= 0.0:
+        return ()
+    order = np.argsort(-share)
+    needed = int(np.searchsorted(np.cumsum(share[order]) / share.sum(), SHOWN)) + 1
+    chosen = np.zeros(cells.size, dtype=bool)
+    chosen[order[:needed]] = True
+    spans, start = [], None
+    for index, inside in enumerate([*chosen, False]):
+        if inside and start is None:
+            start = index
+        elif not inside and start is not None:
+            spans.append((float(2.0 ** (cells[start] / 3.0)), float(2.0 ** ((cells[index - 1] + 1) / 3.0))))
+            start = None
+    return tuple(spans)
 
 
 def _anonymous(effect: Effect) -> Effect:

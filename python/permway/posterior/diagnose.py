@@ -105,7 +105,6 @@ def diagnose(
         candidates=tuple(candidate for m in masses.members for candidate in _candidates(m, empty)),
         comparison=assemble(base.evidence, base, left_out=left_out),
         after=None if amended is None else assemble(amended.evidence, amended, left_out=left_out),
-        law_dZ={},
         seconds=clock.seconds(),
         weighed=weighed(masses, search.small[0]),
     )

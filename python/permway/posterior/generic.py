@@ -71,10 +71,8 @@ def _places(segment: Segment, carrying: list[Layer]) -> np.ndarray:
 
 
 def _elements(segment: Segment, lower: str, x: float, typical: float) -> Iterator[Hypothesis]:
+    """Each element; what hangs on a body is in the catalogue."""
     for element in ELEMENTS:
-        if element.ground:
-            # What hangs on a body is in the catalogue.
-            continue
         if element.name == "spring":
             yield _of(segment, lower, x, typical, element, 1.0)
         yield _of(segment, lower, x, typical, element, -1.0 if element.name == "spring" else 1.0)

@@ -42,7 +42,7 @@ def campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
 
 @pytest.fixture(scope="module")
 def base(campaign: Campaign) -> Fit:
-    return recalibrate(gather(campaign, threads=1), learn=False)
+    return recalibrate(gather(campaign, threads=1))
 
 
 @pytest.fixture(scope="module")

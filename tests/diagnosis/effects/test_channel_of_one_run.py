@@ -22,7 +22,7 @@ def test_every_effect_is_offered_and_the_other_run_tells_of_the_channel(tmp_path
     left = [name for name in ON_BOARD if name != MISSING]
     last = datasets[-1]
     datasets[-1] = replace(last, data=last.data.sel(channel=left, channel2=left))
-    situation = Situation(recalibrate(gather(owner, datasets, threads=1), learn=False), ())
+    situation = Situation(recalibrate(gather(owner, datasets, threads=1)), ())
     whole, part = excesses(situation)
     at = np.array([20.0, 40.0])
     assert np.isfinite(whole.score_at(at, MISSING)).all()

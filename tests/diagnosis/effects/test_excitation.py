@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -16,16 +16,15 @@ from permway.campaign.predict import predict
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._excite import chain_with, with_irregularity, with_speed
-from permway.diagnosis.compete import Ring
+from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Hypothesis, Situation
-from permway.diagnosis.quick import Quick
 from permway.diagnosis.recalibrate import recalibrate
-from permway.diagnosis.refit import relearnt
 from permway.model.contact import GivenContact
 from permway.recordings.channel import Mains
+from searched import searched
 from simulated import simulate
-from trains import blank, campaign_in, situation_of
+from trains import blank, campaign_in, evidence_of, situation_of
 
 MINE = (
     "wheel_polygon",
@@ -249,22 +248,14 @@ def hypotheses(situation: Situation, entry: str, place: str = "") -> list[Hypoth
     return [h for h in every if place in h.locate({f.name: f.value(0.0) for f in h.free}).label]
 
 
-def injected(owner: Campaign, case: Case, strength: float) -> Situation:
+def injected(owner: Campaign, case: Case, strength: float) -> Evidence:
     """What is measured when the effect is there."""
-    return situation_of(owner, 11, amend=lambda truth: case.inject(truth, case.at(strength)))
+    return evidence_of(owner, 11, amend=lambda truth: case.inject(truth, case.at(strength)))
 
 
-def rivals(situation: Situation, family: str) -> Iterator[Hypothesis]:
-    """Of the entries of other families here, the first few of each."""
-    for entry in MINE:
-        if family != entries()[entry].FAMILY:
-            yield from islice(entries()[entry].hypotheses(situation), 4)
-
-
-def best_of(ring: Ring, some: Iterator[Hypothesis] | list[Hypothesis], most: int = 2) -> Quick:
-    """The one that gains most, of those that one step says most of."""
-    screened = sorted((ring.screen(h) for h in some), key=lambda quick: -quick.gain)
-    return max((ring.quick(q.hypothesis, after=q) for q in screened[:most]), key=lambda quick: quick.gain)
+def others(entry: str) -> list[str]:
+    """The entries of other families here."""
+    return [name for name in MINE if entries()[name].FAMILY != entries()[entry].FAMILY]
 
 
 DIPS = [
@@ -285,16 +276,14 @@ MEASURED = [*CASES, *DIPS]
 @pytest.mark.injection
 @pytest.mark.parametrize("case", MEASURED, ids=[f"{case.entry}-{[*case.values][-1]}" for case in MEASURED])
 def test_the_strongest_is_named_and_measured(owner: Campaign, case: Case) -> None:
-    situation = injected(owner, case, 1.0)
-    ring = Ring(situation.fit)
-    own = best_of(ring, hypotheses(situation, case.entry), most=3)
-    assert case.place in own.hypothesis.locate(own.values).label
-    # As a finalist is fitted: the base had taken part of the effect for errors.
-    found = relearnt(ring.full(own, prefix="1."), situation.fit.evidence).values()
+    found = searched(injected(owner, case, 1.0), case.entry, *others(case.entry))
+    own = found.best()
+    assert own is not None
+    assert own.names == (case.entry,)
+    values = own.values(0)
+    assert case.place in own.amendments[0].locate(values).label
     for name, width in case.within.items():
-        assert found["1." + name] == pytest.approx(case.values[name], rel=width), found
-    other = best_of(ring, rivals(situation, own.hypothesis.family))
-    assert own.gain > other.gain, (own.gain, other.hypothesis.entry, other.gain, other.values)
+        assert values[name] == pytest.approx(case.values[name], rel=width), values
 
 
 @pytest.mark.injection
@@ -302,27 +291,24 @@ def test_the_strongest_is_named_and_measured(owner: Campaign, case: Case) -> Non
 def test_more_effect_is_more_gain(owner: Campaign, case: Case) -> None:
     gains = []
     for strength in (0.25, 0.6):
-        situation = injected(owner, case, strength)
-        own = hypotheses(situation, case.entry, case.place) or hypotheses(situation, case.entry)
-        # The records count less while the base does not fit: by its heat.
-        gains.append(situation.fit.heat * best_of(Ring(situation.fit), own).gain)
+        found = searched(injected(owner, case, strength), case.entry)
+        gains.append(found.gain(found.best()))
     assert gains[1] > gains[0]
 
 
 def test_a_wrong_polarity_is_named(owner: Campaign) -> None:
-    situation = situation_of(owner, 12, amend=lambda c: chain("bogie", lambda _: {"polarity": -1})(c, {}))
-    ring = Ring(situation.fit)
-    own = best_of(ring, hypotheses(situation, "sensor_polarity"), most=3)
-    assert "bogie" in own.hypothesis.locate(own.values).label
-    assert own.gain > best_of(ring, rivals(situation, own.hypothesis.family)).gain
+    turned = chain("bogie", lambda _: {"polarity": -1})
+    found = searched(evidence_of(owner, 12, amend=lambda c: turned(c, {})), *MINE)
+    best = found.best()
+    assert best is not None
+    assert best.names == ("sensor_polarity",)
+    assert "bogie" in best.amendments[0].locate(best.values(0)).label
 
 
-def test_nothing_missing_gains_little(quiet: Situation) -> None:
-    """The priors' own cost and a free number's luck: below 12 for every entry, on one draw of the noise."""
-    ring = Ring(quiet.fit)
-    for entry in MINE:
-        gain = max(ring.screen(h).gain for h in entries()[entry].hypotheses(quiet))
-        assert gain < 12.0, entry
+def test_nothing_missing_names_nothing(owner: Campaign) -> None:
+    """Of all these entries, on one draw of the noise."""
+    found = searched(evidence_of(owner, 1), *MINE)
+    assert found.members[0] is found.empty
 
 
 @pytest.mark.parametrize("entry", [*MINE])

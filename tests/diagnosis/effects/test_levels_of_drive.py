@@ -87,7 +87,7 @@ def written(folder: Path, responses: list[Complexes], levels: tuple[float | None
 
 
 def offered(campaign: Campaign, module: Any) -> list[Hypothesis]:
-    return list(module.hypotheses(Situation(recalibrate(gather(campaign, threads=1), learn=False), ())))
+    return list(module.hypotheses(Situation(recalibrate(gather(campaign, threads=1)), ())))
 
 
 def responses_of(campaign: Campaign, hypothesis: Hypothesis, values: Mapping[str, float]) -> list[Reals]:

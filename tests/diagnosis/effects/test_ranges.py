@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,11 +11,13 @@ from permway.diagnosis.catalogue import entries
 from permway.diagnosis.fit import Free
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
-from permway.diagnosis.locate import scanned
-from permway.diagnosis.plausible import plausible
 from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.separability import places
 from simulated import simulate
 from simulated_train import measured, tables, written
+
+RANGE = re.compile(r"[^,]*, ([-\d.e]+) to ([-\d.e]+)(?=:|$)")
+"""A parameter's unit, and from what to what it may be, as `PARAMETERS` of an entry has it."""
 
 ROUNDED = 0.03
 """Of the whole range, in logarithms where it lies above zero."""
@@ -22,10 +25,16 @@ ROUNDED = 0.03
 
 def situations(folder: Path) -> Iterator[Situation]:
     """A hammer test, and a train on a rough rail."""
-    hammer = recalibrate(gather(simulate(folder / "hammer", 3).campaign, threads=1), learn=False)
-    yield Situation(hammer, scanned(hammer))
+    hammer = recalibrate(gather(simulate(folder / "hammer", 3).campaign, threads=1))
+    yield Situation(hammer, tuple(places(hammer)))
     train = written(folder / "train", *tables(cold=True))
-    yield Situation(recalibrate(gather(train, measured(train, 1), threads=1), learn=False), ())
+    yield Situation(recalibrate(gather(train, measured(train, 1), threads=1)), ())
+
+
+def plausible(entry: str) -> dict[str, tuple[float, float]]:
+    """Lowest and highest plausible value by parameter, for those that have such."""
+    said = {name: RANGE.match(text) for name, text in entries()[entry].PARAMETERS.items()}
+    return {name: (float(m[1]), float(m[2])) for name, m in said.items() if m is not None}
 
 
 def beyond(free: Free, low: float, high: float) -> float:

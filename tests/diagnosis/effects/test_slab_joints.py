@@ -11,12 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue import entries, slab_joints
-from permway.diagnosis.compete import Ring
+from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather
-from permway.diagnosis.hypothesis import Hypothesis, Situation
-from permway.diagnosis.locate import scan
+from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.separability import places
 from permway.model.segments import Segment
+from searched import searched
 from simulated_track import SPAN_M, campaign, viaduct
 from simulated_train import measured, written
 
@@ -53,17 +54,12 @@ def test_joints_by_one_measure_go_on_from_slab_to_slab(
     assert ends.max() <= (1.0 + slab_joints.SHORT) * length * (1.0 + 1e-9)
 
 
-def situation_of(owner: Campaign, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign) -> Situation:
-    fit = recalibrate(gather(owner, measured(owner, 3, amend), threads=1), learn=False)
-    return Situation(fit, tuple(scan(fit)))
+def evidence_of(owner: Campaign, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign) -> Evidence:
+    return gather(owner, measured(owner, 3, amend), threads=1)
 
 
 def test_joints_that_go_on_from_slab_to_slab_are_no_pattern_of_each(tmp_path: Path) -> None:
     """Of two slabs cut every 4.8 m: 5.1 m from the start of the first, and 3 m from that of the second."""
-
-    def forms(situation: Situation) -> dict[str, Hypothesis]:
-        offered = list(entries()["slab_joints"].hypotheses(situation))
-        return {h.variant: h for h in offered if {f.name for f in h.free} == {"length_m", "offset"}}
 
     model = viaduct(2)
     model["line"]["bodies"]["slab"]["intervals_m"] = [[0.0, 11.7], [11.7, 2 * SPAN_M]]
@@ -71,9 +67,13 @@ def test_joints_that_go_on_from_slab_to_slab_are_no_pattern_of_each(tmp_path: Pa
     for one in table["sensors"]:
         one["body"] = one["body"].replace("slab[1]", "slab")
     owner = written(tmp_path / "c", table, model)
-    inject = forms(situation_of(owner))["through"].amend
-    situation = situation_of(owner, lambda c: inject(c, {"length_m": 4.8, "offset": 0.0625}))
-    ring = Ring(situation.fit)
-    by = {form: ring.quick(one) for form, one in forms(situation).items()}
-    assert by["through"].gain > by[""].gain + 20.0
-    assert by["through"].values["length_m"] == pytest.approx(4.8, abs=0.05)
+    fit = recalibrate(evidence_of(owner))
+    offered = entries()["slab_joints"].hypotheses(Situation(fit, tuple(places(fit))))
+    inject = next(h.amend for h in offered if h.variant == "through" and len(h.free) == 2)
+    found = searched(evidence_of(owner, lambda c: inject(c, {"length_m": 4.8, "offset": 0.0625})), "slab_joints")
+    best = found.best()
+    assert best is not None
+    assert best.amendments[0].variant == "through"
+    assert best.values(0)["length_m"] == pytest.approx(4.8, abs=0.05)
+    others = [m for m in found.members if m.amendments and m.amendments[0].variant != "through"]
+    assert all(found.gain(best) > found.gain(other) + 10.0 for other in others)

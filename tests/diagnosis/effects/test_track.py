@@ -14,12 +14,12 @@ from permway.campaign.campaign import Campaign
 from permway.campaign.predict import predict
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._interval import weakened
-from permway.diagnosis.compete import Ring
-from permway.diagnosis.fit import Fit
+from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation
-from permway.diagnosis.locate import scan
 from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.separability import places
+from searched import searched
 from simulated_track import ballasted, campaign, embedded, viaduct
 from simulated_train import blank, measured, written
 
@@ -154,8 +154,8 @@ def situations(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tupl
     @cache
     def made(line: str) -> tuple[Situation, Campaign]:
         owner = read(tmp_path_factory.mktemp("line"), line)
-        fit, situation = of(owner, 7)
-        return situation, fit.campaign
+        fit = recalibrate(of(owner, 7))
+        return Situation(fit, tuple(places(fit))), fit.campaign
 
     return made
 
@@ -165,11 +165,8 @@ def read(folder: Path, line: str) -> Campaign:
     return written(folder / "c", campaign(model), model)
 
 
-def of(
-    owner: Campaign, seed: int, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
-) -> tuple[Fit, Situation]:
-    fit = recalibrate(gather(owner, measured(owner, seed, amend), threads=1), learn=False)
-    return fit, Situation(fit, tuple(scan(fit)))
+def of(owner: Campaign, seed: int, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign) -> Evidence:
+    return gather(owner, measured(owner, seed, amend), threads=1)
 
 
 def _put(inject: Amend, values: Values, base: Campaign) -> Campaign:
@@ -223,23 +220,20 @@ def test_what_is_put_in_is_named_and_measured(
     offered = entries()[entry].hypotheses(situations(line)[0])
     inject = next(h.amend for h in offered if set(levels[0]) <= {f.name for f in h.free})
     owner, gains = read(tmp_path, line), []
-    for values in levels:
-        fit, situation = of(owner, 3, partial(_put, inject, values))
-        ring = Ring(fit)
-        own = max((ring.quick(h) for h in entries()[entry].hypotheses(situation)), key=lambda q: q.gain)
-        # A gain is told over the heat of its base, which grows with what is missing: of chi square it is this.
-        gains.append(own.gain * fit.heat)
-    assert gains[0] < gains[1] < gains[2]
-    family = own.hypothesis.family
+    family = entries()[entry].FAMILY
     rivals = {*entries()[entry].CONFUSED_WITH, "fastener_loss", "pad_frequency", "deck_attachment", "sensor_gain"}
-    for rival in sorted(rivals - {entry}):
-        for hypothesis in entries()[rival].hypotheses(situation) if rival in entries() else ():
-            if hypothesis.family != family:
-                assert ring.quick(hypothesis, steps=3).gain < own.gain, rival
-    found = ring.full(own, most_steps=25).values()
+    rivals = {rival for rival in rivals & set(entries()) if family != entries()[rival].FAMILY}
+    for values in levels:
+        found = searched(of(owner, 3, partial(_put, inject, values)), entry, *sorted(rivals))
+        gains.append(found.gain(found.best(entry)))
+    assert gains[0] < gains[1] < gains[2]
+    best = found.best()
+    assert best is not None
+    assert best.names == (entry,)
+    told = best.values(0)
     for name, share in near.items():
         in_metres = name in ("centre_m", "x_m") or (name == "length_m" and "centre_m" in values)
-        assert abs(found[name] - values[name]) <= share * (1.0 if in_metres else abs(values[name])), (name, found)
+        assert abs(told[name] - values[name]) <= share * (1.0 if in_metres else abs(values[name])), (name, told)
 
 
 def test_absorbers_of_a_stretch_between_fasteners_are_told_from_others(
@@ -249,15 +243,16 @@ def test_absorbers_of_a_stretch_between_fasteners_are_told_from_others(
     offered = list(entries()["rail_absorber"].hypotheses(situations("viaduct")[0]))
     inject = next(h for h in offered if "between" in h.variant and "length_m" in {f.name for f in h.free}).amend
     values = {"mass_kg": 6.0, "frequency_Hz": 110.0, "loss_factor": 0.1, "centre_m": 6.3, "length_m": 4.8}
-    fit, situation = of(read(tmp_path, "viaduct"), 3, partial(_put, inject, values))
-    ring = Ring(fit)
-    found = [ring.full(ring.quick(h), most_steps=15) for h in entries()["rail_absorber"].hypotheses(situation)]
-    best = min(range(len(offered)), key=lambda index: found[index].objective)
-    assert "between" in offered[best].variant
-    other = min(f.objective for f, h in zip(found, offered, strict=True) if h.form != offered[best].form)
-    assert other - found[best].objective > 9.0
+    found = searched(of(read(tmp_path, "viaduct"), 3, partial(_put, inject, values)), "rail_absorber")
+    best = found.best()
+    assert best is not None
+    assert "between" in best.amendments[0].variant
+    for other in found.members:
+        if len(other.amendments) == 1 and other.amendments[0].form != best.amendments[0].form:
+            assert found.gain(best) > found.gain(other) + 4.5
+    told = best.values(0)
     for end in (-0.5, 0.5):
-        said, true = (v["centre_m"] + end * v["length_m"] for v in (found[best].values(), values))
+        said, true = (v["centre_m"] + end * v["length_m"] for v in (told, values))
         assert abs(said - true) < 0.35
 
 
@@ -271,13 +266,13 @@ def test_slabs_cut_at_fasteners_are_told_by_their_length(
     assert len(shared) > 2
     for index in (0, len(shared) - 1):
         values = {"length_m": lengths[index], "dowels_N_per_m": 1e5}
-        fit, situation = of(read(tmp_path / str(index), "viaduct"), 3, partial(_put, shared[index].amend, values))
-        ring = Ring(fit)
-        quick = [ring.quick(h) for h in entries()["slab_joints"].hypotheses(situation)]
-        best = max(quick, key=lambda q: q.gain)
-        assert best.values.keys() == values.keys()
-        assert best.values["length_m"] == pytest.approx(lengths[index])
-        assert best.values["dowels_N_per_m"] < 1e8
+        evidence = of(read(tmp_path / str(index), "viaduct"), 3, partial(_put, shared[index].amend, values))
+        best = searched(evidence, "slab_joints").best()
+        assert best is not None
+        told = best.values(0)
+        assert told.keys() == values.keys()
+        assert told["length_m"] == pytest.approx(lengths[index])
+        assert told["dowels_N_per_m"] < 1e8
 
 
 def test_no_stiffness_is_lost_or_won_where_a_fastener_holds_two_ends(
@@ -309,17 +304,13 @@ def test_piers_of_one_girder_and_of_two_are_told_apart(
     """Heavy or light, on rock or on soil: found from afar, and named before a girder's own modes."""
     inject = next(h for h in entries()["pier_soil"].hypotheses(situations("two spans")[0]) if h.variant == variant)
     values = {"compliance": compliance, "mass_kg": mass_kg, "loss_factor": 0.1, "radiation": 0.03}
-    fit, situation = of(read(tmp_path, "two spans"), 3, partial(_put, inject.amend, values))
-    ring = Ring(fit)
-    quick = [
-        ring.quick(h)
-        for name in ("pier_soil", "girder_local_modes")
-        for h in entries()[name].hypotheses(situation)
-    ]
-    found = min((ring.full(q, most_steps=25) for q in quick), key=lambda full: full.objective)
-    assert {"compliance", "mass_kg"} <= found.values().keys()
-    assert found.values()["mass_kg"] == pytest.approx(mass_kg, rel=0.15)
-    assert found.values()["compliance"] == pytest.approx(compliance, rel=0.15)
+    evidence = of(read(tmp_path, "two spans"), 3, partial(_put, inject.amend, values))
+    best = searched(evidence, "pier_soil", "girder_local_modes").best()
+    assert best is not None
+    found = best.values(0)
+    assert {"compliance", "mass_kg"} <= found.keys()
+    assert found["mass_kg"] == pytest.approx(mass_kg, rel=0.15)
+    assert found["compliance"] == pytest.approx(compliance, rel=0.15)
 
 
 @pytest.mark.injection
@@ -329,15 +320,13 @@ def test_a_bearing_apart_is_found(
 ) -> None:
     hypotheses = entries()["bearing_stiffness"].hypotheses
     inject = {h.locate({}).x_m: h for h in hypotheses(situations("viaduct")[0])}[(15.0, 15.0)].amend
-    fit, situation = of(read(tmp_path, "viaduct"), 3, lambda base: inject(base, {"factor": factor}))
-    ring = Ring(fit)
-    quick = [ring.quick(h) for h in hypotheses(situation)]
-    for rival in ("girder_crack", "girder_local_modes", "fastener_loss", "deck_attachment"):
-        for hypothesis in entries()[rival].hypotheses(situation):
-            assert ring.quick(hypothesis).gain < max(q.gain for q in quick)
+    evidence = of(read(tmp_path, "viaduct"), 3, lambda base: inject(base, {"factor": factor}))
+    rivals = ("girder_crack", "girder_local_modes", "fastener_loss", "deck_attachment")
+    best = searched(evidence, "bearing_stiffness", *rivals).best()
+    assert best is not None
+    assert best.names == ("bearing_stiffness",)
     # One bearing softer or the other stiffer: which of the two, the owner's tolerance tells.
-    best = max((ring.full(q, most_steps=25) for q in quick), key=lambda full: -full.objective)
-    line = best.campaign.model.line
+    line = best.fit.state.solved.campaign.model.line
     table = line.joint_table()
     left, right = table.scale[table.law == list(line.laws).index("bearing")]
     assert right / left == pytest.approx(factor, rel=0.15)
@@ -351,12 +340,12 @@ def test_of_two_girders_that_meet_one_may_have_the_other_bearing(
     hypotheses = entries()["bearing_stiffness"].hypotheses
     own = [h for h in hypotheses(situations("two spans")[0]) if h.variant == "one girder"]
     assert len(own) == 2
-    fit, situation = of(read(tmp_path, "two spans"), 3, lambda base: own[1].amend(base, {"factor": factor}))
-    ring = Ring(fit)
-    best = max((ring.quick(h) for h in hypotheses(situation)), key=lambda q: q.gain)
+    evidence = of(read(tmp_path, "two spans"), 3, lambda base: own[1].amend(base, {"factor": factor}))
+    best = searched(evidence, "bearing_stiffness").best()
+    assert best is not None
     values = {"factor": factor}
-    assert best.hypothesis.law(values) == own[1].law(values)
-    assert ring.full(best, most_steps=25).values()["factor"] == pytest.approx(factor, rel=0.15)
+    assert best.amendments[0].law(values) == own[1].law(values)
+    assert best.values(0)["factor"] == pytest.approx(factor, rel=0.15)
 
 
 def test_a_stretch_changes_whole_joints_and_fades_between(

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from permway.campaign.campaign import Campaign
 from permway.campaign.predict import predict
-from permway.diagnosis.compete import Ring
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
 from permway.diagnosis.recalibrate import recalibrate
+from searched import searched
 from simulated_train import blank, measured, tables, written
 
 INJECTED: dict[str, tuple[str, tuple[float, float, float], dict[str, float]]] = {
@@ -55,7 +55,7 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Callable[[bool], Fit]:
     @cache
     def made(cold: bool) -> Fit:
         campaign = written(tmp_path_factory.mktemp("sound"), *tables(cold=cold))
-        return recalibrate(gather(campaign, measured(campaign, 1), threads=1), learn=False)
+        return recalibrate(gather(campaign, measured(campaign, 1), threads=1))
 
     return made
 
@@ -79,35 +79,30 @@ def test_an_effect_is_named_and_sized(name: str, sound: Callable[[bool], Fit]) -
     what, sizes, rest = INJECTED[name]
     base = sound(name == "pad_temperature")
     campaign, hypothesis = base.evidence.campaign, placed(name, base)
+    family = entry(name).FAMILY
+    rivals = [rival for rival in RIVALS if family != entry(rival).FAMILY]
     gains = []
     for size in sizes:
         truth = {hypothesis.size: size, **rest}
         records = measured(campaign, 1, lambda c, truth=truth: hypothesis.amend(c, truth))  # type: ignore[misc]
-        fit = recalibrate(gather(campaign, records, threads=1), learn=False)
-        ring = Ring(fit)
-        mine = max((ring.quick(h) for h in of(name, fit) if h.form == hypothesis.form), key=lambda q: q.gain)
-        gains.append(mine.gain)
-    assert gains[0] > 3.0
-    # With the misfit the heat rises, by which gains are divided: they level off.
-    assert gains[1] > 2.0 * gains[0] or gains[1] > 100.0
-    assert mine.hypothesis.locate(mine.values).what == what
-    family = entry(name).FAMILY
-    for rival in RIVALS:
-        if family != entry(rival).FAMILY:
-            for other in of(rival, fit):
-                assert ring.quick(other).gain < 0.8 * mine.gain, rival
-    full = ring.full(mine)
-    # Spectra were weighed by the coherences of the owner's prediction, which a strong effect makes wrong.
-    weighed = full.evidence.reweighed(full.evidence.predicted(full.campaign))
-    full = recalibrate(weighed, build=full.build, free=full.free, start=full.z, learn=False)
-    assert full.heat < 1.2
-    sigma = np.sqrt(np.diag(full.covariance))[-len(hypothesis.free) :]
-    for free, z, spread in zip(hypothesis.free, full.z[-len(hypothesis.free) :], sigma, strict=True):
+        found = searched(gather(campaign, records, threads=1), name, *rivals)
+        gains.append(found.gain(found.best(name)))
+    assert gains[0] > 1.5
+    assert gains[0] < gains[1] < gains[2]
+    mine = found.best()
+    assert mine is not None
+    assert mine.names == (name,)
+    assert mine.amendments[0].locate(mine.values(0)).what == what
+    assert mine.fit.hyper.novel < 0.5
+    assert mine.amendments[0].form == hypothesis.form
+    sigma = np.sqrt(np.diag(mine.fit.spread))[mine.own(0)]
+    values = mine.values(0)
+    for free, z, spread in zip(mine.amendments[0].free, mine.fit.z[mine.own(0)], sigma, strict=True):
         # A unit in z is the prior's spread; records that say nothing more leave the prior.
         slope = (free.value(float(z) + 1e-4) - free.value(float(z))) / 1e-4
         # For the same reason sharp values are less sure than they say.
         allowed = max(4.0 * spread * abs(slope), 0.01 * abs(truth[free.name]))
-        assert abs(full.values()[free.name] - truth[free.name]) < allowed, free.name
+        assert abs(values[free.name] - truth[free.name]) < allowed, free.name
 
 
 def test_pads_that_shift_with_temperature_are_told_from_pads_that_only_stiffen(
@@ -119,14 +114,15 @@ def test_pads_that_shift_with_temperature_are_told_from_pads_that_only_stiffen(
     (shifted,) = (h for h in of("pad_temperature", base) if h.variant)
     truth = {"stiffness_factor": 1.0, "order": 0.3, "share": 0.7, "rest": 0.3, "decades_per_10K": 0.8}
     records = measured(campaign, 1, lambda c: shifted.amend(c, truth))
-    fit = recalibrate(gather(campaign, records, threads=1), learn=False)
-    ring = Ring(fit)
-    quick = {h.variant: ring.quick(h) for h in of("pad_temperature", fit)}
-    full = {variant: ring.full(one, most_steps=30) for variant, one in quick.items()}
-    assert full["shifted"].objective < full[""].objective - 9.0
-    found = full["shifted"].values()
-    assert found["order"] == pytest.approx(0.3, rel=0.15)
-    assert found["decades_per_10K"] == pytest.approx(0.8, rel=0.15)
+    found = searched(gather(campaign, records, threads=1), "pad_temperature")
+    best = found.best()
+    assert best is not None
+    assert best.amendments[0].variant == "shifted"
+    others = [m for m in found.members if m.amendments and m.amendments[0].variant == ""]
+    assert all(found.gain(best) > found.gain(other) + 4.5 for other in others)
+    values = best.values(0)
+    assert values["order"] == pytest.approx(0.3, rel=0.15)
+    assert values["decades_per_10K"] == pytest.approx(0.8, rel=0.15)
 
 
 @pytest.mark.parametrize("name", list(INJECTED))

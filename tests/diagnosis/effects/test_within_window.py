@@ -10,6 +10,7 @@ from permway.campaign.predict.grid import grid_of
 from permway.diagnosis.blocks_spectra import TORN, SpectraBlock
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.gather import gather
+from searched import weighed_by
 from trains import campaign_in, drawn
 
 DELAY_S = 1e-5
@@ -34,7 +35,7 @@ def test_a_chain_that_is_late_alters_what_channels_share_as_its_slope_says(tmp_p
     """A delay's phase grows from line to line. Predicted anew with it, parts change as their answers to it say."""
     owner = campaign_in(tmp_path)
     evidence = gather(owner, drawn(owner, 5), threads=1)
-    evidence = evidence.reweighed(evidence.predicted(owner))
+    evidence = weighed_by(evidence, owner)
     late = evidence.predicted(
         with_chain(owner, channel, owner.sensor(channel).chain.model_copy(update={"delay_s": DELAY_S}))
     )

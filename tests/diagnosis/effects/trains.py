@@ -16,7 +16,7 @@ import xarray as xr
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.load import Dataset, log_variance
 from permway.campaign.predict import predict
-from permway.diagnosis.fit import Fit
+from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
 from permway.diagnosis.recalibrate import recalibrate
@@ -190,11 +190,13 @@ def drawn(truth: Campaign, seed: int, *, noise: float = 0.03) -> list[Dataset]:
 def situation_of(
     owner: Campaign, seed: int, *, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
 ) -> Situation:
-    """The owner's campaign recalibrated on what was measured of another truth; nothing was located.
+    """The owner's campaign recalibrated on what was measured of another truth; nothing was located."""
+    return Situation(recalibrate(evidence_of(owner, seed, amend=amend)), ())
 
-    The records have no smooth errors, and none are learnt: learnt on a base that lacks an effect they would take a
-    part of it.
-    """
+
+def evidence_of(
+    owner: Campaign, seed: int, *, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
+) -> Evidence:
+    """What was measured of another truth, made ready to be held against the owner's model."""
     truth = owner.with_values({"pad.k": 6.4e7, "pad.eta": 0.17, "level": 0.7})
-    fit: Fit = recalibrate(gather(owner, drawn(amend(truth), seed), threads=1), learn=False)
-    return Situation(fit, ())
+    return gather(owner, drawn(amend(truth), seed), threads=1)

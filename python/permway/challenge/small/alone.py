@@ -1,6 +1,6 @@
 """Diagnoses campaigns one after the other, in an interpreter that has permway: this installation, or another.
 
-    python alone.py LIMIT_S MODULE
+    python alone.py LIMIT_S
 
 Reads lines `campaign.toml <tab> output folder`, answers each with one line, and ends with its input. It uses only
 `read_campaign`, `diagnose` and the verdict's `write`, which every version from b291bce on has, so that a frozen
@@ -29,7 +29,7 @@ class TimeUp(BaseException):
 def main() -> None:
     """Answer line by line."""
     sys.stdin.reconfigure(encoding="utf-8")  # type: ignore[union-attr]
-    limit, module = float(sys.argv[1]), sys.argv[2]
+    limit = float(sys.argv[1])
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     signal.signal(signal.SIGPROF, _up)
     # Whatever a library prints must not be taken for an answer.
@@ -37,7 +37,7 @@ def main() -> None:
     os.dup2(2, 1)
     for line in sys.stdin:
         campaign, out = line.rstrip("\n").split("\t")
-        answers.write(_diagnosed(Path(campaign), Path(out), limit, module) + "\n")
+        answers.write(_diagnosed(Path(campaign), Path(out), limit) + "\n")
         answers.flush()
 
 
@@ -45,15 +45,15 @@ def _up(*_: object) -> None:
     raise TimeUp
 
 
-def _diagnosed(campaign: Path, out: Path, limit: float, module: str) -> str:
+def _diagnosed(campaign: Path, out: Path, limit: float) -> str:
     """Write the verdict, or why there is none, and what it cost."""
-    read_campaign = _reader()
+    read_campaign, diagnose = _reader(), _method()
     out.mkdir(parents=True, exist_ok=True)
     began, processor, failure = time.perf_counter(), _processor(), ""
     _forget_peak()
     signal.setitimer(signal.ITIMER_PROF, limit)
     try:
-        verdict = importlib.import_module(module).diagnose(read_campaign(campaign), threads=1).verdict
+        verdict = diagnose(read_campaign(campaign), threads=1).verdict
         signal.setitimer(signal.ITIMER_PROF, 0.0)
         verdict.write(out / "verdict.json")
     except TimeUp:
@@ -82,6 +82,17 @@ def _reader() -> Callable[[Path], Any]:
         older: Callable[[Path], Any] = importlib.import_module("permway.recordings.campaign").read_campaign
         return older
     return read_campaign
+
+
+def _method() -> Callable[..., Any]:
+    """What `permway diagnose` of that version calls: older ones have another method, in a module of its own."""
+    try:
+        found: Callable[..., Any] = importlib.import_module("permway.diagnosis.diagnose").diagnose
+    except ModuleNotFoundError:
+        from permway.posterior.diagnose import diagnose
+
+        return diagnose
+    return found
 
 
 def _whole(path: Path, text: str) -> None:

@@ -26,9 +26,6 @@ EACH = 40
 SILENT_S = 20.0 * LIMIT_S
 """Wall time without an answer after which a process is taken for dead: the machine may have much else to do."""
 
-FIRST = "permway.diagnosis.diagnose"
-"""Module of the method that `permway diagnose` uses by default."""
-
 Progress = Callable[[int, int], object]
 
 
@@ -72,7 +69,6 @@ def diagnose_all(
     method: str | None = None,
     workers: int = 1,
     limit_s: float = LIMIT_S,
-    module: str = FIRST,
     progress: Progress | None = None,
 ) -> None:
     """Diagnose campaigns that have neither verdict nor failure yet.
@@ -86,8 +82,6 @@ def diagnose_all(
         Processes.
     limit_s : float
         Processor time of each.
-    module : str
-        Of the installation, that has `diagnose`.
     progress : callable, optional
         Called with campaigns done and how many there are.
     """
@@ -114,7 +108,7 @@ def diagnose_all(
                 if process is None or process.left == 0:
                     if process is not None:
                         process.end()
-                    process = _Process(command, limit_s, module, own=method is None)
+                    process = _Process(command, limit_s, own=method is None)
                     running.append(process)
                 if not process.answered(campaign, out):
                     process = None
@@ -152,14 +146,14 @@ def diagnose_all(
 class _Process:
     """An interpreter that diagnoses one campaign after the other."""
 
-    def __init__(self, command: Sequence[str], limit_s: float, module: str, *, own: bool) -> None:
+    def __init__(self, command: Sequence[str], limit_s: float, *, own: bool) -> None:
         environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
         if not own:
             # Of this installation; another's is in its own command.
             environment.pop("PYTHONPATH", None)
         self.left = EACH
         self._process = subprocess.Popen(
-            [*command, "-P", str(Path(alone.__file__)), f"{limit_s:g}", module],
+            [*command, "-P", str(Path(alone.__file__)), f"{limit_s:g}"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

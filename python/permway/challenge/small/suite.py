@@ -7,7 +7,7 @@ from concurrent.futures import as_completed
 from pathlib import Path
 
 from permway.challenge.pool import processes
-from permway.challenge.small.diagnose import FIRST, LIMIT_S, diagnose_all
+from permway.challenge.small.diagnose import LIMIT_S, diagnose_all
 from permway.challenge.small.fixture import FIXTURE, fixture_names, make_fixture
 from permway.challenge.small.make import make_small, name_of
 from permway.errors import InputError
@@ -49,7 +49,6 @@ def run_small(
     workers: int = 1,
     method: str | None = None,
     limit_s: float = LIMIT_S,
-    module: str = FIRST,
     progress: Progress | None = None,
 ) -> list[str]:
     """Make and diagnose the campaigns of a suite; their names.
@@ -69,8 +68,6 @@ def run_small(
         See :func:`permway.challenge.small.diagnose.interpreter_of`.
     limit_s : float
         Processor time of each diagnosis.
-    module : str
-        Of the installation, that has `diagnose`.
     progress : callable, optional
         Called with the stage, campaigns done and how many there are.
     """
@@ -89,7 +86,6 @@ def run_small(
         method=method,
         workers=workers,
         limit_s=limit_s,
-        module=module,
         progress=None if progress is None else lambda done, of: progress("diagnosing", done, of),
     )
     return names

@@ -12,7 +12,6 @@ from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
 from permway.laws import Hysteretic, Measured, Series, StorageLossPair
 from permway.laws.base import Law
-from permway.model.bodies import AnyBody
 from permway.model.changes import Change
 from permway.model.joints import Joints
 from permway.model.line import Line
@@ -52,17 +51,6 @@ def with_loss(campaign: Campaign, name: str, law: Law, loss: Law) -> Campaign:
     added = fresh(f"{name}_loss", line.laws)
     beside = [layer.model_copy(update={"law": added}) for layer in line.joints if layer.law == name]
     return with_line(campaign, joints=(*line.joints, *beside), laws={**line.laws, name: law, added: loss})
-
-
-def with_body(campaign: Campaign, name: str, body: AnyBody, *joints: Joints, laws: Mapping[str, Law]) -> Campaign:
-    """The campaign with a further body and the joints that hold it."""
-    line = campaign.model.line
-    return with_line(
-        campaign,
-        bodies={**line.bodies, name: body},
-        joints=(*line.joints, *joints),
-        laws={**line.laws, **laws},
-    )
 
 
 def with_fields(campaign: Campaign, name: str, **fields: Any) -> Campaign:

@@ -9,9 +9,11 @@ import numpy as np
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._runs import on_board
 from permway.diagnosis.hypothesis import Situation
-from permway.diagnosis.locate import FITS
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_additions import AnyAddition
+
+FITS = 2.0
+"""Mean square of the deviations below which a base nearly fits."""
 
 WIDTH_OCTAVES = 0.1
 """Over which deviations are added up to find where an effect is strongest."""

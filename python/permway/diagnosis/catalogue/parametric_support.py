@@ -98,7 +98,7 @@ def _pass(runs: list[Excess], spacing: float) -> bool:
 def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothesis]:
     """A train that rolls over the supports of the base; none if the line cannot be solved for that."""
     try:
-        still, about = _known_at_rest(situation)
+        still = _known_at_rest(situation)
     except (InputError, SolveError):
         return
     rolls = with_irregularity(situation.campaign, rolling=Rolling(spacing_m=spacing))
@@ -135,21 +135,14 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
         ),
         size="share",
         variant="rolling",
-        about=about,
     )
 
 
-def _known_at_rest(situation: Situation) -> tuple[Campaign, dict[str, float]]:
+def _known_at_rest(situation: Situation) -> Campaign:
     """The base without what runs bent it to, for they were told by a train that stands.
 
     Of records that are no runs, where there are any: they know nothing of rolling. Without them the base, train
     and speeds as the owner says.
-
-    Returns
-    -------
-    Campaign
-    dict
-        Parameters in standard deviations of their priors.
     """
     fit, known = situation.fit, situation.campaign.parameters.known
     of_runs = {n for n, one in known.items() if all(path.startswith(RUNS) for path in one.parameter.paths)}
@@ -157,6 +150,5 @@ def _known_at_rest(situation: Situation) -> tuple[Campaign, dict[str, float]]:
     responses = tuple(block for block in fit.evidence.blocks if isinstance(block, FrfBlock))
     if responses:
         evidence = replace(fit.evidence, blocks=responses)
-        z = recalibrate(evidence, build=fit.build, free=fit.free, start=z, learn=False, reweigh=False).z
-    pairs = list(zip(fit.free, z.tolist(), strict=True))
-    return fit.build({free.name: free.value(at) for free, at in pairs}), {free.name: at for free, at in pairs}
+        z = recalibrate(evidence, build=fit.build, free=fit.free, start=z).z
+    return fit.build({free.name: free.value(at) for free, at in zip(fit.free, z.tolist(), strict=True)})

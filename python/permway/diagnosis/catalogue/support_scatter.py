@@ -17,8 +17,7 @@ ID = "support_scatter"
 DOMAIN: Domain = "path"
 FAMILY = "uneven support"
 SUMMARY = (
-    "The logarithm of the pads' stiffness is a sum of cosines of 1 to 4, or to 10, half waves over the structure; "
-    "of 20, 40 or 80 where fewer leave a misfit."
+    "The logarithm of the pads' stiffness is a sum of cosines of 1 to 4, or to 10, half waves over the structure."
 )
 PARAMETERS = {
     f"wave{order}": f"1, -1.2 to 1.2: coefficient of {order} half wave{'s' if order > 1 else ''}"
@@ -32,9 +31,6 @@ CONFUSED_WITH = {
 SOURCE = "Wu and Thompson (2000), Acta Acustica 86, 313-321; Oscarsson (2002), Vehicle System Dynamics 37, 59-79"
 FEW, MANY = tuple(range(1, 5)), tuple(range(1, 11))
 """Half waves: of what changes slowly along the structure, and of what changes within some metres."""
-
-FINER = 2
-"""Times as many half waves, where some leave a misfit; no more than there are pads."""
 
 SPREAD = 0.25
 """Standard deviation of a coefficient."""
@@ -55,8 +51,8 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
                 yield _of(law, x, MANY)
 
 
-def _of(law: str, at: Reals, orders: tuple[int, ...], begun: Mapping[str, float] | None = None) -> Hypothesis:
-    """Over the stations at some places, begun from coefficients or from one wave at a time, up and down."""
+def _of(law: str, at: Reals, orders: tuple[int, ...]) -> Hypothesis:
+    """Over the stations at some places, begun from one wave at a time, up and down."""
     low, high = float(at[0]), float(at[-1])
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
@@ -68,14 +64,7 @@ def _of(law: str, at: Reals, orders: tuple[int, ...], begun: Mapping[str, float]
 
         return with_factors(campaign, law, factors)
 
-    def finer(values: Mapping[str, float]) -> Hypothesis | None:
-        more = len(MANY) if orders is FEW else FINER * len(orders)
-        return _of(law, at, tuple(range(1, more + 1)), values) if more < at.size else None
-
-    if begun is None:
-        starts = tuple(tuple(sign * float(o == order) for o in orders) for order in orders for sign in (1.5, -1.5))
-    else:
-        starts = (tuple(begun.get(f"wave{order}", 0.0) / SPREAD for order in orders),)
+    starts = tuple(tuple(sign * float(o == order) for o in orders) for order in orders for sign in (1.5, -1.5))
     # Ten that are as large as can be make a factor of e to the power of twelve.
     most = 2.0 if orders is FEW else 1.2
     return Hypothesis(
@@ -88,15 +77,9 @@ def _of(law: str, at: Reals, orders: tuple[int, ...], begun: Mapping[str, float]
         starts=starts,
         variant="" if orders is FEW else "many waves",
         law=lambda v: _words([v[f"wave{order}"] for order in orders]),
-        finer=finer,
     )
 
 
 def _words(waves: Sequence[float]) -> str:
-    if len(waves) > len(MANY):
-        spread = float(np.sqrt(0.5 * np.sum(np.square(waves))))
-        return (
-            f"pads scatter by a factor of {np.exp(spread):.3g} (one standard deviation): {len(waves)} half waves"
-        )
     terms = " ".join(f"{wave:+.2f} cos({order} pi x/L)" for order, wave in enumerate(waves, start=1))
     return f"pads differ by a factor of e to the power of {terms}"

@@ -10,9 +10,8 @@ from permway.diagnosis.catalogue import entries
 from permway.diagnosis.compare_tables import LEFT
 from permway.diagnosis.plain_names import name_of, seen
 from permway.diagnosis.result import Diagnosis
-from permway.diagnosis.speak import LARGEST_E
 from permway.diagnosis.verdict import NOVEL, Effect, HeldOutGain, Moved, Verdict
-from permway.diagnosis.verdict_parts import E_VALUE, RECALIBRATED
+from permway.diagnosis.verdict_parts import RECALIBRATED
 from permway.diagnosis.verdict_words import DOMAIN, INCOMPLETE, STATUS, interval, probability, quantity, span
 from permway.report.compare.tables import NOTABLE_DB, BandTable, decibels, signed
 from permway.report.diagnosis.changes import Change
@@ -27,10 +26,6 @@ FEW_CHANNELS = 16
 """Channels of a record that its table shows openly."""
 
 
-NOTABLE_GAIN = 10.0
-"""Of twice the log posterior, from which a parameter is stated not to stay constant."""
-
-
 def headline(verdict: Verdict) -> list[tuple[str, str]]:
     """Status and confidence: value and words of each."""
     found = [(STATUS[verdict.status].capitalize(), "status")]
@@ -38,14 +33,6 @@ def headline(verdict: Verdict) -> list[tuple[str, str]]:
     if chance is not None:
         found.append((f"{chance:.2f}", f"probability of {_whose(verdict.effects[0])}, among all that was tried"))
     weight = verdict.evidence
-    if weight.bic_gain is not None:
-        bar = weight.false_alarm_threshold
-        words = "gain of BIC" if bar is None else f"gain of BIC; chance reaches {quantity(bar)} in 5 of 100"
-        found.append((quantity(weight.bic_gain), words))
-    if weight.e_value is not None:
-        found.append((_e_value(weight.e_value), f"e-value on held-out records; the bar is {E_VALUE:g}"))
-    if verdict.explained_gap is not None:
-        found.append((f"{100.0 * verdict.explained_gap:.0f} %", "of the gap to noise explained"))
     if weight.misfit_after is not None and weight.misfit_after >= INCOMPLETE:
         found.append(
             (quantity(weight.misfit_after), "times the mean square that errors explain is left: not all of it")
@@ -58,11 +45,6 @@ def _whose(effect: Effect) -> str:
     if effect.name is not None:
         return "the name"
     return "no name of the catalogue" if effect.class_[0].name == NOVEL else "the likeliest name"
-
-
-def _e_value(value: float) -> str:
-    """As far as numbers go."""
-    return quantity(value) if value < 0.99 * LARGEST_E else f"above {LARGEST_E:.0e}".replace("e+", "e")
 
 
 def effect_blocks(verdict: Verdict) -> list[dict[str, Any]]:
@@ -141,25 +123,16 @@ def _known(value: float) -> str:
     return quantity(value) if np.isfinite(value) else ""
 
 
-def weight_rows(verdict: Verdict) -> list[tuple[str, str, str]]:
-    """What the decision rests on: what, its value, its bar."""
+def weight_rows(verdict: Verdict) -> list[tuple[str, str]]:
+    """What the decision rests on: what, and its value."""
     weight, found = verdict.evidence, []
-    bar = weight.false_alarm_threshold
-    if weight.bic_gain is not None:
-        above = "" if bar is None else f"above {quantity(bar)}, which 5 of 100 campaigns without a fault reach"
-        found.append(("Gain of BIC", quantity(weight.bic_gain), above))
     if weight.log10_bayes_factor is not None:
-        found.append(("Bayes factor, common logarithm", quantity(weight.log10_bayes_factor), ""))
-    if weight.e_value is not None:
-        found.append(("e-value on held-out records", _e_value(weight.e_value), f"above {E_VALUE:g}"))
-    if weight.bic_gain is None and bar is not None:
-        found.append(
-            (
-                "Threshold for false alarms",
-                quantity(bar),
-                "gain of BIC that 5 of 100 campaigns without a fault reach",
-            )
-        )
+        found.append(("Bayes factor over nothing missing, common logarithm", quantity(weight.log10_bayes_factor)))
+    if weight.misfit_before is not None:
+        words = "Mean square that the recalibrated model leaves, over what errors explain"
+        found.append((words, quantity(weight.misfit_before)))
+    if weight.misfit_after is not None:
+        found.append(("The same of the amended model", quantity(weight.misfit_after)))
     return found
 
 
@@ -254,20 +227,6 @@ def next_rows(verdict: Verdict) -> list[dict[str, str]]:
             "after": quantity(one.separation_after),
         }
         for one in verdict.next
-    ]
-
-
-def inconstant_rows(diagnosis: Diagnosis) -> list[dict[str, str]]:
-    """Parameters of the base that would not stay constant."""
-    return [
-        {
-            "parameter": one.parameter,
-            "over": f"{one.axis}: {one.group}",
-            "shift": f"{one.shift:+.2f} ± {one.sigma:.2f}",
-            "gain": quantity(one.gain),
-        }
-        for one in diagnosis.inconstant
-        if one.gain > NOTABLE_GAIN
     ]
 
 

@@ -2,37 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
+
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.importers.sheet import import_sheet
-from permway.diagnosis.bases import bases
-from permway.diagnosis.clock import Clock
-from permway.diagnosis.fit import Fit
+from permway.campaign.load import Dataset
 from permway.diagnosis.gather import gather, predictable
-from permway.diagnosis.recalibrate import recalibrate
+from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.errors import InputError
+from permway.posterior.beam import STEPS
+from permway.posterior.covariance import Frame
+from permway.posterior.fit import Fit, Fitter, Model
+from permway.posterior.ordering import LEVELS
+from permway.posterior.recalibrated import recalibrated
 
-Progress = Callable[[str], object]
 
-
-def against(
-    twin: Campaign, *, threads: int | None = None, progress: Progress | None = None
-) -> Callable[[Campaign], float]:
+@one_thread_of_blas()
+def against(twin: Campaign, *, threads: int | None = None) -> Callable[[Campaign], float]:
     """Deviance between campaigns with an effect and their best recalibrated base, beyond that of their twin.
 
     The twin has the same parameters, noise and errors of chains, and nothing concealed: what its base leaves is no
-    effect. The errors' sizes are learnt from it, where there is nothing else to take for an error.
+    effect. The hyperparameters are those of the twin, where there is nothing else to take for an error.
 
     Parameters
     ----------
     twin : Campaign
     threads : int, optional
         Of the solver.
-    progress : callable, optional
-        Told in words how far it is.
 
     Returns
     -------
@@ -45,33 +46,36 @@ def against(
     InputError
         If no record can be predicted.
     """
+    measured = predictable(twin, screened=False).kept
+    plain = recalibrated(gather(twin, measured, threads=threads))
+    there = [dataset.record.name for dataset in measured]
+    least = _misfit(plain, twin, measured)
 
-    def told(stage: str, _done: int, _total: int) -> None:
-        if progress is not None:
-            progress(stage)
-
-    plain, _ = bases(gather(twin, predictable(twin, screened=False).kept, threads=threads), Clock(told))
-    there = [d.record.name for d in plain.evidence.selected(plain.evidence.records).datasets]
-
+    @one_thread_of_blas()
     def deviance(campaign: Campaign) -> float:
         datasets = predictable(campaign, screened=False).kept
-        mine = [d.record.name for d in datasets]
+        mine = [dataset.record.name for dataset in datasets]
         if mine != there:
             raise InputError(
                 "does not have the records of its twin", where="records", value=mine, remedy=str(there)
             )
-        evidence = plain.evidence.of(campaign, datasets)
-        fits = [
-            recalibrate(evidence, start=start, learn=False, reweigh=False, progress=progress)
-            for start in (plain.z, None)
-        ]
-        return min(_misfit(fit) for fit in fits) - _misfit(plain)
+        return _misfit(plain, campaign, datasets) - least
 
     return deviance
 
 
-def _misfit(fit: Fit) -> float:
-    return fit.chi2 - fit.evidence.log_determinant + fit.prior
+def _misfit(plain: Fit, campaign: Campaign, datasets: Sequence[Dataset]) -> float:
+    """Quadratic forms and priors of the best fit to a campaign's records, weighed as those of its twin are."""
+    frame = Frame.of(plain.frame.evidence.of(campaign, datasets))
+    # What follows the records' own errors is the idealisation, as the twin's fit has it.
+    fitter = Fitter(frame.with_columns(plain.frame.whole[:, frame.columns.shape[1] :]))
+    model = Model(campaign.with_values, plain.model.free)
+    near = fitter.begin(model, plain.z, plain.hyper)
+    far = fitter.begin(model, np.zeros_like(plain.z), plain.hyper)
+    for level, steps in zip(LEVELS, STEPS, strict=False):
+        far = fitter.fit(replace(far, hyper=plain.hyper.with_discrepancy(level)), steps=steps)
+    fits = [fitter.fit(fit, steps=STEPS[-1]) for fit in (near, replace(far, hyper=plain.hyper))]
+    return min(fit.covariance.square(fit.state.deviations) + float(fit.z @ fit.z) for fit in fits)
 
 
 def against_folder(twin: Path) -> Callable[[Path], float]:
