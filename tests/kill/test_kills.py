@@ -45,9 +45,6 @@ def test_killed_between_writing_and_naming(tmp_path: Path, older: str | None) ->
     assert not left.exists()
 
 
-@pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="the posterior keeps no steps: what was stopped begins anew"
-)
 def test_a_diagnosis_killed_at_work_goes_on_where_it_was(tmp_path: Path) -> None:
     for name, content in campaign_files().items():
         (tmp_path / name).write_bytes(content)

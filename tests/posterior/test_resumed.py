@@ -147,7 +147,7 @@ def test_ctrl_c_ends_the_command_at_once_and_the_same_command_goes_on(campaign: 
     # A program that is started in the background ignores SIGINT, and what it starts inherits that.
     start = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
     start += "from permway.posterior import cells; cells.BESIDE.clear(); import permway.__main__"
-    asked = ["diagnose", str(campaign.folder / campaign.file), "-o", str(out), "--posterior", "--no-report"]
+    asked = ["diagnose", str(campaign.folder / campaign.file), "-o", str(out), "--no-report"]
     command = [sys.executable, "-c", start, *asked, *(word for name in OTHERS for word in ("--rule-out", name))]
     with said.open("w") as file:
         process = subprocess.Popen(command, stdout=file, stderr=file)

@@ -79,9 +79,6 @@ def test_a_folder_that_cannot_be_made_is_said_before_the_work(tmp_path: Path) ->
         run(tmp_path / "no" / "demo")
 
 
-@pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="the report has no map of places along the track and over frequency"
-)
 @pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
 def test_its_page_fits_and_asks_for_nothing(shown: Shown, size: tuple[int, int]) -> None:
     with opened(shown.report, size) as (page, complaints):
