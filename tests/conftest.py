@@ -28,7 +28,7 @@ LONG = {
         challenge/test_follow.py first_hour checking/test_stated.py checking/test_noise_floors.py
         checking/test_blunders.py diagnosis/effects diagnosis/test_awaited.py diagnosis/test_bent_valley.py
         diagnosis/test_diagnose.py diagnosis/test_elsewhere.py diagnosis/test_frf_block.py
-        diagnosis/test_idealised.py diagnosis/test_nearby.py diagnosis/test_noise.py diagnosis/test_one_place.py
+        diagnosis/test_nearby.py diagnosis/test_noise.py diagnosis/test_one_place.py
         diagnosis/test_passage.py diagnosis/test_recalibrate.py diagnosis/test_ruled_out.py
         diagnosis/test_separability.py diagnosis/test_side_by_side.py diagnosis/test_small_sizes.py
         diagnosis/test_smooth.py diagnosis/test_table_of_modes.py diagnosis/test_tolerances.py

@@ -92,3 +92,16 @@ def test_a_speed_noted_wrongly_is_found(tmp_path: Path) -> None:
     low, high = fit.intervals()["speed.fast"]
     assert fit.values()["speed.fast"] == pytest.approx(0.996 * noted, rel=5e-4)
     assert 0.5 * (high - low) < 5e-4 * noted
+
+
+def test_a_share_at_all_frequencies_is_a_parameter_moved(tmp_path: Path) -> None:
+    campaign: Campaign = simulate(tmp_path / "c", 3).campaign
+    evidence = gather(campaign, threads=1)
+    plain = evidence.predicted(campaign)
+    nearby, values = Nearby(evidence, plain), campaign.parameters.nominal()
+    for name, part, index in (("pad.k", "law", 0), ("bearing.k", "law", 1), ("deck.E", "bending", 1)):
+        bent = nearby.bent(part, [index], lambda frequency: np.full(frequency.size, 1e-5))  # type: ignore[arg-type]
+        assert bent is not None
+        solved = evidence.predicted(campaign.with_values({**values, name: values[name] * (1.0 + 1e-5)}))
+        found, right = (s.datasets[0]["frf"].values - plain.datasets[0]["frf"].values for s in (bent, solved))
+        assert np.linalg.norm(found - right) < 1e-3 * np.linalg.norm(right), name

@@ -173,7 +173,7 @@ def test_rubber_that_is_shaken_says_what_its_dma_knows(tmp_path: Path) -> None:
     assert order.low <= law.material.law.order <= order.high
     assert order.high - order.low < 0.2
     for gain in verdict.held_out.values():
-        assert gain.db_after < 0.4 < gain.db_before
+        assert gain.db_after < 0.5 * gain.db_before
 
 
 def test_pad_materials_by_their_campaigns(tmp_path: Path) -> None:

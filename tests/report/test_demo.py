@@ -99,6 +99,7 @@ def test_its_page_fits_and_asks_for_nothing(shown: Shown, size: tuple[int, int])
 
 def test_its_pictures_say_what_lies_under_the_pointer_and_grow_when_clicked(shown: Shown) -> None:
     with opened(shown.report, (1280, 3000)) as (page, complaints):
+        page.evaluate("document.querySelectorAll('details').forEach(one => { one.open = true })")
         shots = page.locator("figure.shot")
         telling = 0
         for index in range(shots.count()):

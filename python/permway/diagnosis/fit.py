@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -107,29 +106,19 @@ class Fit:
         sign, value = np.linalg.slogdet(self.covariance)
         return -0.5 * self.objective + 0.5 * float(value if sign > 0 else -np.inf)
 
-    @cached_property
-    def idealisation(self) -> Reals:
-        """Variance of z beyond the covariance, shape (p,): see :func:`permway.diagnosis.idealised.idealised`."""
-        # That module takes a fit.
-        from permway.diagnosis.idealised import idealised
-
-        return idealised(self)
-
     def values(self) -> dict[str, float]:
         """Values by name."""
         return {f.name: f.value(float(z)) for f, z in zip(self.free, self.z, strict=True)}
 
-    def intervals(self, width: float = WIDTH, *, more: Reals | float = 0.0) -> dict[str, tuple[float, float]]:
+    def intervals(self, width: float = WIDTH) -> dict[str, tuple[float, float]]:
         """90 % intervals by name, by default.
 
         Parameters
         ----------
         width : float
             Half of an interval, in standard deviations.
-        more : ndarray, shape (p,), optional
-            Variance of z beyond that of the fit.
         """
-        sigma = np.sqrt(np.diag(self.covariance) + more)
+        sigma = np.sqrt(np.diag(self.covariance))
         return {
             f.name: (f.value(float(z - width * s)), f.value(float(z + width * s)))
             for f, z, s in zip(self.free, self.z, sigma, strict=True)

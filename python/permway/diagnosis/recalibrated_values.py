@@ -7,12 +7,9 @@ from permway.diagnosis.verdict_parts import Moved
 
 
 def recalibrated_of(fit: Fit) -> dict[str, Moved]:
-    """Value, z and 90 % interval by name, of those parameters of a fit that the campaign file has.
-
-    An interval is of the fit's covariance and of what the model idealises (:attr:`Fit.idealisation`).
-    """
-    known, more = fit.evidence.campaign.parameters.known, fit.idealisation
-    values, ends = fit.values(), {name: sorted(pair) for name, pair in fit.intervals(more=more).items()}
+    """Value, z and 90 % interval by name, of those parameters of a fit that the campaign file has."""
+    known = fit.evidence.campaign.parameters.known
+    values, ends = fit.values(), {name: sorted(pair) for name, pair in fit.intervals().items()}
     return {
         f.name: Moved(
             value=values[f.name],

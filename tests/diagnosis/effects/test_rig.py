@@ -69,11 +69,6 @@ def test_rubber_of_a_rig_is_a_pad_only_where_no_rail_is(campaign: Campaign) -> N
     assert len(list(pad_frequency.hypotheses(Situation(fit, ())))) == 2
 
 
-@pytest.mark.xfail(
-    strict=True,
-    raises=AssertionError,
-    reason="rubber on a rig is taken for a bed, too: its class is ballast_frequency and pad_frequency",
-)
 def test_its_dependence_on_frequency_is_named_and_its_order_told(campaign: Campaign) -> None:
     found = diagnose(campaign, threads=1).verdict
     assert found.status == "named"

@@ -88,7 +88,10 @@ def expected_csd(
         If clocks run apart and nobody states how long.
     """
     assert model.train is not None
-    broad, narrow = (grid_of(lines_Hz, estimate_Hz, segment_s, narrow=fine) for fine in (False, True))
+    # Straight lines between transfers that turn have kinks.
+    broad, narrow = (
+        grid_of(lines_Hz, estimate_Hz, segment_s, narrow=fine or interpolated) for fine in (False, True)
+    )
     if away:
         broad, narrow = broad.away, narrow.away
     degrees = model.train.vehicle.degrees
