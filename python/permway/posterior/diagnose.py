@@ -19,7 +19,7 @@ from permway.diagnosis.fit import Fit as Base
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.labels import mislabelled
 from permway.diagnosis.recalibrated_values import recalibrated_of
-from permway.diagnosis.result import Candidate, Diagnosis
+from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.speak_measurement import mixed_up, with_spoilt
 from permway.diagnosis.thinning import LINES_PER_FREQUENCY
@@ -100,9 +100,6 @@ def diagnose(
         verdict=with_spoilt(verdict, bad).model_copy(update={"ruled_out": ruled_out}),
         base=base,
         amended=amended,
-        found=(),
-        left=(),
-        candidates=tuple(candidate for m in masses.members for candidate in _candidates(m, empty)),
         comparison=assemble(base.evidence, base, left_out=left_out),
         after=None if amended is None else assemble(amended.evidence, amended, left_out=left_out),
         seconds=clock.seconds(),
@@ -183,30 +180,3 @@ def as_base(fit: Fit) -> Base:
         evaluations=0,
         build=fit.model.build,
     )
-
-
-def _candidates(member: Member, empty: Member) -> list[Candidate]:
-    """Of a set with one amendment, a row of the report's table."""
-    if len(member.amendments) != 1:
-        return []
-    hypothesis, fit, values = member.amendments[0], member.fit, member.values(0)
-    own = member.own(0)
-    spans = {}
-    for f, z, s in zip(hypothesis.free, fit.z[own], fit.spread.diagonal()[own] ** 0.5, strict=True):
-        low, high = sorted(
-            f.value(min(max(float(z + side * WIDTH * s), f.limits[0]), f.limits[1])) for side in (-1, 1)
-        )
-        spans[f.name] = (values[f.name], low, high, f.unit)
-    return [
-        Candidate(
-            entry=hypothesis.entry,
-            family=hypothesis.family,
-            domain=hypothesis.domain,
-            place=hypothesis.locate(values),
-            law=hypothesis.law(values),
-            gain=empty.fit.objective - fit.objective,
-            log_evidence=fit.log_evidence - empty.fit.log_evidence,
-            parameters=spans,
-            stage="full",
-        )
-    ]

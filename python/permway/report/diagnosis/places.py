@@ -36,7 +36,6 @@ TRIED = "#7f93a8"
 def map_picture(diagnosis: Diagnosis) -> Figure:
     """Probability along x above the drawing of the line; the drawing alone where nothing acts along it."""
     weighed, campaign = diagnosis.weighed, diagnosis.base.campaign
-    assert weighed is not None
     plan = drawing(campaign)
     shown = along(weighed)
     whole = [one for one in weighed.aside if one.what in campaign.model.line.laws]

@@ -1,4 +1,4 @@
-"""The page of a diagnosis by the posterior: first what to act on, then what it rests on, folded."""
+"""The page of a diagnosis: first what to act on, then what it rests on, folded."""
 
 from __future__ import annotations
 
@@ -46,7 +46,6 @@ def render_verdict(diagnosis: Diagnosis, drawn: Mapping[str, Drawn]) -> str:
     Parameters
     ----------
     diagnosis : Diagnosis
-        With `weighed`.
     drawn : mapping of name to Drawn
         From :func:`verdict_pictures`.
 
@@ -63,7 +62,6 @@ def render_verdict(diagnosis: Diagnosis, drawn: Mapping[str, Drawn]) -> str:
         lstrip_blocks=True,
     )
     verdict, weighed = diagnosis.verdict, diagnosis.weighed
-    assert weighed is not None
     rivals = rival_rows(weighed)
     return environment.get_template("verdict.html.j2").render(
         title=diagnosis.comparison.campaign.stated.title or "A campaign",

@@ -32,13 +32,8 @@ def write_report(diagnosis: Diagnosis, folder: Path, *, dpi: int = 140) -> Path:
         If the folder cannot be written.
     """
     # Drawing is slow to import.
-    from permway.report.diagnosis.page import render
-    from permway.report.diagnosis.pictures import pictures
     from permway.report.diagnosis.verdict_page import render_verdict, verdict_pictures
     from permway.report.readout import drawn
 
     folder = prepare_folder(Path(folder), (PAGE,))
-    if diagnosis.weighed is not None:
-        page = render_verdict(diagnosis, drawn(verdict_pictures(diagnosis), dpi))
-        return write_text(folder / PAGE, page)
-    return write_text(folder / PAGE, render(diagnosis, drawn(pictures(diagnosis), dpi)))
+    return write_text(folder / PAGE, render_verdict(diagnosis, drawn(verdict_pictures(diagnosis), dpi)))
