@@ -69,8 +69,7 @@ Campaigns in which effects were concealed, diagnosed and scored. The campaigns c
 share no code with the solver. [The guide](how-to/challenge.md) says how to repeat this.
 `docs/make_challenge.py` writes this page.
 
-**These figures are of the first of [two methods](baseline.md)**, which `permway diagnose` is no more. On whole
-campaigns the second is not measured.
+**These figures are of the first of [two methods](baseline.md)**, which `permway diagnose` is no more.
 
 The *deviance* is the misfit that an effect leaves after the best recalibration of the nominal model. Below 15 an
 effect is too small, and the right answer is "the data do not decide". It is hard to find from 15 on, medium from

@@ -124,9 +124,12 @@ def _what(axes: Axes, found: dict[str, Any], effect: dict[str, Any]) -> None:
 
 def _better(axes: Axes, held_out: dict[str, dict[str, float]]) -> None:
     """Errors on records that neither model was fitted to."""
-    names = [name.partition(": ")[0] for name in held_out]
+    axis_of = [name.partition(": ")[0] for name in held_out]
+    names = list(dict.fromkeys(axis_of))
     for shift, key, colour in ((-0.2, "db_before", BEFORE), (0.2, "db_after", AFTER)):
-        values = [one[key] for one in held_out.values()]
+        each = np.array([one[key] for one in held_out.values()])
+        # Root mean square over all that was left out one by one.
+        values = [float(np.sqrt(np.mean(each[np.array(axis_of) == name] ** 2))) for name in names]
         bars = axes.bar([i + shift for i in range(len(names))], values, 0.38, color=colour)
         axes.bar_label(bars, [f"{value:.1f}" for value in values], fontsize=8.5, padding=2)
     axes.set_xticks(range(len(names)), names)

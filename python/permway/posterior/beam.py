@@ -34,7 +34,7 @@ IDEALISED = 20_000.0
 """Residuals from which the model's own idealisation shows. It errs on neighbouring lines and pairs alike, and the
 likelihood counts each anew. A posterior that allows for that has the evidence of n residuals to the power
 1 / (1 + n / a) (Miller and Dunson 2019, J. Am. Stat. Assoc. 114, 1113-1125): 0.9 of the 3,000 of a small campaign,
-0.25 of the 60,000 of a large one."""
+0.5 of the 20,000 that are weighed of a large one."""
 
 Item = TypeVar("Item")
 Progress = Callable[[str, int, int], object]
