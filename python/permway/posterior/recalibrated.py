@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from permway.arrays import Reals
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.speeds import begin
@@ -11,6 +12,14 @@ from permway.diagnosis.tangent import Problem
 from permway.posterior.covariance import Frame
 from permway.posterior.fit import Fit, Fitter, Model
 from permway.posterior.ordering import LEVELS, annealed, weighed
+
+
+def first_values(fitter: Fitter, nominal: Model) -> Reals:
+    """The priors' centres; of passages speed and time of entry are looked for, within which slopes serve."""
+    evidence = fitter.frame.evidence
+    if all(dataset.record.statistic != "passage" for dataset in evidence.datasets):
+        return np.zeros(len(nominal.free))
+    return begin(evidence, Problem(evidence, nominal.build, nominal.free))
 
 
 def recalibrated(evidence: Evidence) -> Fit:
@@ -28,10 +37,6 @@ def recalibrated(evidence: Evidence) -> Fit:
     fitter = Fitter(Frame.of(evidence))
     campaign = evidence.campaign
     nominal = Model(campaign.with_values, free_parameters(campaign))
-    z = np.zeros(len(nominal.free))
-    if any(dataset.record.statistic == "passage" for dataset in evidence.datasets):
-        # Slopes serve only near the speed and the time of entry.
-        z = begin(evidence, Problem(evidence, nominal.build, nominal.free))
-    start = fitter.begin(nominal, z, fitter.frame.first().with_discrepancy(LEVELS[0]))
+    start = fitter.begin(nominal, first_values(fitter, nominal), fitter.frame.first().with_discrepancy(LEVELS[0]))
     _, (fit,) = weighed(fitter, [annealed(fitter, start)], [()])
     return fit

@@ -12,10 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from permway.arrays import Reals
 from permway.diagnosis.fit import free_parameters
-from permway.diagnosis.speeds import begin
-from permway.diagnosis.tangent import Problem
 from permway.posterior.beam import (
     STEPS,
     Member,
@@ -31,6 +28,7 @@ from permway.posterior.beam import (
 from permway.posterior.cells import Cell, cells, resized, small
 from permway.posterior.fit import Fitter, Model
 from permway.posterior.ordering import LEFT, LEVELS, annealed, apart, ordered, weighed
+from permway.posterior.recalibrated import first_values
 from permway.posterior.screening import Scores, screened
 
 WIDTHS, PER_FORM = (72, 32, 12), (6, 3, 2)
@@ -82,7 +80,7 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
     campaign = fitter.frame.evidence.campaign
     nominal = Model(campaign.with_values, free_parameters(campaign))
     coarse = fitter.frame.first().with_discrepancy(LEVELS[0])
-    z = _first_values(fitter, nominal)
+    z = first_values(fitter, nominal)
     start = fitter.begin(nominal, z, coarse)
     fitter, (first,) = weighed(fitter, [annealed(fitter, start)], [()])
     # About the stated values, for what the nominal parameters took up shows there only.
@@ -103,14 +101,6 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
         if len(members[0].amendments) < count:
             break
     return Explored(apart(members), seen)
-
-
-def _first_values(fitter: Fitter, nominal: Model) -> Reals:
-    """The priors' centres; of passages speed and time of entry are looked for, within which slopes serve."""
-    evidence = fitter.frame.evidence
-    if all(dataset.record.statistic != "passage" for dataset in evidence.datasets):
-        return np.zeros(len(nominal.free))
-    return begin(evidence, Problem(evidence, nominal.build, nominal.free))
 
 
 def _small_changes(
