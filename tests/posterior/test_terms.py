@@ -12,7 +12,8 @@ from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import evidence_of, gather
 from permway.posterior.covariance import UNSHARED, Frame
 from permway.posterior.fit import Fitter, Model
-from permway.posterior.idealised import SHOWN, SIZE, idealised
+from permway.posterior.hyper import IDEALISATION
+from permway.posterior.idealised import LARGEST, SHOWN, idealised
 from simulated import simulate
 from simulated_train import measured, tables, written
 
@@ -20,7 +21,7 @@ from simulated_train import measured, tables, written
 @pytest.mark.parametrize("name", ["pad.k", "deck.E"])
 @pytest.mark.parametrize("power", [0, 1])
 def test_idealisation_is_a_stiffness_that_is_off_at_each_frequency(tmp_path: Path, name: str, power: int) -> None:
-    """What a stiffness does that is 0.1 % off, evenly or in proportion to octaves, is one unit of the columns."""
+    """What a stiffness does that is 0.2 % off, evenly or in proportion to octaves, is one unit of such columns."""
     campaign = simulate(tmp_path / "c", 3).campaign
     fitter = Fitter(Frame.of(gather(campaign, threads=1)))
     model = Model(campaign.with_values, free_parameters(campaign))
@@ -29,16 +30,35 @@ def test_idealisation_is_a_stiffness_that_is_off_at_each_frequency(tmp_path: Pat
     octaves = np.log2(evidence.rows.frequency_Hz)
     x = (2.0 * octaves - octaves.min() - octaves.max()) / (octaves.max() - octaves.min())
     values = {f.name: f.value(0.0) for f in model.free}
-    moved = campaign.with_values(values | {name: values[name] * (1.0 + 0.01 * SIZE)})
+    moved = campaign.with_values(values | {name: values[name] * (1.0 + 0.01 * LARGEST)})
     change = 100.0 * (evidence.deviations(evidence.predicted(moved).datasets) - fit.state.deviations)
     expected = np.where(fitter.frame.statistic == "frf", change * x**power, 0.0)
-    columns = idealised(fit)
+    columns = LARGEST * idealised(fit)
     roots = fit.covariance.roots(columns)
     units = np.linalg.solve(roots.times(roots), roots.times(fit.covariance.roots(expected[:, None])))[:, 0]
     whole, left = (fit.covariance.square(v) for v in (expected, expected - columns @ units))
     assert whole > 10.0 * SHOWN
     assert left < 2.0 * SHOWN + 1e-4 * whole
     assert np.linalg.norm(units) <= 1.02
+
+
+def test_idealisation_has_a_size_of_its_own(tmp_path: Path) -> None:
+    """The covariance with half the size is that of columns half as large; other columns keep theirs."""
+    campaign = written(tmp_path, *tables(cold=False))
+    frame = Frame.of(gather(campaign, measured(campaign, 5), threads=1))
+    count, own = frame.sigma.size, frame.columns.shape[1]
+    columns = np.random.default_rng(3).normal(size=(count, 4)) * 100.0
+    first = frame.first()
+    half = first.moved(first.log - np.log(2.0) * np.array([name == IDEALISATION for name in first.names]))
+    size, values = first[IDEALISATION], np.linspace(-1.0, 1.0, count)[:, None]
+    assert own
+    assert half[IDEALISATION] == pytest.approx(0.5 * size)
+    one = frame.with_idealisation(columns).covariance(half)
+    other = frame.with_idealisation(0.5 * columns).covariance(first)
+    assert one.apply(values) == pytest.approx(other.apply(values), rel=1e-9, abs=1e-12)
+    assert one.log_determinant == pytest.approx(other.log_determinant)
+    # What is given again replaces what is there.
+    assert frame.with_idealisation(columns).with_idealisation(columns[:, :1]).columns.shape[1] == own + 1
 
 
 def test_what_channels_do_not_share_is_one_error_of_a_run(tmp_path: Path) -> None:

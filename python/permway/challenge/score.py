@@ -210,7 +210,8 @@ def _scored(
 
 
 def _gained(verdict: Mapping[str, Any]) -> float | None:
-    held = [g for g in verdict["held_out"].values() if g.get("db_before") is not None]
+    # An amended model that could not be solved without a group has no figure for it.
+    held = [g for g in verdict["held_out"].values() if None not in (g.get("db_before"), g.get("db_after"))]
     return float(np.median([g["db_before"] - g["db_after"] for g in held])) if held else None
 
 

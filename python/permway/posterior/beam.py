@@ -156,9 +156,15 @@ def advanced(
         hypothesis = trial.cell.hypothesis
         own = slice(fixed, fixed + len(hypothesis.free))
         try:
-            # Slopes of what was there before the amendment serve as long as they lead somewhere.
-            fit = fitter.grown(likely[trial.hyper.log.tobytes()], _model(root, trial.cell), trial.z, trial.bend)
-            fit = fitter.fit(fit, steps=steps, fixed=fixed)
+            if moves:
+                # A large change bends the slopes of what was there before it.
+                fit = fitter.begin(_model(root, trial.cell), trial.z, trial.hyper, bend=trial.bend)
+            else:
+                # They serve as long as they lead somewhere.
+                fit = fitter.grown(
+                    likely[trial.hyper.log.tobytes()], _model(root, trial.cell), trial.z, trial.bend
+                )
+            fit = fitter.fit(fit, steps=steps, fixed=0 if moves else fixed)
             if moves:
                 fit = rested(fitter, fitter.settled(fit, fixed=fixed), own, hypothesis, steps)
         except (InputError, SolveError):

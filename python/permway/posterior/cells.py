@@ -105,8 +105,9 @@ def small(cells_at_hand: Sequence[Cell]) -> list[Cell]:
     """The same with sizes near none, each direction once: what a small effect does, in proportion to its size."""
     found: dict[tuple[object, ...], Cell] = {}
     for cell in cells_at_hand:
+        cell = replace(cell, z=_at_rest(cell))
         weak = weaker(cell.hypothesis, cell.z, SMALL)
-        z = weak[0] if weak else cell.z
+        z = weak[0] if weak else SMALL * cell.z if _all_sizes(cell.hypothesis) else cell.z
         sized = [f.name == cell.hypothesis.size for f in cell.hypothesis.free]
         others = tuple(float(v) for v, own in zip(cell.z, sized, strict=True) if not own)
         # A size may lie to either side of none.
@@ -115,9 +116,26 @@ def small(cells_at_hand: Sequence[Cell]) -> list[Cell]:
     return list(found.values())
 
 
+def _at_rest(cell: Cell) -> Reals:
+    """With factors of what is there already at 1, beside a size: they would be a change whatever the size is."""
+    hypothesis = cell.hypothesis
+    if not hypothesis.size:
+        return cell.z
+    factors = [f.name != hypothesis.size and f.unit == "1" and f.value(0.0) == 1.0 for f in hypothesis.free]
+    return np.where(factors, 0.0, cell.z)
+
+
+def _all_sizes(hypothesis: Hypothesis) -> bool:
+    """Whether each parameter is a size of its own, with nothing there where all are 0."""
+    return not hypothesis.size and all(f.value(0.0) == 0.0 for f in hypothesis.free)
+
+
 def resized(cell: Cell, measure: float) -> Cell:
     """A cell with its size so many times as far from none, as far as its limits allow."""
     names = [f.name for f in cell.hypothesis.free]
+    if _all_sizes(cell.hypothesis):
+        limits = np.array([f.limits for f in cell.hypothesis.free]).reshape(-1, 2)
+        return replace(cell, z=np.clip(measure * cell.z, limits[:, 0], limits[:, 1]))
     if cell.hypothesis.size not in names or math.isinf(cell.hypothesis.none):
         return cell
     index = names.index(cell.hypothesis.size)

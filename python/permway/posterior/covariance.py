@@ -18,7 +18,7 @@ from permway.diagnosis.blocks_spectra import LEVEL, SpectraBlock
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.gather import first_size
 from permway.posterior.chains import Chains, Factor, chains_of
-from permway.posterior.hyper import Hyper
+from permway.posterior.hyper import IDEALISATION, Hyper
 
 NEPER_PER_DB = float(np.log(10.0)) / 20.0
 
@@ -43,13 +43,15 @@ class Frame:
         Records as residuals whitened by their noise.
     chains : list of Chains
     columns : ndarray, shape (m, b)
-        Errors of unit variance that act by few columns: an irregularity's level, tables.
+        Errors of unit variance that act by few columns: an irregularity's level, tables, the idealisation.
     spanned : ndarray of int, shape (m,)
         The rows that they act on.
     sigma : ndarray, shape (n,)
         Of each row's noise, neper.
     statistic : ndarray of str, shape (n,)
         Of each row's record.
+    idealised : int
+        The last so many columns are of the idealisation, of a unit that its size multiplies.
     """
 
     evidence: Evidence
@@ -58,6 +60,7 @@ class Frame:
     spanned: np.ndarray
     sigma: Reals
     statistic: np.ndarray
+    idealised: int = 0
 
     @staticmethod
     def of(evidence: Evidence) -> Frame:
@@ -112,11 +115,16 @@ class Frame:
         found[self.spanned] = self.columns
         return found
 
-    def with_columns(self, more: Reals) -> Frame:
-        """The same with further errors of unit variance, (n, c)."""
-        columns = np.hstack([self.whole, more])
+    def with_idealisation(self, more: Reals) -> Frame:
+        """The same with what the idealisation may do to the residuals, (n, c), in place of what is there."""
+        columns = np.hstack([self.whole[:, : self.columns.shape[1] - self.idealised], more])
         spanned = np.flatnonzero(np.any(columns, axis=1))
-        return replace(self, columns=columns[spanned], spanned=spanned)
+        return replace(self, columns=columns[spanned], spanned=spanned, idealised=more.shape[1])
+
+    @property
+    def idealisation(self) -> Reals:
+        """Its columns at all rows, (n, c)."""
+        return self.whole[:, self.columns.shape[1] - self.idealised :]
 
     def first(self) -> Hyper:
         """Hyperparameters at the medians of their priors."""
@@ -230,9 +238,16 @@ class Covariance:
     factors: tuple[Factor, ...]
 
     @cached_property
+    def _columns(self) -> Reals:
+        """The frame's, those of the idealisation of their size."""
+        count = self.frame.columns.shape[1]
+        sizes = np.where(np.arange(count) < count - self.frame.idealised, 1.0, self.hyper[IDEALISATION])
+        return self.frame.columns * sizes
+
+    @cached_property
     def _spanned(self) -> tuple[Roots, Reals]:
         """Of the columns: themselves at their rows, and the factor of their part."""
-        rows, columns = self.frame.spanned, self.frame.columns
+        rows, columns = self.frame.spanned, self._columns
         above = np.sqrt(self.weights[rows])[:, None] * columns
         weighted = np.zeros((self.weights.size, columns.shape[1]))
         weighted[rows] = np.sqrt(self.weights[rows])[:, None] * above
@@ -281,7 +296,7 @@ class Covariance:
         if self.frame.columns.shape[1]:
             inner = linalg.cho_solve((self._spanned[1], True), self._across(self._of_chains(values)))
             taken = np.zeros_like(values)
-            taken[self.frame.spanned] = self.frame.columns @ inner
+            taken[self.frame.spanned] = self._columns @ inner
             found -= self._without_columns(taken)
         return found
 

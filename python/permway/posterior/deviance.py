@@ -68,7 +68,7 @@ def _misfit(plain: Fit, campaign: Campaign, datasets: Sequence[Dataset]) -> floa
     """Quadratic forms and priors of the best fit to a campaign's records, weighed as those of its twin are."""
     frame = Frame.of(plain.frame.evidence.of(campaign, datasets))
     # What follows the records' own errors is the idealisation, as the twin's fit has it.
-    fitter = Fitter(frame.with_columns(plain.frame.whole[:, frame.columns.shape[1] :]))
+    fitter = Fitter(frame.with_idealisation(plain.frame.idealisation))
     model = Model(campaign.with_values, plain.model.free)
     near = fitter.begin(model, plain.z, plain.hyper)
     far = fitter.begin(model, np.zeros_like(plain.z), plain.hyper)

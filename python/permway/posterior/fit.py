@@ -140,7 +140,10 @@ class Fit:
         kept = [i for i, block in enumerate(blocks) if block.dataset.record.statistic == statistic]
         rows = np.isin(self.frame.evidence.block_of, kept)
         frame = Frame.of(self.frame.evidence.with_blocks(tuple(blocks[i] for i in kept)))
-        frame = replace(frame, columns=frame.columns[:, :0]).with_columns(self.frame.whole[rows])
+        columns = self.frame.whole[rows]
+        frame = replace(
+            frame, columns=columns, spanned=np.arange(columns.shape[0]), idealised=self.frame.idealised
+        )
         solved = self.state.solved
         solved = replace(
             solved, needs=tuple(solved.needs[i] for i in kept), datasets=[solved.datasets[i] for i in kept]

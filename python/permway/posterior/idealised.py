@@ -19,23 +19,24 @@ from permway.diagnosis.side_by_side import SMALL, each
 from permway.model.line import Line
 from permway.posterior.fit import Fit
 
-SIZE = 0.001
-"""Share of a stiffness or a mass, one standard deviation of each of its :data:`SHAPES`: as discretisations of the
-practice campaigns differ."""
-
 SHAPES = 4
 """Legendre's polynomials of octaves, the constant among them: over five octaves they follow what takes two."""
 
 STEP = 1e-4
 """Of differences, as a share."""
 
+LARGEST = 0.002
+"""Share up to which the idealisation is expected to go: two standard deviations of its size."""
+
 SHOWN = 0.01
-"""Square of an error of unit variance, in standard deviations, below which it is left out: it would change the
+"""Square of an error of that size, in standard deviations, below which it is left out: it would change the
 evidence by less than 0.005 nats."""
 
 
 def idealised(fit: Fit) -> Reals:
-    """Columns of unit variance: each law, beam and mass of the line, off by a share that varies over frequency.
+    """Columns: each law, beam and mass of the line, off by a share of 1 that varies over frequency.
+
+    How large the share is, is a hyperparameter.
 
     Parameters
     ----------
@@ -58,17 +59,17 @@ def idealised(fit: Fit) -> Reals:
         bent = nearby.bent(part, indices, partial(_share, band=band, order=order))
         if bent is None:
             return None
-        return np.asarray((evidence.deviations(bent.datasets) - fit.state.deviations) * (SIZE / STEP))
+        return np.asarray((evidence.deviations(bent.datasets) - fit.state.deviations) / STEP)
 
     wanted = [(part, indices, order) for part, indices in _parts(campaign.model.line) for order in range(SHAPES)]
     found = [one for one in each(column, wanted, threads=evidence.threads, least=SMALL) if one is not None]
     if not found:
         return np.zeros((octaves.size, 0))
-    # Turned, errors of unit variance stay such; most combinations of them do not show.
+    # Turned, errors of one variance stay such; most combinations of them do not show.
     columns = np.column_stack(found)
     roots = fit.covariance.roots(columns)
     shown, turn = np.linalg.eigh(roots.times(roots))
-    return np.asarray(columns @ turn[:, shown > SHOWN])
+    return np.asarray(columns @ turn[:, shown * LARGEST**2 > SHOWN])
 
 
 def _parts(line: Line) -> Iterator[tuple[Part, list[int]]]:

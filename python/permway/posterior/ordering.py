@@ -47,7 +47,7 @@ def weighed(
     best = fits[0]
     frame = fitter.frame.about(best.state.solved, best.covariance, best.state.deviations)
     slopes = Fitter(frame).begin(best.model, best.z, best.hyper)
-    again = Fitter(frame.with_columns(idealised(slopes)))
+    again = Fitter(frame.with_idealisation(idealised(slopes)))
     begun = [again.begin(fit.model, fit.z, fit.hyper, bend=fit.bend) for fit in fits]
     return again, [finished(again, fit, own) for fit, own in zip(begun, amendments, strict=True)]
 

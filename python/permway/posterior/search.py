@@ -31,11 +31,11 @@ from permway.posterior.ordering import LEFT, LEVELS, annealed, apart, ordered, w
 from permway.posterior.recalibrated import first_values
 from permway.posterior.screening import Scores, screened
 
-WIDTHS, PER_FORM = (72, 32, 12), (6, 3, 2)
+WIDTHS, PER_FORM = (96, 32, 12), (12, 3, 2)
 """Cells that are refined at each level, and at most so many of one form: sizes of the beam."""
 
 LACKING = 0.5
-"""Probability that a fit lacks something, from which large changes are tried in place of small ones."""
+"""Probability that a fit lacks something, from which large changes are tried."""
 
 NEGLECTED = 0.01
 """Posterior odds, against the set that they would extend, of amendments that are not fitted to the end."""
@@ -91,11 +91,14 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
         count = len(best.amendments) + 1
         what = f"{count} amendment{'s' if count > 1 else ''}"
         found = []
-        if best.fit.hyper.novel <= LACKING:
+        lacks = best.fit.hyper.lacks
+        if lacks < LEVELS[1]:
             seen = _small_changes(best, ruled_out, progress, what)
             found += _near(fitter, best, *seen, progress, what)
-        else:
-            found += _far(fitter, far if count == 1 else best, ruled_out, progress, what)
+        if min((best, *found), key=lambda m: -m.log_mass).fit.hyper.novel > LACKING:
+            # What lacks little is not to be looked for where nothing shows.
+            far_off = count == 1 and lacks > LEVELS[1]
+            found += _far(fitter, far if far_off else best, far_off, ruled_out, progress, what)
         fitter, members = ordered(fitter, best, [*members, *found], nominal)
         # A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it.
         if len(members[0].amendments) < count:
@@ -141,12 +144,13 @@ def _near(
 def _far(
     fitter: Fitter,
     root: Member,
+    far_off: bool,
     ruled_out: Collection[str],
     progress: Progress,
     what: str,
 ) -> list[Member]:
     """Sets with one amendment more, whose change is large: begun far off, the discrepancy falling."""
-    level = LEVELS[0] if not root.amendments else LEVELS[1]
+    level = LEVELS[0] if far_off else LEVELS[1]
     about = replace(root.fit, hyper=root.fit.hyper.with_discrepancy(level))
     starts = cells(about, ruled_out)
     scores = screened(about, starts, _saying(progress, f"first look, {what}", len(starts)))

@@ -42,8 +42,8 @@ def test_a_springpot_takes_over_stiffness_and_loss(
     after = relaxing(campaign, "pad", stiffness_factor=factor, order=order, share=share, rest=rest)
     law = after.model.line.laws["pad"]
     k = before.stiffness * factor
-    # What stays of the constant loss is a loss of all of it.
-    lossy = 1.0 + 1j * rest * before.eta
+    # What stays of the constant loss is a loss of all of it; of what hardly relaxes, all stays.
+    lossy = 1.0 + 1j * (1.0 - (1.0 - rest) * min(10.0 * share, 1.0)) * before.eta
     (at,) = law.complex(np.array([REFERENCE_HZ]), None) / lossy
     assert at.real == pytest.approx(k)
     assert at.imag == pytest.approx(k * share * np.tan(0.5 * np.pi * order))
@@ -65,7 +65,7 @@ def test_a_relaxation_rises_by_what_it_says(
     after = relaxing_once(campaign, "pad", stiffness_factor=factor, rise=rise, relaxation_Hz=hertz, rest=rest)
     law = after.model.line.laws["pad"]
     k = before.stiffness * factor
-    lossy = 1.0 + 1j * rest * before.eta
+    lossy = 1.0 + 1j * (1.0 - (1.0 - rest) * min(10.0 * rise, 1.0)) * before.eta
     at, low, middle, high = law.complex(np.array([REFERENCE_HZ, 1e-6, hertz, 1e9]), None) / lossy
     assert at.real == pytest.approx(k)
     assert high.real / low.real == pytest.approx(1.0 + rise, rel=1e-6)

@@ -28,7 +28,7 @@ SUMMARY = (
     "bends as easily as so many metres of slab."
 )
 PARAMETERS = {
-    "length_m": "m, 1.44 to 25: from joint to joint",
+    "length_m": "m, 0.8 to 46: from joint to joint",
     "offset": "1, -0.5 to 0.5: place of the joints, in lengths from the slab's start",
     "dowels_N_per_m": "N/m, 1e3 to 1e13: shear stiffness of the dowels of one cut",
     "flexibility_m": "m: of slab, that bend as much as one joint",
@@ -45,23 +45,26 @@ JOINT_M = 0.1
 TOUCHING_M, APART_M = 0.05, 0.002
 """How near a cut is at a fastener, and how far apart the two ends are put that share it."""
 
+ASIDE_M = 0.002
+"""By which a cut is beside a sensor or a hammer point: which side of it these are on, nobody states."""
+
 DOWEL_LOSS = 0.05
 """Loss factor of dowels."""
 
 SHORT = 0.25
 """Of the length of a slab: shorter pieces at the ends are no slabs of their own."""
 
-SHORTEST_M = 3.0
-"""Of the equal parts that are tried."""
+SHORTEST_M = 2.0
+"""Of the parts that are tried: half of the shortest that are usual."""
 
-LONG_M = 10.0
+LONG_M = 2.0 * SHORTEST_M
 """A slab shorter than this is in one piece."""
 
 USUAL_M = (4.0, 5.0, 5.6, 6.45, 8.0)
 """Lengths that slabs are made in: where the search starts, beside equal parts of the whole, and whole bays."""
 
-PARTS = (4, 5, 6)
-CENTRE_M, FACTOR, OFFSET = 6.0, 1.33, 0.3
+PARTS = (2, 3, 4, 5, 6)
+CENTRE_M, FACTOR, OFFSET = 6.0, 1.5, 0.3
 LONGEST_M = 12.0
 """Of slabs with a whole number of fasteners, joints midway between two, where the search starts, too."""
 
@@ -75,7 +78,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         if np.isfinite([longest.start, longest.stop]).all() and longest.stop - longest.start >= LONG_M:
             above = [layer.x for layer in fasteners(line) if layer.lower == name]
             starts = [*_usual(longest), *(start for x in above for start in _between(x, longest))]
-            yield _cut(name, segments, starts)
+            yield _cut(name, segments, _either_side(starts, longest, _measured(situation.campaign, name)))
             yield _bending(name, segments, starts)
             if len(segments) > 1:
                 begun = min(segments, key=lambda s: s.start)
@@ -150,9 +153,10 @@ def _cut(
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         pieces: list[tuple[float, float]] = []
+        measured = _measured(campaign, name)
         for segment in segments:
-            ends = [segment.start, *_joints(segment, values, begin_m), segment.stop]
-            pieces += pairwise(ends)
+            cuts = [_aside(x, measured) for x in _joints(segment, values, begin_m)]
+            pieces += pairwise([segment.start, *cuts, segment.stop])
         return with_fields(campaign, name, intervals_m=tuple(pieces), modes=None)
 
     return Hypothesis(
@@ -168,6 +172,29 @@ def _cut(
         none=np.inf,
         variant="through" if through else "",
     )
+
+
+def _measured(campaign: Campaign, name: str) -> Reals:
+    """Where sensors and hammer points are on a body, m."""
+    stated = campaign.stated
+    places = [(one.body, one.x_m) for one in stated.sensors] + [(one.body, one.x_m) for one in stated.forces]
+    return np.array([x for body, x in places if body == name and x is not None])
+
+
+def _aside(x: float, measured: Reals) -> float:
+    """A cut to the nearer side of what is measured there."""
+    near = measured[np.abs(measured - x) < ASIDE_M]
+    return x if not near.size else float(near[0] + np.copysign(ASIDE_M, x - near[0]))
+
+
+def _either_side(tried: list[tuple[float, float]], segment: Segment, measured: Reals) -> list[tuple[float, float]]:
+    """Starts, and where cuts of one fall on what is measured, that start with its cuts just before it, too."""
+    found = list(tried)
+    for length, offset in tried:
+        x = np.array(_joints(segment, {"length_m": length, "offset": offset}))
+        if x.size and (np.abs(x[:, None] - measured) < 1e-6).any():
+            found.append((length, offset - 0.5 * ASIDE_M / length))
+    return found
 
 
 def _at_fasteners(name: str, segments: list[Segment], length: float, start: float) -> Hypothesis:

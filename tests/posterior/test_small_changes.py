@@ -1,0 +1,55 @@
+"""What hardly acts changes hardly anything: where the search looks for small effects, over random campaigns."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from permway.campaign.campaign import read_campaign
+from permway.challenge.small.make import make_small
+from permway.diagnosis.gather import gather
+from permway.diagnosis.tangent import Problem
+from permway.posterior.cells import Cell, cells, resized, small
+from permway.posterior.fit import Fit, grown
+from permway.posterior.recalibrated import recalibrated
+
+SHOWS = 1.0
+"""Norm of a change, in standard deviations, from which it is held to the rule: below, rounding may show."""
+
+
+def fitted(folder: Path, seed: int, index: int) -> Fit:
+    name = make_small(seed, index, folder)
+    return recalibrated(gather(read_campaign(folder / name / "campaign.toml"), threads=1))
+
+
+def norm(fit: Fit, cell: Cell) -> float:
+    """Of what a cell changes in the residuals."""
+    model = grown(fit, cell.hypothesis, "1.")
+    state = Problem(fit.frame.evidence, model.build, model.free).at(np.concatenate([fit.z, cell.z]))
+    assert state is not None
+    return float(np.sqrt(fit.covariance.square(state.deviations - fit.state.deviations)))
+
+
+def off(cell: Cell) -> float:
+    """How far its size is from none."""
+    hypothesis = cell.hypothesis
+    return abs(cell.values[hypothesis.size] - hypothesis.none) if hypothesis.size else float(np.abs(cell.z).max())
+
+
+@pytest.mark.parametrize("index", [0, 1, 2, 3])
+def test_a_quarter_of_a_small_change_does_a_quarter_or_less(tmp_path: Path, index: int) -> None:
+    """Of every form in the catalogue that has a size; power that grows by its square does a sixteenth."""
+    fit = fitted(tmp_path, 5150002, index)
+    each = {}
+    for cell in small(cells(fit)):
+        quarter = resized(cell, 0.25)
+        if off(quarter) < 0.5 * off(cell):
+            each.setdefault((cell.hypothesis.form, tuple(np.sign(cell.z))), (cell, quarter))
+    assert len(each) > 15
+    far = []
+    for cell, quarter in each.values():
+        whole, part = norm(fit, cell), norm(fit, quarter)
+        if whole > SHOWS and part > 0.4 * whole:
+            far.append((cell.hypothesis.form, cell.values, whole, part))
+    assert not far
