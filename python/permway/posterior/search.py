@@ -44,6 +44,9 @@ BEHIND = 92.0
 """Of the objective, by which a fit may be behind the best at one discrepancy to be fitted at the next: odds of
 1e-20, for at a large discrepancy a fit may still lie beside its best neighbour."""
 
+PROMISED = 0.03
+"""The same by a linear look, which promises too much: it has no penalty for what parameters could have been."""
+
 MOVING = 5.0
 """Nats that a small change may lack before it is moved to better neighbours."""
 
@@ -124,7 +127,7 @@ def _near(
     promised += [cell.log_prior for cell in starts]
     views = [root.fit.hyper, *root.fit.hyper.smaller()]
     worth = []
-    for i in np.flatnonzero(promised > np.log(NEGLECTED)).tolist():
+    for i in np.flatnonzero(promised > np.log(PROMISED)).tolist():
         cell = resized(starts[i], float(scores.measure[i]))
         worth.append((-promised[i], cell.hypothesis, Trial.of(root, cell, views[scores.view[i]])))
     # Hyperparameters are the smaller set's still: what is behind with them hardly comes first with its own.
