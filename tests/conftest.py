@@ -31,7 +31,7 @@ LONG = {
         diagnosis/test_nearby.py diagnosis/test_noise.py diagnosis/test_one_place.py
         diagnosis/test_passage.py diagnosis/test_recalibrate.py diagnosis/test_ruled_out.py
         diagnosis/test_separability.py diagnosis/test_side_by_side.py diagnosis/test_small_sizes.py
-        diagnosis/test_smooth.py diagnosis/test_table_of_modes.py diagnosis/test_tolerances.py
+        diagnosis/test_calibration_errors.py diagnosis/test_table_of_modes.py diagnosis/test_tolerances.py
     """,
     "campaigns": """
         challenge/test_challenge_and_sliding.py challenge/test_challenge_and_solver.py

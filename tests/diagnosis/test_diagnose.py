@@ -102,7 +102,7 @@ def test_the_tools_own_base_as_data_shows_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.injection
 def test_twenty_campaigns_with_nothing_missing_raise_one_alarm_at_most(tmp_path: Path) -> None:
-    """Smooth errors of 0.2 to 1.3 dB, parameters from their priors: seeds 100 to 119, not chosen."""
+    """Calibration errors of 0.2 to 1.3 dB, parameters from their priors: seeds 100 to 119, not chosen."""
     alarms = []
     for seed in range(100, 120):
         size = (0.02, 0.06, 0.1, 0.15)[seed % 4]

@@ -47,8 +47,8 @@ def test_slopes_are_those_of_solves(tmp_path: Path, kind: str) -> None:
         if found is None:
             continue
         spared += 1
-        slope = (evidence.deviations(found.datasets) - state.deviations) / STEP
-        solved = (problem.deviations(moved)[0] - state.deviations) / STEP
+        slope = (evidence.residuals(found.datasets) - state.residuals) / STEP
+        solved = (problem.residuals(moved)[0] - state.residuals) / STEP
         assert np.linalg.norm(slope - solved) < 5e-3 * np.linalg.norm(solved), free.name
     assert spared >= len(problem.free) // 2
 

@@ -93,8 +93,8 @@ def test_noise_moves_no_response_and_is_no_record_of_its_own(tmp_path: Path) -> 
     assert [evidence.blocks[i].dataset.record.statistic for i in evidence.records] == ["frf"]
     (block,) = blocks_of(evidence)
     fit = recalibrate(evidence)
-    # The columns of noise are of a known size: nothing is learnt of them.
-    fixed = {o.name for o in block.smooth.origins}
+    # The columns of noise are of a known size: nothing is estimated of them.
+    fixed = {o.name for o in block.calibration.sources}
     assert {fit.evidence.sizes[name] for name in fixed} == {1.0}
     mine = fit.evidence.block_of == fit.evidence.blocks.index(fit.evidence.blocks[-1])
     assert not fit.jacobian[mine].any()
@@ -123,7 +123,7 @@ def test_a_few_sensors_tell_the_scale_as_loosely_as_student_has_it(count: int, t
     heavy.own, heavy.scatter = np.linspace(-6.0, 6.0, count), 1.0
     nothing = xr.Dataset({"noise_factor": ("sensor", np.ones(count))})
     density = stats.t(count - 1)
-    assert -0.5 * heavy.deviations(nothing) ** 2 == pytest.approx(
+    assert -0.5 * heavy.residuals(nothing) ** 2 == pytest.approx(
         density.logpdf(heavy.own) - density.logpdf(0.0), rel=1e-12
     )
-    assert np.array_equal(np.sign(heavy.deviations(nothing)), np.sign(heavy.own))
+    assert np.array_equal(np.sign(heavy.residuals(nothing)), np.sign(heavy.own))

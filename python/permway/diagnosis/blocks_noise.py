@@ -11,7 +11,7 @@ import xarray as xr
 from permway.arrays import Reals
 from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import Rows
-from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
+from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
 
 FEWEST = 5
 """Sensors that tell how much their noise differs; with fewer none is told from the others."""
@@ -85,7 +85,7 @@ class NoiseBlock:
             return False
         return bool(np.isfinite(_noise(dataset.data)).any(axis=(1, 2)).all())
 
-    def deviations(self, predicted: xr.Dataset) -> Reals:
+    def residuals(self, predicted: xr.Dataset) -> Reals:
         """Measured less predicted over how far sensors differ, as a normal variable of the same density has it."""
         off = np.asarray((self.own - np.log(predicted["noise_factor"].values)) / self.scatter)
         if not self._student:
@@ -106,11 +106,11 @@ class NoiseBlock:
         return NoiseBlock(self.dataset, student=True)
 
     @cached_property
-    def smooth(self) -> Smooth:
+    def calibration(self) -> CalibrationErrors:
         """What all sensors of the test have in common."""
         column = np.full((self.names.size, 1), ANY / self.scatter)
-        origin = Origin(f"unrest {self.dataset.record.name}", Level(), 1, fixed=True)
-        return Smooth((origin,), PlainColumns(column))
+        source = ErrorSource(f"unrest {self.dataset.record.name}", Level(), 1, fixed=True)
+        return CalibrationErrors((source,), PlainColumns(column))
 
 
 def _noise(data: xr.Dataset) -> Reals:

@@ -14,8 +14,8 @@ from permway.campaign.compare import NEPER_DB
 from permway.campaign.load import Dataset
 from permway.campaign.passage import spectrum_of
 from permway.diagnosis.blocks import Rows
-from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
-from permway.diagnosis.wander import Wander
+from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
+from permway.diagnosis.gaussian_process import GaussianProcess
 
 FLOOR = 0.003
 """Relative error that no record is free of, as of frequency responses: of the spectrum's size about a line."""
@@ -57,7 +57,7 @@ class PassageBlock:
     floor : float
         Relative error beside the noise of each line.
     span : (float, float), optional
-        Hz, over which chains' errors wander, where other passages reach further.
+        Hz, over which chains' errors vary, where other passages reach further.
     """
 
     log_determinant = 0.0
@@ -84,7 +84,7 @@ class PassageBlock:
         columns = (label, label, np.full(label.shape, ""), at, scale)
         self.rows = Rows(*(np.tile(v.reshape(-1), 2) for v in columns))
 
-    def deviations(self, predicted: xr.Dataset) -> Reals:
+    def residuals(self, predicted: xr.Dataset) -> Reals:
         """Measured less predicted, in standard deviations."""
         return _parts((self.measured - predicted["spectrum"].values) / self.sigma)
 
@@ -113,28 +113,28 @@ class PassageBlock:
         return PassageBlock(dataset, reference=reference, floor=floor, span=self._span)
 
     @cached_property
-    def smooth(self) -> Smooth:
+    def calibration(self) -> CalibrationErrors:
         """Of every channel its chain, and its drift in this record."""
-        wander = Wander(*(self._span or (float(self.frequency[0]), float(self.frequency[-1]))))
-        values = wander.values(self.frequency)
+        process = GaussianProcess(*(self._span or (float(self.frequency[0]), float(self.frequency[-1]))))
+        values = process.values(self.frequency)
         drift = _drifts(self.dataset.data)
-        origins: list[Origin] = []
+        sources: list[ErrorSource] = []
         columns: list[Reals] = []
         for index, name in enumerate(self.names):
             read = (self._reference[index] / self.sigma[index])[:, None]
             gain = read * values
             size = DRIFT * float(np.sqrt(np.mean(np.abs(self.measured[index]) ** 2)))
             moved = size * drift / self.sigma[index][:, None]
-            origins += [
-                Origin(f"gain {name}", Apart(1), 1, chain=False),
-                Origin(f"channel {name}", wander, 2),
-                Origin(f"drift of {self.dataset.record.name}: {name}", Apart(3), 1, chain=False, fixed=True),
+            sources += [
+                ErrorSource(f"gain {name}", Apart(1), 1, chain=False),
+                ErrorSource(f"channel {name}", process, 2),
+                ErrorSource(f"drift of {self.dataset.record.name}: {name}", Apart(3), 1, chain=False, fixed=True),
             ]
             for column in np.hstack([read, gain, 1j * gain, moved]).T:
                 whole = np.zeros(self.measured.shape, dtype=np.complex128)
                 whole[index] = column
                 columns.append(_parts(whole))
-        return Smooth(tuple(origins), PlainColumns(np.stack(columns, axis=1)))
+        return CalibrationErrors(tuple(sources), PlainColumns(np.stack(columns, axis=1)))
 
 
 def _parts(values: Complexes) -> Reals:

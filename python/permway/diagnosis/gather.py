@@ -92,23 +92,23 @@ def gather(
         From reading, or for a record that cannot be predicted.
     """
     evidence = _blocked(campaign, campaign.load() if datasets is None else datasets, threads, lines)
-    origins = evidence.columns.origins
-    return evidence.with_sizes({o.name: 1.0 if o.fixed else first_size(campaign, o.name) for o in origins})
+    sources = evidence.columns.sources
+    return evidence.with_sizes({o.name: 1.0 if o.fixed else first_size(campaign, o.name) for o in sources})
 
 
 def evidence_of(campaign: Campaign, datasets: Sequence[Dataset], like: Evidence) -> Evidence:
-    """Datasets that need not be of the campaign's files, with the sizes of smooth errors that another has."""
+    """Datasets that need not be of the campaign's files, with the sizes of calibration errors that another has."""
     evidence = _blocked(campaign, datasets, like.threads)
-    learnt = [like.sizes[o.name] for o in like.columns.origins if not o.fixed]
-    usual = float(np.median(learnt)) if learnt else first_size(campaign, "")
-    sizes = {o.name: 1.0 if o.fixed else like.sizes.get(o.name, usual) for o in evidence.columns.origins}
+    estimated = [like.sizes[o.name] for o in like.columns.sources if not o.fixed]
+    usual = float(np.median(estimated)) if estimated else first_size(campaign, "")
+    sizes = {o.name: 1.0 if o.fixed else like.sizes.get(o.name, usual) for o in evidence.columns.sources}
     return evidence.with_sizes(sizes, like.length)
 
 
 def _blocked(
     campaign: Campaign, datasets: Sequence[Dataset], threads: int | None, lines: float = LINES_PER_FREQUENCY
 ) -> Evidence:
-    """Evidence whose smooth errors have no sizes yet."""
+    """Evidence whose calibration errors have no sizes yet."""
     loaded = [thinned(dataset, lines) for dataset in datasets]
     predicted = predict(campaign, loaded, threads=threads)
     spans = _spans(loaded)
@@ -144,10 +144,10 @@ def _kind(dataset: Dataset) -> str:
     return "spectra" if dataset.record.statistic in ("csd", "psd") else dataset.record.statistic
 
 
-def first_size(campaign: Campaign, origin: str) -> float:
-    """Size of an origin's smooth errors before anything is learnt, neper; the irregularity's is its owner's."""
+def first_size(campaign: Campaign, source: str) -> float:
+    """Size of a source's calibration errors before anything is estimated, neper; the irregularity's as stated."""
     known = campaign.stated.irregularity
-    if origin == "irregularity":
+    if source == "irregularity":
         # Two standard deviations, of a power.
         return {"known": 0.01, "unknown": 1.0}.get(known.knowledge, 0.5 * (known.within_dB or 2.0) / 4.343)
     return 0.02

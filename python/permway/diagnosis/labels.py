@@ -54,7 +54,7 @@ def mislabelled(fit: Fit) -> Mislabelled | None:
     Parameters
     ----------
     fit : Fit
-        With the owner's values: a recalibration would bend them towards wrong labels.
+        With the nominal values: a recalibration would bend them towards wrong labels.
     """
     predicted = fit.evidence.predicted(fit.evidence.campaign).datasets
     for block, prediction in zip(fit.evidence.blocks, predicted, strict=True):

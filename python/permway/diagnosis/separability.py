@@ -1,8 +1,8 @@
 """What the sensors of a campaign can tell apart, before what they read is looked at.
 
-Every effect of the catalogue is put into the owner's model at the size it starts from; what it does to the
-records, with all that recalibration and smooth errors could do taken out, is held against what every other effect
-could do at any size. Measured values play no part: only where, what and how well was measured.
+Every effect of the catalogue is put into the nominal model at the size it starts from; what it does to the
+records, with all that recalibration and calibration errors could do taken out, is held against what every other
+effect could do at any size. Measured values play no part: only where, what and how well was measured.
 """
 
 from __future__ import annotations
@@ -155,8 +155,8 @@ def separability(
 
 def _untouched(fit: Fit) -> Fit:
     """As if the records were what a fit predicts: its slopes and covariance, and no residual."""
-    nothing = np.zeros_like(fit.deviations)
-    return replace(fit, deviations=nothing, clean=nothing, chi2=0.0, prior=0.0, heat=1.0)
+    nothing = np.zeros_like(fit.residuals)
+    return replace(fit, residuals=nothing, clean=nothing, chi2=0.0, prior=0.0, inflation=1.0)
 
 
 def places(fit: Fit) -> Iterator[Found]:
@@ -188,12 +188,12 @@ def _spots(line: Line) -> Iterator[list[Spot]]:
 
 
 class _Base:
-    """The owner's model, and what its moves and smooth errors take out of a change of the residuals."""
+    """The nominal model, and what its moves and calibration errors take out of a change of the residuals."""
 
     def __init__(self, fit: Fit) -> None:
         self.fit, self.whitener = fit, fit.evidence.whitener
         self._solved = fit.evidence.predicted(fit.campaign)
-        self._plain = fit.evidence.deviations(self._solved.datasets)
+        self._plain = fit.evidence.residuals(self._solved.datasets)
         self._reduced = self.whitener.reduce(fit.jacobian)
         normal = fit.jacobian.T @ fit.jacobian - self._reduced.T @ self._reduced
         self._factor = linalg.cho_factor(normal + np.eye(fit.z.size))
@@ -213,11 +213,11 @@ class _Base:
                 slopes = problem.columns(state, range(own, own + z.size))
             except (InputError, SolveError):
                 continue
-            return z, state.deviations - self._plain, slopes
+            return z, state.residuals - self._plain, slopes
         return None
 
     def projected(self, columns: Reals, other: Reals) -> Reals:
-        """Products of columns, (n, p) and (n, q), smooth errors and all moves of the base taken out."""
+        """Products of columns, (n, p) and (n, q), calibration errors and all moves of the base taken out."""
         mine, theirs = self.whitener.reduce(columns), self.whitener.reduce(other)
         left = columns.T @ self.fit.jacobian - mine.T @ self._reduced
         right = other.T @ self.fit.jacobian - theirs.T @ self._reduced

@@ -70,7 +70,7 @@ class Verdict(VerdictPart):
     explained_gap: Share | None = None
     """Share of what separated the recalibrated base from the noise ceiling that the amendment closes."""
     recalibrated: Recalibrated = Recalibrated()
-    """The owner's parameters before and after the amendment."""
+    """The nominal parameters before and after the amendment."""
     next: tuple[NextMeasurement, ...] = ()
     """Measurements that would tell rivals apart, the most telling first."""
     detectable: dict[str, Smallest] = Field(default_factory=dict)

@@ -243,7 +243,7 @@ def _beyond(verdict: Verdict) -> str:
     told = {effect.place.body for effect in verdict.effects if effect.name == STATED}
     said = [
         f"{name} has to be {estimate(known[name])} for it, {quantity(abs(known[name].z))} standard "
-        f"deviations from the owner's {stated(known[name].prior, known[name].unit)}"
+        f"deviations from the nominal {stated(known[name].prior, known[name].unit)}"
         for name in [name for name in outside(known) if name not in told][:MOST_OUTSIDE]
     ]
     return " and ".join(said)

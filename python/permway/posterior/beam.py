@@ -69,7 +69,7 @@ class Member:
     @property
     def log_mass(self) -> float:
         """Logarithm of prior times tempered evidence, up to a constant of the records."""
-        return self.log_prior + tempered(self.fit.log_evidence, self.fit.state.deviations.size)
+        return self.log_prior + tempered(self.fit.log_evidence, self.fit.state.residuals.size)
 
     @property
     def names(self) -> tuple[str, ...]:

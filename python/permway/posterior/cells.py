@@ -221,7 +221,7 @@ def _place(kind: str, name: str, x: float, joints: tuple[int, ...]) -> Found:
 
 def _as_base(fit: Fit) -> Base:
     """What entries of the catalogue are handed."""
-    residuals = fit.state.deviations
+    residuals = fit.state.residuals
     solved: Solved = fit.state.solved
     return Base(
         free=fit.model.free,
@@ -229,13 +229,13 @@ def _as_base(fit: Fit) -> Base:
         covariance=fit.spread,
         campaign=solved.campaign,
         evidence=fit.frame.evidence,
-        deviations=residuals,
+        residuals=residuals,
         clean=residuals,
         chi2=float(residuals @ residuals),
         prior=float(fit.z @ fit.z),
         log_determinant=0.0,
         jacobian=fit.jacobian,
-        heat=1.0,
+        inflation=1.0,
         evaluations=0,
         build=fit.model.build,
     )

@@ -1,4 +1,4 @@
-"""Predicted against measured, with the owner's values and recalibrated, of a campaign."""
+"""Predicted against measured, with the nominal values and recalibrated, of a campaign."""
 
 from __future__ import annotations
 

@@ -75,7 +75,7 @@ def _misfit(plain: Fit, campaign: Campaign, datasets: Sequence[Dataset]) -> floa
     for level, steps in zip(LEVELS, STEPS, strict=False):
         far = fitter.fit(replace(far, hyper=plain.hyper.with_discrepancy(level)), steps=steps)
     fits = [fitter.fit(fit, steps=STEPS[-1]) for fit in (near, replace(far, hyper=plain.hyper))]
-    return min(fit.covariance.square(fit.state.deviations) + float(fit.z @ fit.z) for fit in fits)
+    return min(fit.covariance.square(fit.state.residuals) + float(fit.z @ fit.z) for fit in fits)
 
 
 def against_folder(twin: Path) -> Callable[[Path], float]:

@@ -157,12 +157,12 @@ def as_base(fit: Fit) -> Base:
     """The fit in the form that comparisons and reports draw."""
     sizes = {}
     evidence = fit.frame.evidence
-    for origin in evidence.columns.origins:
-        kind = origin.name.split(" ", 1)[0]
-        sizes[origin.name] = fit.hyper[kind] if kind in fit.hyper.names else evidence.sizes[origin.name]
+    for source in evidence.columns.sources:
+        kind = source.name.split(" ", 1)[0]
+        sizes[source.name] = fit.hyper[kind] if kind in fit.hyper.names else evidence.sizes[source.name]
     evidence = evidence.with_sizes(sizes, max(fit.hyper["length"], 0.5) if "length" in fit.hyper.names else None)
-    residuals, whitener = fit.state.deviations, evidence.whitener
-    clean = residuals - whitener.smooth(whitener.explained(residuals), residuals.size)
+    residuals, whitener = fit.state.residuals, evidence.whitener
+    clean = residuals - whitener.calibration(whitener.explained(residuals), residuals.size)
     chi2 = fit.covariance.square(residuals)
     return Base(
         free=fit.model.free,
@@ -170,13 +170,13 @@ def as_base(fit: Fit) -> Base:
         covariance=fit.spread,
         campaign=fit.state.solved.campaign,
         evidence=evidence,
-        deviations=residuals,
+        residuals=residuals,
         clean=clean,
         chi2=chi2,
         prior=float(fit.z @ fit.z),
         log_determinant=fit.covariance.log_determinant,
         jacobian=fit.jacobian,
-        heat=max(1.0, whitener.square(residuals) / max(1, residuals.size)),
+        inflation=max(1.0, whitener.square(residuals) / max(1, residuals.size)),
         evaluations=0,
         build=fit.model.build,
     )

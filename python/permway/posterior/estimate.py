@@ -60,7 +60,7 @@ def estimated(fit: Fit) -> Fit:
 
 
 def _objective(fit: Fit) -> Callable[[Reals], float]:
-    columns = np.column_stack([fit.state.deviations, fit.jacobian])
+    columns = np.column_stack([fit.state.residuals, fit.jacobian])
 
     def objective(log: Reals) -> float:
         hyper: Hyper = fit.hyper.moved(log)

@@ -77,7 +77,7 @@ def _body(where: Where) -> str:
 def _shares(masses: Masses) -> tuple[list[float], float]:
     """Probability of each member, and of what no member is; all sum to one."""
     log = np.array(
-        [m.log_prior + tempered(m.fit.log_evidence, m.fit.state.deviations.size, ALIKE) for m in masses.members]
+        [m.log_prior + tempered(m.fit.log_evidence, m.fit.state.residuals.size, ALIKE) for m in masses.members]
     )
     known = np.array([bool(m.amendments) * (1.0 - m.fit.hyper.novel) for m in masses.members])
     weight = np.exp(log - log.max()) * known

@@ -116,7 +116,7 @@ def _near(
     fitter: Fitter, root: Member, starts: Sequence[Cell], scores: Scores, progress: Progress, what: str
 ) -> list[Member]:
     """Sets with one amendment more, whose change is small: begun where the smaller set fits best."""
-    count = root.fit.state.deviations.size
+    count = root.fit.state.residuals.size
     promised = np.array([tempered(0.5 * gain, count) for gain in scores.gain.tolist()])
     promised += [cell.log_prior for cell in starts]
     views = [root.fit.hyper, *root.fit.hyper.smaller()]

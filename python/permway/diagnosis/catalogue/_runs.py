@@ -239,12 +239,12 @@ def on_board(situation: Situation) -> list[Sensor]:
 
 
 def suspects(situation: Situation, names: Iterable[str], most: int) -> list[str]:
-    """Sensors by how badly the base fits what they read, smooth errors left in."""
+    """Sensors by how badly the base fits what they read, calibration errors left in."""
     rows = situation.fit.evidence.rows
     square = {}
     for name in names:
         mine = rows.sensor == name
-        square[name] = float(np.mean(situation.fit.deviations[mine] ** 2)) if mine.any() else -1.0
+        square[name] = float(np.mean(situation.fit.residuals[mine] ** 2)) if mine.any() else -1.0
     ranked = sorted(square, key=lambda name: -square[name])
     return [name for name in ranked if square[name] >= 0.0][:most]
 
