@@ -23,7 +23,7 @@ HERE = Path(__file__).parent
 LONG = {
     "fits": """
         cli/test_check.py docs/test_examples.py posterior recordings/test_skeleton.py
-        recordings/test_skeleton_wide.py recordings/test_spoilt.py report/test_compare.py report/test_demo.py
+        recordings/test_skeleton_wide.py recordings/test_bad_channels.py report/test_compare.py report/test_demo.py
         report/test_diagnosis_page.py report/test_one_source.py sealed challenge/test_clipped.py
         challenge/test_follow.py first_hour checking/test_stated.py checking/test_noise_floors.py
         checking/test_blunders.py diagnosis/effects diagnosis/test_awaited.py diagnosis/test_bent_valley.py

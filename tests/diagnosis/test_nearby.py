@@ -100,7 +100,7 @@ def test_a_share_at_all_frequencies_is_a_parameter_moved(tmp_path: Path) -> None
     plain = evidence.predicted(campaign)
     nearby, values = Nearby(evidence, plain), campaign.parameters.nominal()
     for name, part, index in (("pad.k", "law", 0), ("bearing.k", "law", 1), ("deck.E", "bending", 1)):
-        bent = nearby.bent(part, [index], lambda frequency: np.full(frequency.size, 1e-5))  # type: ignore[arg-type]
+        bent = nearby.perturbed(part, [index], lambda frequency: np.full(frequency.size, 1e-5))  # type: ignore[arg-type]
         assert bent is not None
         solved = evidence.predicted(campaign.with_values({**values, name: values[name] * (1.0 + 1e-5)}))
         found, right = (s.datasets[0]["frf"].values - plain.datasets[0]["frf"].values for s in (bent, solved))

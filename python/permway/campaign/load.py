@@ -245,7 +245,7 @@ def _noise(
     Raises
     ------
     InputError
-        Without averages or coherence where those should tell; with a coherence that would be left aside.
+        Without averages or coherence where those should state it; with a coherence that would be left aside.
     """
     if record.noise == "scatter":
         if file.coherence is not None:

@@ -13,10 +13,10 @@ import numpy as np
 from permway.challenge.effects import (
     CATALOGUE,
     FADING,
+    NEAR_DEGENERATE,
     NONLINEAR,
     OUTSIDE,
     STRENGTHS,
-    TWINS,
     Effect,
     Site,
     Strength,
@@ -149,11 +149,11 @@ def draw(seed: int, tier: Tier) -> Case:
     seed : int
         Zero or more.
     tier : Tier
-        "null": nothing concealed; "single": one effect of the catalogue; "twin": one that has a near twin;
-        "multiple": two or three; "outside": one of no catalogue, or one whose family is taken out of it;
-        "nonlinear": one that depends on amplitude; "graded": one of the catalogue that is there to be faded;
-        "sparse": one that has a near twin, in records so few that they may leave it open; "running": trains that
-        truly run, where the model has them stand.
+        "null": nothing concealed; "single": one effect of the catalogue; "twin": one that has a near-degenerate
+        alternative; "multiple": two or three; "outside": one of no catalogue, or one whose family is taken out of
+        it; "nonlinear": one that depends on amplitude; "graded": one of the catalogue that is there to be
+        faded; "sparse": as "twin", in records so few that they may leave it open; "running": trains that truly
+        run, where the model has them stand.
 
     Raises
     ------
@@ -209,11 +209,11 @@ def _kinds(random: np.random.Generator, tier: Tier) -> list[type[Effect]]:
         case "single" | "twin" | "outside" | "nonlinear" | "graded" | "sparse":
             pool = {
                 "single": CATALOGUE,
-                "twin": TWINS,
+                "twin": NEAR_DEGENERATE,
                 "outside": OUTSIDE,
                 "nonlinear": NONLINEAR,
                 "graded": FADING,
-                "sparse": TWINS,
+                "sparse": NEAR_DEGENERATE,
             }[tier]
             return [pool[int(random.integers(len(pool)))]]
         case "multiple":

@@ -1,4 +1,4 @@
-"""The next measurement: the one on the menu that would tell two rivals apart, for its cost."""
+"""The next measurement: the one on the menu that would separate two rivals best, for its cost."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ def advise(
     measured = right.evidence.selected(right.evidence.records).datasets
     items = list(menu(right.evidence.campaign, measured))
 
-    def told(begun: int) -> None:
+    def started(index: int) -> None:
         if progress is not None:
-            progress("advise", begun, len(items))
+            progress("advise", index, len(items))
 
     def expected(item: Item) -> float | None:
         try:
@@ -50,7 +50,7 @@ def advise(
             # What the model cannot predict cannot be advised.
             return None
 
-    expectations = each(expected, items, threads=right.evidence.threads, told=told)
+    expectations = each(expected, items, threads=right.evidence.threads, progress=started)
     for item, more in zip(items, expectations, strict=True):
         if more is None:
             continue

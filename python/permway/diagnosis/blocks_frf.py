@@ -86,7 +86,7 @@ class FrfBlock:
         self._hidden = used & ~self._logarithmic
         gains, offs = (np.broadcast_to(v, used.shape)[self._hidden] for v in (self._gain, off))
         # exp(e) is, about errors E, exp(E) (1 - E) + exp(E) e.
-        self._heard = gains, self._measured[self._hidden] + expected[self._hidden] * offs
+        self._hidden_measured = gains, self._measured[self._hidden] + expected[self._hidden] * offs
         self._chain: Complexes = reference["chain"].values[self._hidden]
         # A response that noise has made larger weighs more: so much is the weighed logarithm above zero.
         self._lifted: Reals = 2.0 * (noise[self._logarithmic] / np.abs(self._seen) ** 2)
@@ -204,8 +204,8 @@ class FrfBlock:
         model = predicted["frf"].values
         found = np.zeros_like(self._measured)
         found[self._logarithmic] = self._seen * (self._logarithms(model) - self._lifted)
-        hidden, (gains, heard) = model[self._hidden], self._heard
-        found[self._hidden] = heard - gains * hidden * _straight(
+        hidden, (gains, measured) = model[self._hidden], self._hidden_measured
+        found[self._hidden] = measured - gains * hidden * _straight(
             predicted["chain"].values[self._hidden] / self._chain
         )
         return found

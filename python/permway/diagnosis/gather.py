@@ -32,13 +32,13 @@ class Readable(NamedTuple):
     kept : list of Dataset
     left_out : dict of str to str
         Why not, by name of a record, or of a record and its channel.
-    spoilt : tuple of Spoilt
+    bad : tuple of BadChannel
         Channels that are left out because their samples are no measurement.
     """
 
     kept: list[Dataset]
     left_out: dict[str, str]
-    spoilt: tuple[BadChannel, ...]
+    bad: tuple[BadChannel, ...]
 
 
 def predictable(campaign: Campaign, *, screened: bool = True) -> Readable:
@@ -48,14 +48,14 @@ def predictable(campaign: Campaign, *, screened: bool = True) -> Readable:
     ----------
     campaign : Campaign
     screened : bool
-        Whether channels that screening finds spoilt are left out.
+        Whether channels that screening finds bad are left out.
 
     Raises
     ------
     InputError
-        If none can be predicted, all are spoilt, or a file cannot be read.
+        If none can be predicted, all are bad, or a file cannot be read.
     """
-    whole, spoilt = without_bad_channels(campaign) if screened else (campaign, ())
+    whole, bad = without_bad_channels(campaign) if screened else (campaign, ())
     datasets = whole.load()
     reasons = {dataset.record.name: why_not(campaign, dataset) for dataset in datasets}
     left_out = {name: str(why) for name, why in reasons.items() if why is not None}
@@ -63,8 +63,8 @@ def predictable(campaign: Campaign, *, screened: bool = True) -> Readable:
     if not kept:
         name, why = next(iter(left_out.items()))
         raise InputError("no record can be predicted", where=f"records.{name}", remedy=why)
-    left_out |= {f"{one.record}: {one.channel}": f"{one.kind}: {one.what}" for one in spoilt}
-    return Readable(kept, left_out, spoilt)
+    left_out |= {f"{one.record}: {one.channel}": f"{one.kind}: {one.what}" for one in bad}
+    return Readable(kept, left_out, bad)
 
 
 def gather(
@@ -123,7 +123,7 @@ def _blocked(
                 remedy="look at its coherence, its units and its band",
             )
     # Of several tests by the same sensors each has the same noise.
-    tests = {tuple(d.names("sensor")): d for d in reversed(loaded) if NoiseBlock.tells(d)}
+    tests = {tuple(d.names("sensor")): d for d in reversed(loaded) if NoiseBlock.is_constrained(d)}
     blocks += [NoiseBlock(dataset) for dataset in tests.values()]
     return Evidence(campaign, tuple(blocks), {}, threads=threads)
 

@@ -106,7 +106,7 @@ class Nearby:
             return None
         return self._read(campaign, {id(n): self._moved(n, campaign) for n in near.needs if n is not None})
 
-    def bent(self, part: Part, indices: Sequence[int], share: Callable[[Reals], Reals]) -> Solved | None:
+    def perturbed(self, part: Part, indices: Sequence[int], share: Callable[[Reals], Reals]) -> Solved | None:
         """What is predicted with some numbers of the line off at some frequencies.
 
         Parameters

@@ -21,10 +21,10 @@ UNFIT, COARSE = 1.5, 1e-3
 """Mean square of the residuals from which a model does not fit, and share of them that a step must then gain."""
 
 FORETOLD = 0.95
-"""Ratio of a step's gain to what the slopes foretold, or the other way round, from which they serve once more."""
+"""Ratio of a step's gain to what the slopes predicted, or the other way round, from which they serve once more."""
 
 CURVED, BENDS = 0.5, 3
-"""Ratio of a step's gain to what the slopes foretold below which the step is taken again with the curvature
+"""Ratio of a step's gain to what the slopes predicted below which the step is taken again with the curvature
 that it met: a second-order correction, as Fletcher's (1982) of constrained steps; and how often."""
 
 AT_REST = 0.1
@@ -101,23 +101,23 @@ def _descended(problem: Problem, z: Reals, most_steps: int) -> tuple[State, Tang
         enough = 0.5 if inflation < UNFIT else COARSE * state.residuals.size
         normal, slope = tangent.normal(inflation), tangent.slope(state, inflation)
         fresh = tangent.at is state
-        moved, gained, foretold = None, 0.0, 0.0
+        moved, gained, predicted = None, 0.0, 0.0
         for _ in range(8 if fresh else 2):
             shift = bounded_step(normal, slope, state.z, low, high, damping)
-            foretold = -float(2.0 * slope @ shift + shift @ normal @ shift)
-            if fresh and foretold < AT_REST * enough:
+            predicted = -float(2.0 * slope @ shift + shift @ normal @ shift)
+            if fresh and predicted < AT_REST * enough:
                 break
             tried = problem.at(np.clip(state.z + shift, low, high))
             if tried is not None:
-                tried, gained = _to_the_floor(problem, tangent, state, tried, inflation, damping, foretold)
+                tried, gained = _to_the_floor(problem, tangent, state, tried, inflation, damping, predicted)
                 if gained > 0.0:
                     moved, damping = tried, max(damping / 10.0, 1e-9)
                     break
             damping = max(damping * 10.0, 1e-6)
         state = state if moved is None else moved
         if gained >= enough:
-            # Where the step did what the slopes foretold, they do for the next.
-            if not FORETOLD * foretold < gained < foretold / FORETOLD:
+            # Where the step did what the slopes predicted, they do for the next.
+            if not FORETOLD * predicted < gained < predicted / FORETOLD:
                 tangent = problem.tangent(state)
         elif fresh and moved is None:
             break
@@ -133,17 +133,17 @@ def _to_the_floor(
     tried: State,
     inflation: float,
     damping: float,
-    foretold: float,
+    predicted: float,
 ) -> tuple[State, float]:
-    """A step that gained less than foretold, taken as far along a bent valley, and back to its floor; its gain."""
+    """A step that gained less than predicted, as far along a curved valley, and back to its floor; its gain."""
     low, high = limits_of(problem.free)
     before, normal = tangent.inflated(state, inflation), tangent.normal(inflation)
     gained = before - tangent.inflated(tried, inflation)
     for _ in range(BENDS):
-        if gained > CURVED * foretold:
+        if gained > CURVED * predicted:
             break
-        bent = tangent.slope(tangent.bent(state, tried), inflation)
-        shift = bounded_step(normal, bent, state.z, low, high, damping)
+        curved = tangent.slope(tangent.curved(state, tried), inflation)
+        shift = bounded_step(normal, curved, state.z, low, high, damping)
         other = problem.at(np.clip(state.z + shift, low, high))
         if other is None:
             break

@@ -1,4 +1,4 @@
-"""What the sensors of a campaign can tell apart, before what they read is looked at.
+"""What the sensors of a campaign can separate, before what they read is looked at.
 
 Every effect of the catalogue is put into the nominal model at the size it starts from; what it does to the
 records, with all that recalibration and calibration errors could do taken out, is held against what every other
@@ -21,10 +21,10 @@ from permway.diagnosis.clock import Progress
 from permway.diagnosis.fit import Fit, free_parameters, limits_of
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Hypothesis, Situation
-from permway.diagnosis.quick import stacked
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.spot import Found, Spot
+from permway.diagnosis.stacking import stacked
 from permway.diagnosis.tangent import Problem
 from permway.errors import InputError, SolveError
 from permway.model.line import Line
@@ -63,8 +63,8 @@ class Separability:
     seen: Reals
     apart: Reals
 
-    def twins(self) -> list[tuple[str, str, float]]:
-        """Pairs of different effects that are seen and cannot be told apart, with their deviance."""
+    def inseparable(self) -> list[tuple[str, str, float]]:
+        """Pairs of different effects that are seen and cannot be separated, with their deviance."""
         found: dict[tuple[str, str], float] = {}
         count = len(self.names)
         for i in range(count):
@@ -87,7 +87,7 @@ class Separability:
                 {"effect": e, "at": self.names[i], "size": self.size[i], "deviance": round(float(self.seen[i]), 1)}
                 for e, i in sorted(best.items(), key=lambda item: -self.seen[item[1]])
             ],
-            "not told apart": [{"one": a, "other": b, "deviance": round(v, 1)} for a, b, v in self.twins()],
+            "inseparable": [{"one": a, "other": b, "deviance": round(v, 1)} for a, b, v in self.inseparable()],
         }
 
 
@@ -95,7 +95,7 @@ class Separability:
 def separability(
     campaign: Campaign, *, threads: int | None = None, progress: Progress | None = None
 ) -> Separability:
-    """What a campaign's records could tell apart.
+    """What a campaign's records could separate.
 
     Parameters
     ----------

@@ -54,7 +54,7 @@ class Tangent:
         """Half the curvature of the inflated objective, (p, p)."""
         return np.asarray(self.curvature / inflation + np.eye(self.jacobian.shape[1]))
 
-    def bent(self, state: State, tried: State) -> State:
+    def curved(self, state: State, tried: State) -> State:
         """A state with the part of its change on the way to another that slopes do not foretell."""
         further = tried.residuals - self.jacobian @ (tried.z - state.z)
         return State(state.z, state.solved, further)

@@ -72,7 +72,7 @@ class Verdict(VerdictPart):
     recalibrated: Recalibrated = Recalibrated()
     """The nominal parameters before and after the amendment."""
     next: tuple[NextMeasurement, ...] = ()
-    """Measurements that would tell rivals apart, the most telling first."""
+    """Measurements that would separate rivals, the most decisive first."""
     detectable: dict[str, Smallest] = Field(default_factory=dict)
     """By effect: the smallest size that this campaign would have shown."""
     ruled_out: tuple[str, ...] = ()

@@ -117,13 +117,13 @@ class Effect(VerdictPart):
     name: Named | None = None
     """Its id in the catalogue, or what screening calls it; null if the data allow several, or none fits."""
     class_: tuple[ClassMember, ...] = Field(default=(), alias="class")
-    """Effects that these data cannot tell apart, the most probable first."""
+    """Effects that these data cannot separate, the most probable first."""
     law: Mechanics = Mechanics()
     """Its mechanics."""
     parameters: dict[str, Estimate] = Field(default_factory=dict)
     """Its parameters with 90 % intervals."""
     size: Named | None = None
-    """The one of them that says how strong it is; null if none does, or none was said to."""
+    """The one of them that says how strong it is; null if none does, or none is known to."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -221,7 +221,7 @@ RECALIBRATED = "recalibrated"
 
 
 class NextMeasurement(VerdictPart):
-    """A measurement that would tell two rivals apart."""
+    """A measurement that would separate two rivals."""
 
     measurement: Named
     """What to measure, in words."""

@@ -16,8 +16,8 @@ from permway.diagnosis.evidence import Solved
 from permway.diagnosis.fit import Fit as Base
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
-from permway.diagnosis.quick import weaker
 from permway.diagnosis.spot import Found, Spot
+from permway.diagnosis.stacking import weaker
 from permway.posterior import generic, stated
 from permway.posterior.fit import Fit
 from permway.posterior.spans import BEYOND, begun, spread_out, tuned, widened
@@ -183,7 +183,7 @@ def _offered(entry: Entry, situations: list[Situation]) -> Iterator[Hypothesis]:
 
 
 def _key(hypothesis: Hypothesis) -> tuple[object, ...]:
-    """What tells two hypotheses apart: form, place and what their parameters are at some coordinates."""
+    """What distinguishes two hypotheses: form, place and what their parameters are at some coordinates."""
     places = []
     for start in hypothesis.starts[:1]:
         values = {f.name: f.value(float(z)) for f, z in zip(hypothesis.free, start, strict=True)}

@@ -12,7 +12,7 @@ from permway.posterior.diagnose import as_base
 from permway.posterior.recalibrated import recalibrated
 
 STEPS = 3
-"""That progress tells of: read, recalibrate, compare."""
+"""That progress reports: read, recalibrate, compare."""
 
 Progress = Callable[[int, int], object]
 

@@ -21,10 +21,10 @@ from permway.diagnosis.labels import mislabelled
 from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.side_by_side import one_thread_of_blas
-from permway.diagnosis.speak_measurement import mixed_up, with_spoilt
 from permway.diagnosis.thinning import LINES_PER_FREQUENCY
 from permway.diagnosis.verdict import RIGHT, Verdict
 from permway.diagnosis.verdict_parts import Moved, NextMeasurement
+from permway.diagnosis.verdict_records import mixed_up, with_bad_channels
 from permway.posterior.answer import verdict_of
 from permway.posterior.beam import Member
 from permway.posterior.covariance import Frame
@@ -36,7 +36,7 @@ from permway.posterior.places import weighed
 from permway.posterior.search import explored
 
 ENOUGH = 20_000
-"""Residuals that are weighed: of more, frequency responses are taken at fewer lines. Further ones tell little that
+"""Residuals that are weighed: of more, frequency responses are taken at fewer lines. Further ones show little that
 the model's own idealisation does not hide: :data:`permway.posterior.beam.IDEALISED` is the same number. Twice as
 many make the evidence 1.3 times as large and take twice the time."""
 
@@ -97,7 +97,7 @@ def diagnose(
         base, after = (as_base(_on(whole, member.fit)) for member in (empty, best))
     amended = after if verdict.effects and best.amendments else None
     return Diagnosis(
-        verdict=with_spoilt(verdict, bad).model_copy(update={"ruled_out": ruled_out}),
+        verdict=with_bad_channels(verdict, bad).model_copy(update={"ruled_out": ruled_out}),
         base=base,
         amended=amended,
         comparison=assemble(base.evidence, base, left_out=left_out),

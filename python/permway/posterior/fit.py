@@ -17,7 +17,7 @@ from permway.campaign.campaign import Campaign
 from permway.diagnosis.bounded import bounded_step
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.hypothesis import Hypothesis
-from permway.diagnosis.quick import stacked
+from permway.diagnosis.stacking import stacked
 from permway.diagnosis.tangent import Problem, State
 from permway.errors import InputError
 from permway.posterior.covariance import Covariance, Frame, Roots

@@ -55,7 +55,7 @@ def idealised(fit: Fit) -> Reals:
 
     def column(of: tuple[Part, list[int], int]) -> Reals | None:
         part, indices, order = of
-        bent = nearby.bent(part, indices, partial(_share, band=band, order=order))
+        bent = nearby.perturbed(part, indices, partial(_share, band=band, order=order))
         if bent is None:
             return None
         return np.asarray((evidence.residuals(bent.datasets) - fit.state.residuals) * (SIZE / STEP))

@@ -1,7 +1,7 @@
 """Where the posterior mass lies: by place along the line, by channel, and by set of effects.
 
 Of each set's amendments the places are drawn from the normal approximation about its fit (Laplace), so that a
-place that the records hardly tell is spread as far as they leave it.
+place that the records hardly constrain is spread as far as they leave it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from permway.posterior.cells import Cell
 from permway.posterior.masses import ALIKE, SHOWN, Masses
 
 DRAWS = 200
-"""Of the places of one amendment: a probability of a half is then told to 0.035."""
+"""Of the places of one amendment: a probability of a half is then known to 0.035."""
 
 PIECES = 80
 """Of a body over the length that has joints."""

@@ -117,13 +117,13 @@ def _near(
 ) -> list[Member]:
     """Sets with one amendment more, whose change is small: begun where the smaller set fits best."""
     count = root.fit.state.residuals.size
-    promised = np.array([tempered(0.5 * gain, count) for gain in scores.gain.tolist()])
-    promised += [cell.log_prior for cell in starts]
+    predicted = np.array([tempered(0.5 * gain, count) for gain in scores.gain.tolist()])
+    predicted += [cell.log_prior for cell in starts]
     views = [root.fit.hyper, *root.fit.hyper.smaller()]
     worth = []
-    for i in np.flatnonzero(promised > np.log(NEGLECTED)).tolist():
+    for i in np.flatnonzero(predicted > np.log(NEGLECTED)).tolist():
         cell = resized(starts[i], float(scores.measure[i]))
-        worth.append((-promised[i], cell.hypothesis, Trial.of(root, cell, views[scores.view[i]])))
+        worth.append((-predicted[i], cell.hypothesis, Trial.of(root, cell, views[scores.view[i]])))
     # Hyperparameters are the smaller set's still: what is behind with them hardly comes first with its own.
     least = -tempered(root.fit.log_evidence, count) - float(np.log(NEGLECTED))
     trials = chosen(worth, WIDTHS[1], PER_FORM[1])

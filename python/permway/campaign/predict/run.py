@@ -54,7 +54,7 @@ def expected_csd(
     """Expectation of Welch's cross-spectral matrix with Hann's window, and the noise of the channels.
 
     All wheels meet one profile, so its part of the spectrum is of rank one; so is each wheel's own roughness and
-    each force on the vehicle, and they add. The window, which cannot tell what comes late by a good part of a
+    each force on the vehicle, and they add. The window, which cannot resolve what comes late by a good part of a
     segment, makes them less coherent.
 
     Parameters

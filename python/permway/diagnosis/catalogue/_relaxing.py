@@ -12,7 +12,7 @@ from permway.laws import Hysteretic, Maxwell, Parallel, Scaled, Springpot
 from permway.laws.base import Law
 
 REFERENCE_HZ = 60.0
-"""Where the stiffness is told."""
+"""Where the stiffness is constrained."""
 
 
 def springpot_free() -> tuple[Free, ...]:

@@ -63,7 +63,7 @@ class Excess:
     def score_at(self, frequency_Hz: Reals, channel: str = "") -> Reals:
         """What stands out about frequencies, by default in the mean over channels; NaN outside the record.
 
-        And NaN of a channel that this run was not read by, or whose record of it is spoilt.
+        And NaN of a channel that this run was not read by, or whose record of it is bad.
         """
         if channel and channel not in self.sharp:
             return np.full(np.shape(frequency_Hz), np.nan)

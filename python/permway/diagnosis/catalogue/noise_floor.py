@@ -22,7 +22,7 @@ SUMMARY = "Noise of density e N ((1 - s) + s 10 Hz / f) on top of one channel's 
 PARAMETERS = {
     "extra": "1, 1.3e-3 to 7.8e4: e",
     "flicker": "1, 0 to 1: s, the share that falls with frequency",
-    "noise_ratio": "1, 1.3e-3 to 7.8e4: in hammer tests, power of its noise, as coherence tells it, over others'",
+    "noise_ratio": "1, 1.3e-3 to 7.8e4: in hammer tests, power of its noise, as coherence states it, over others'",
 }
 SIGNATURE = "Power of one channel where it is low, and its coherence with the others; the same at all speeds."
 CONFUSED_WITH = {

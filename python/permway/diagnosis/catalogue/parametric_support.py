@@ -58,7 +58,7 @@ SOURCE = (
 AMPLITUDE_M, HARMONICS = 5e-6, 4
 
 RUNS = ("train.", "campaign.")
-"""Where parameters lead that runs alone tell of."""
+"""Where parameters lead that runs alone constrain."""
 
 STANDS_OUT = 5.0
 """Standard deviations by which a line at V over the spacing stands out of a run whose train is looked at rolling:
@@ -139,7 +139,7 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
 
 
 def _known_at_rest(situation: Situation) -> Campaign:
-    """The base without what runs bent it to, for they were told by a train that stands.
+    """The base without what runs fitted it to, for that is by a train that stands.
 
     Of records that are no runs, where there are any: they know nothing of rolling. Without them the base, train
     and speeds as stated.
