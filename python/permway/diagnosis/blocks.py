@@ -59,6 +59,9 @@ class Block(Protocol):
     def levels_dB(self, predicted: xr.Dataset) -> Reals:
         """Measured over predicted, no error taken out, shape (n,); NaN where a row is no level, but a phase."""
 
+    def scatter_dB(self) -> Reals:
+        """One standard deviation of every line's level, (channel, frequency)."""
+
     def of(self, dataset: Dataset) -> Block:
         """Another record of the same channels and lines, with the same errors."""
 

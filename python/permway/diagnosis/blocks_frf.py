@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.compare import flat
 from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import SURE, Basis, Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PairColumns, as_complex, as_parts
@@ -141,6 +142,11 @@ class FrfBlock:
     def with_reference(self, reference: xr.Dataset, errors: Complexes) -> FrfBlock:
         """The same with another prediction, and errors of chains, where noise hides what is there."""
         return self._other(reference=reference, errors=errors)
+
+    def scatter_dB(self) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        scale = self.rows.scale_dB
+        return np.asarray(scale[: scale.size // 2].reshape(flat(self.dataset, self.dataset.data).shape))
 
     def of(self, dataset: Dataset) -> FrfBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""

@@ -8,7 +8,7 @@ import xarray as xr
 from permway.arrays import Reals
 from permway.campaign.compare import NEPER_DB
 from permway.campaign.load import Dataset
-from permway.campaign.predict.modes import FARTHEST, LIGHTEST
+from permway.campaign.predictions.modes import FARTHEST, LIGHTEST
 from permway.diagnosis.blocks import Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, PlainColumns
 from permway.errors import InputError
@@ -79,6 +79,10 @@ class ModesBlock:
         for row, size in enumerate(MISSED):
             off[row, missed] = size
         return np.asarray(off[self._stated])
+
+    def scatter_dB(self) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        return np.asarray(NEPER_DB * self.dataset.data["relative_sd"].values)
 
     def of(self, dataset: Dataset) -> ModesBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""

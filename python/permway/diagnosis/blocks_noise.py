@@ -97,6 +97,10 @@ class NoiseBlock:
         """None: noise constrains no level."""
         return np.full(self.own.size, np.nan)
 
+    def scatter_dB(self) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`; noise has no level that is compared."""
+        return np.zeros((0, 0))
+
     def of(self, dataset: Dataset) -> NoiseBlock:
         """See :class:`permway.diagnosis.blocks.Block`; how far sensors may differ, each test states itself."""
         return NoiseBlock(dataset, student=self._student)

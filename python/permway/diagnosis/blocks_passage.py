@@ -10,7 +10,7 @@ import xarray as xr
 from scipy.ndimage import uniform_filter1d
 
 from permway.arrays import Complexes, Reals
-from permway.campaign.compare import NEPER_DB
+from permway.campaign.compare import NEPER_DB, flat
 from permway.campaign.load import Dataset
 from permway.campaign.passage import spectrum_of
 from permway.diagnosis.blocks import Rows
@@ -95,6 +95,11 @@ class PassageBlock:
         levels = np.where(np.abs(self.measured) > LOW * self.size, levels, np.nan).reshape(-1)
         return np.concatenate([levels, np.full(levels.size, np.nan)])
 
+    def scatter_dB(self) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        scale = self.rows.scale_dB
+        return np.asarray(scale[: scale.size // 2].reshape(flat(self.dataset, self.dataset.data).shape))
+
     def of(self, dataset: Dataset) -> PassageBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
         return self._as(dataset, self._reference)
@@ -108,7 +113,7 @@ class PassageBlock:
         return self._as(self.dataset, self._reference, floor)
 
     def _as(self, dataset: Dataset, spectrum: Complexes, floor: float | None = None) -> PassageBlock:
-        reference = dataset.template.copy(data={"spectrum": spectrum})
+        reference = dataset.data[["spectrum"]].copy(data={"spectrum": spectrum})
         floor = self.floor if floor is None else floor
         return PassageBlock(dataset, reference=reference, floor=floor, span=self._span)
 

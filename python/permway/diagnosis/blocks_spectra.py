@@ -9,6 +9,7 @@ import xarray as xr
 from scipy.special import polygamma
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.compare import POWER_DB, flat
 from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import SURE, Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
@@ -172,6 +173,11 @@ class SpectraBlock:
     def expecting(self, expected: xr.Dataset, added: Reals, away: Complexes) -> SpectraBlock:
         """The same weighed by another prediction."""
         return SpectraBlock(self.dataset, expected, added=added, away=away, floor=self._floor, span=self._span)
+
+    def scatter_dB(self) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`; that of a power's estimate."""
+        data = self.dataset.data
+        return np.full(flat(self.dataset, data).shape, POWER_DB / np.sqrt(float(data.attrs["averages"])))
 
     def of(self, dataset: Dataset) -> SpectraBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""

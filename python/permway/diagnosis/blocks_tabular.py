@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
+from permway.campaign.compare import flat
 from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
@@ -65,6 +66,10 @@ class TableBlock:
         if self.complex:
             found[found.size // 2 :] = np.nan
         return np.asarray(found)
+
+    def scatter_dB(self) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        return np.full(flat(self.dataset, self.dataset.data).shape, float(self.rows.scale_dB[0]))
 
     def of(self, dataset: Dataset) -> TableBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""

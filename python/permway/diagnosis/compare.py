@@ -11,11 +11,9 @@ import xarray as xr
 
 from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
-from permway.campaign.compare import NEPER_DB, POWER_DB, POWERS, VARIABLE, curves, flat, third_octaves
-from permway.diagnosis.blocks import Block
-from permway.diagnosis.blocks_frf import FrfBlock
-from permway.diagnosis.blocks_modes import ModesBlock, missed_modes
-from permway.diagnosis.blocks_passage import PassageBlock
+from permway.campaign.compare import NEPER_DB, POWER_DB, curves, flat, third_octaves
+from permway.campaign.kinds import kind_of
+from permway.diagnosis.blocks_modes import missed_modes
 from permway.diagnosis.compare_tables import calibration_of, parameters_of
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.fit import Fit, Free, free_parameters
@@ -155,7 +153,7 @@ def assemble(
     records, bands, residuals = [], [], []
     for index, block in enumerate(measure.blocks):
         predictions = {name: s.datasets[index] for name, s in solved.items()}
-        record = curves(campaign, block.dataset, predictions, _scatter_dB(block))
+        record = curves(campaign, block.dataset, predictions, block.scatter_dB())
         unknown = np.full(record["scatter_dB"].shape, np.nan)
         spread = np.stack([unknown if s is None else s[index] for s in spreads.values()])
         attrs = {"long_name": "standard deviation of the predicted level", "units": "dB"}
@@ -178,20 +176,6 @@ def assemble(
     )
 
 
-def _scatter_dB(block: Block) -> Reals:
-    """One standard deviation of every line's level, (channel, frequency)."""
-    data = block.dataset.data
-    shape = flat(block.dataset, data).shape
-    statistic = block.dataset.record.statistic
-    if isinstance(block, FrfBlock | PassageBlock):
-        return np.asarray(block.rows.scale_dB[: block.rows.scale_dB.size // 2].reshape(shape))
-    if statistic in ("csd", "psd"):
-        return np.full(shape, POWER_DB / np.sqrt(float(data.attrs["averages"])))
-    if isinstance(block, ModesBlock):
-        return np.asarray(NEPER_DB * data["relative_sd"].values)
-    return np.full(shape, float(block.rows.scale_dB[0]))
-
-
 def _spread(evidence: Evidence, free: Sequence[Free], z: Reals, covariance: Reals, solved: Solved) -> list[Reals]:
     """Standard deviation of predicted levels by that of the parameters, dB; by block, (channel, frequency)."""
     slopes: list[list[Reals]] = [[] for _ in evidence.blocks]
@@ -208,7 +192,7 @@ def _spread(evidence: Evidence, free: Sequence[Free], z: Reals, covariance: Real
             slope.append(np.asarray(np.log(change) / step))
     found = []
     for slope, dataset in zip(slopes, evidence.datasets, strict=True):
-        scale = POWER_DB if VARIABLE[dataset.record.statistic] in POWERS else NEPER_DB
+        scale = POWER_DB if kind_of(dataset.record).power else NEPER_DB
         if not slope:
             found.append(np.zeros(flat(dataset, dataset.data).shape))
             continue

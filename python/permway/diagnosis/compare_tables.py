@@ -8,7 +8,8 @@ import numpy as np
 import xarray as xr
 
 from permway.campaign.campaign import Campaign
-from permway.campaign.compare import NEPER_DB, POWER_DB, POWERS, VARIABLE
+from permway.campaign.compare import NEPER_DB, POWER_DB
+from permway.campaign.kinds import kind_of
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import WIDTH, Fit
@@ -56,7 +57,7 @@ def parameters_of(campaign: Campaign, fit: Fit | None) -> xr.Dataset:
 
 def calibration_of(evidence: Evidence) -> xr.Dataset:
     """Sizes of the calibration errors that were allowed, dB of the level they act on."""
-    decay = {f"record {d.record.name}" for d in evidence.datasets if VARIABLE[d.record.statistic] in POWERS}
+    decay = {f"record {d.record.name}" for d in evidence.datasets if kind_of(d.record).power}
     sizes = {
         source: size * (POWER_DB if source.startswith(("irregularity", "decay")) or source in decay else NEPER_DB)
         for source, size in evidence.sizes.items()

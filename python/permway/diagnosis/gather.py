@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from permway.campaign.bad_channels import BadChannel, without_bad_channels
 from permway.campaign.campaign import Campaign
+from permway.campaign.kinds import kind_of
 from permway.campaign.load import Dataset
-from permway.campaign.predict import added_to, predict, why_not
-from permway.diagnosis.blocks import Block
+from permway.campaign.predict import predict, why_not
+from permway.diagnosis.block_of import block_of
 from permway.diagnosis.blocks_frf import FrfBlock
-from permway.diagnosis.blocks_modes import ModesBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
-from permway.diagnosis.blocks_passage import PassageBlock
-from permway.diagnosis.blocks_spectra import SpectraBlock
-from permway.diagnosis.blocks_tabular import TableBlock
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.thinning import LINES_PER_FREQUENCY, thinned
 from permway.errors import InputError
@@ -113,7 +109,8 @@ def _blocked(
     predicted = predict(campaign, loaded, threads=threads)
     spans = _spans(loaded)
     blocks = [
-        _block(campaign, dataset, prediction, spans) for dataset, prediction in zip(loaded, predicted, strict=True)
+        block_of(campaign, dataset, prediction, spans)
+        for dataset, prediction in zip(loaded, predicted, strict=True)
     ]
     for block in blocks:
         if isinstance(block, FrfBlock) and not (block.weight > 0.0).any():
@@ -134,14 +131,10 @@ def _spans(datasets: Sequence[Dataset]) -> dict[str, tuple[float, float]]:
     for dataset in datasets:
         name = next((n for n in ("frequency", "band") if n in dataset.data.dims), None)
         if name is not None and dataset.data[name].size:
-            frequency, kind = np.asarray(dataset.data[name].values, dtype=np.float64), _kind(dataset)
+            frequency, kind = np.asarray(dataset.data[name].values, dtype=np.float64), kind_of(dataset.record).name
             low, high = spans.get(kind, (np.inf, -np.inf))
             spans[kind] = min(low, float(frequency.min())), max(high, float(frequency.max()))
     return spans
-
-
-def _kind(dataset: Dataset) -> str:
-    return "spectra" if dataset.record.statistic in ("csd", "psd") else dataset.record.statistic
 
 
 def first_size(campaign: Campaign, source: str) -> float:
@@ -151,19 +144,3 @@ def first_size(campaign: Campaign, source: str) -> float:
         # Two standard deviations, of a power.
         return {"known": 0.01, "unknown": 1.0}.get(known.knowledge, 0.5 * (known.within_dB or 2.0) / 4.343)
     return 0.02
-
-
-def _block(
-    campaign: Campaign, dataset: Dataset, predicted: xr.Dataset, spans: Mapping[str, tuple[float, float]]
-) -> Block:
-    match dataset.record.statistic:
-        case "frf":
-            return FrfBlock(dataset, reference=predicted, span=spans["frf"])
-        case "csd" | "psd":
-            return SpectraBlock(dataset, predicted, added=added_to(campaign, dataset), span=spans["spectra"])
-        case "passage":
-            return PassageBlock(dataset, reference=predicted, span=spans["passage"])
-        case "modes":
-            return ModesBlock(dataset, predicted)
-        case _:
-            return TableBlock(dataset, span=spans.get(_kind(dataset)))

@@ -18,7 +18,7 @@ from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.factors import model_under
 from permway.campaign.predict import Request, Result, Sweep, plan, predict_one, request_of, solve
-from permway.campaign.predict.sweeps import places_of
+from permway.campaign.predictions.sweeps import places_of
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.side_by_side import threads_of_solver
 from permway.model.line import Line

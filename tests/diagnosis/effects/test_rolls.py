@@ -11,7 +11,7 @@ import pytest
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.excitation import Rolling
 from permway.campaign.predict import predict
-from permway.campaign.predict import rolling as rolling_predicted
+from permway.campaign.predictions import rolling as rolling_predicted
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._excite import with_irregularity, with_speed
 from permway.diagnosis.gather import gather
