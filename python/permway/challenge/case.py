@@ -242,7 +242,7 @@ def _noisier(random: np.random.Generator, tier: Tier) -> float:
 def _chain(random: np.random.Generator, noisier: float) -> Chain:
     speeds = tuple(round(1.0 + float(x), 5) for x in random.uniform(-SLOW_OR_FAST, SLOW_OR_FAST, 2))
     return Chain(
-        wander_dB=round(float(random.uniform(0.5, 1.5)), 3),
+        calibration_dB=round(float(random.uniform(0.5, 1.5)), 3),
         noise=round(noisier * 1.2e-6 * float(np.exp(0.4 * random.standard_normal())), 9),
         speed=speeds,
         warmer_C=tuple(round(WARMER_K * float(x), 3) for x in random.standard_normal(2)),
