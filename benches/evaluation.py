@@ -47,7 +47,7 @@ def main() -> None:
     assert state is not None
     parts: dict[str, Callable[[], object]] = {
         "all records predicted": lambda: evidence.predicted(campaign),
-        "calibration errors taken out": lambda: evidence.whitener.reduce(state.deviations),
+        "calibration errors taken out": lambda: evidence.whitener.reduce(state.residuals),
         "their factors": lambda: Whitener.of(evidence.columns, evidence.sizes, evidence.length),
         f"slopes by {len(free)} parameters": lambda: problem.jacobian(state),
     }

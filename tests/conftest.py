@@ -23,7 +23,7 @@ HERE = Path(__file__).parent
 LONG = {
     "fits": """
         cli/test_check.py docs/test_examples.py posterior recordings/test_skeleton.py
-        recordings/test_skeleton_wide.py recordings/test_spoilt.py report/test_compare.py report/test_demo.py
+        recordings/test_skeleton_wide.py recordings/test_bad_channels.py report/test_compare.py report/test_demo.py
         report/test_diagnosis_page.py report/test_one_source.py sealed challenge/test_clipped.py
         challenge/test_follow.py first_hour checking/test_stated.py checking/test_noise_floors.py
         checking/test_blunders.py diagnosis/effects diagnosis/test_awaited.py diagnosis/test_bent_valley.py
@@ -31,7 +31,7 @@ LONG = {
         diagnosis/test_nearby.py diagnosis/test_noise.py diagnosis/test_one_place.py
         diagnosis/test_passage.py diagnosis/test_recalibrate.py diagnosis/test_ruled_out.py
         diagnosis/test_separability.py diagnosis/test_side_by_side.py diagnosis/test_small_sizes.py
-        diagnosis/test_smooth.py diagnosis/test_table_of_modes.py diagnosis/test_tolerances.py
+        diagnosis/test_calibration_errors.py diagnosis/test_table_of_modes.py diagnosis/test_tolerances.py
     """,
     "campaigns": """
         challenge/test_challenge_and_sliding.py challenge/test_challenge_and_solver.py

@@ -59,5 +59,5 @@ def weighed_by(evidence: Evidence, campaign: Campaign) -> Evidence:
     """Records weighed by what a campaign predicts of them."""
     frame = Frame.of(evidence)
     solved = frame.evidence.predicted(campaign)
-    residuals = frame.evidence.deviations(solved.datasets)
+    residuals = frame.evidence.residuals(solved.datasets)
     return frame.about(solved, frame.covariance(frame.first()), residuals).evidence

@@ -80,7 +80,7 @@ def input_error(error: ValidationError, table: object, place: str, words: Words 
     ----------
     error : ValidationError
     table : object
-        What was validated, to tell its keys from the tags that pydantic adds for unions.
+        What was validated, to distinguish its keys from the tags that pydantic adds for unions.
     place : str
         Name of the table itself; "" for the whole file.
     words : callable, optional

@@ -73,14 +73,14 @@ def _check_alike(data: xr.Dataset) -> None:
     """Refuse variables that would be repeated against each other, as `frequency` against `joint`."""
     shapes = {str(name): {str(dim) for dim in variable.dims} for name, variable in data.data_vars.items()}
     largest = max(shapes.values(), key=len, default=set())
-    strange = [name for name, dims in shapes.items() if not dims <= largest]
-    if strange:
-        with_it = [name for name in shapes if name not in strange]
+    unshared = [name for name, dims in shapes.items() if not dims <= largest]
+    if unshared:
+        with_it = [name for name in shapes if name not in unshared]
         raise InputError(
             f"has no dimensions in common with {with_it}",
-            where=f"data[{strange[0]!r}]",
-            value=sorted(shapes[strange[0]]),
-            remedy=f"make a table of each, as in data[{[strange[0]]}]",
+            where=f"data[{unshared[0]!r}]",
+            value=sorted(shapes[unshared[0]]),
+            remedy=f"make a table of each, as in data[{[unshared[0]]}]",
         )
 
 

@@ -11,7 +11,7 @@ import pytest
 from permway.campaign.campaign import Campaign
 from permway.campaign.importers.sheet import import_sheet
 from permway.campaign.predict import predict
-from permway.campaign.predict.sliding import with_vehicle
+from permway.campaign.predictions.sliding import with_vehicle
 from permway.challenge import write
 from permway.challenge.beams import Reals
 from permway.challenge.effects import Effect

@@ -8,7 +8,7 @@ import xarray as xr
 from permway.campaign.campaign import Campaign
 from permway.campaign.importers.sheet import import_sheet
 from permway.campaign.predict import predict
-from permway.campaign.predict.run import influence
+from permway.campaign.predictions.run import influence
 from permway.challenge import write
 from permway.challenge.irregularity import density
 from short_deck import LAYOUT, TWO_SPANS, small_case

@@ -12,8 +12,8 @@ from permway.challenge import write
 from permway.challenge.case import write_truth
 from permway.challenge.effects.recorders import Clipping
 from permway.challenge.score import score
-from permway.diagnosis.speak_measurement import with_spoilt
 from permway.diagnosis.verdict import Verdict
+from permway.diagnosis.verdict_records import with_bad_channels
 from permway.posterior.diagnose import diagnose
 from short_deck import small_case
 
@@ -41,7 +41,7 @@ def test_what_screening_names_is_scored_as_named(tmp_path: Path) -> None:
     name = "nonlinear-7"
     (tmp_path / "truth").mkdir()
     write_truth(case, tmp_path / "truth" / f"{name}.json")
-    verdict = with_spoilt(
+    verdict = with_bad_channels(
         Verdict(status="recalibrated"), [BadChannel("run", "carbody", "clipping", "4 samples flat at 3")]
     )
     (tmp_path / "verdicts" / name).mkdir(parents=True)

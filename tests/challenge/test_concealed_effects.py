@@ -10,10 +10,10 @@ import pytest
 from permway.challenge.case import _kinds
 from permway.challenge.effects import (
     CATALOGUE,
+    NEAR_DEGENERATE,
     NONLINEAR,
     OUTSIDE,
     STRENGTHS,
-    TWINS,
     Effect,
     above_wheels,
     recorders,
@@ -117,4 +117,4 @@ def test_several_effects_are_of_several_families() -> None:
         kinds = _kinds(np.random.default_rng(seed), "multiple")
         assert len({kind.FAMILY for kind in kinds}) == len(kinds)
         assert len(kinds) in (2, 3)
-    assert all(kind.TWINS for kind in TWINS)
+    assert all(kind.ALTERNATIVES for kind in NEAR_DEGENERATE)

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from permway.campaign.campaign import Campaign
 from permway.challenge.case import draw, write_truth
-from permway.challenge.effects import TWINS
+from permway.challenge.effects import NEAR_DEGENERATE
 from permway.challenge.follow import ADVICE, FOLLOWED, Advice, follow, measured_again, separated
 from permway.challenge.sparse import FEWEST, MOST
 from permway.diagnosis.gather import predictable
@@ -30,7 +30,7 @@ def test_sparse_records_are_few_and_hide_a_twin(seed: int) -> None:
     assert 1 <= len(tests.speeds_kmh) <= 2
     assert tests.sensors[0][0] == tests.points[0][0] == "rail"
     (effect,) = case.effects
-    assert type(effect) in TWINS
+    assert type(effect) in NEAR_DEGENERATE
     assert draw(seed, "sparse") == case
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from permway.challenge.effects import CATALOGUE, NONLINEAR, OUTSIDE, TWINS
+from permway.challenge.effects import CATALOGUE, NEAR_DEGENERATE, NONLINEAR, OUTSIDE
 from permway.challenge.layout import NOMINAL
 from permway.challenge.parameters import _TRANSLATED, HALF, in_catalogue
 from permway.diagnosis.catalogue import entries
 from permway.recordings.channel import Chain
 
-KINDS = {kind.KIND: kind for kind in (*CATALOGUE, *TWINS, *OUTSIDE, *NONLINEAR)}
+KINDS = {kind.KIND: kind for kind in (*CATALOGUE, *NEAR_DEGENERATE, *OUTSIDE, *NONLINEAR)}
 
 
 def test_every_translation_is_of_an_effect_that_is_drawn_and_names_what_the_catalogue_has() -> None:

@@ -1,4 +1,4 @@
-"""How hard a campaign is: against its twin in which nothing is concealed."""
+"""How hard a campaign is: against its control, in which nothing is concealed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from permway.challenge import write
 from permway.challenge.effects.fasteners import FastenersLost
 from permway.challenge.score import Scored
-from permway.challenge.weigh import twin_of, weigh, weights
+from permway.challenge.weigh import control_of, weigh, weights
 from permway.errors import InputError
 from permway.posterior.deviance import against_folder
 from short_deck import small_case, small_site
@@ -25,7 +25,7 @@ def test_nothing_weighs_nothing_and_a_lost_fastener_much(
     effect = FastenersLost.draw(np.random.default_rng(3), "strong", small_site())
     case = replace(twin, effects=(effect,)) if lost else twin
     write(case, tmp_path / "case")
-    write(twin_of(case), tmp_path / "twin")
+    write(control_of(case), tmp_path / "twin")
     assert least <= against_folder(tmp_path / "twin")(tmp_path / "case") <= most
 
 

@@ -121,7 +121,7 @@ def test_intervals_hold_the_truth_where_the_model_does_not_fit(tmp_path: Path) -
     for seed in range(1, 25):
         case = simulate(tmp_path / f"c{seed}", seed, noise=0.02, smooth=ROUGH_NEPER, octaves=ROUGH_OCTAVES)
         fit = recalibrated_base(gather(case.campaign, threads=1))
-        misfits.append(fit.heat)
+        misfits.append(fit.inflation)
         for name, one in recalibrated_of(fit).items():
             assert one.low is not None
             assert one.high is not None

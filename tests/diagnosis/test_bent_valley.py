@@ -24,8 +24,8 @@ DENSITY = log_free("density", "kg/m3", 2500.0, 1.05)
 def _foretold(fit: Fit) -> float:
     """What one step by the slopes at the end would lower the objective by."""
     whitener = fit.evidence.whitener
-    inner = whitener.reduce(fit.jacobian).T @ whitener.reduce(fit.deviations)
-    slope = (fit.jacobian.T @ fit.deviations - inner) / fit.heat + fit.z
+    inner = whitener.reduce(fit.jacobian).T @ whitener.reduce(fit.residuals)
+    slope = (fit.jacobian.T @ fit.residuals - inner) / fit.inflation + fit.z
     return float(slope @ fit.covariance @ slope)
 
 

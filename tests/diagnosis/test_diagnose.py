@@ -32,6 +32,13 @@ def hung_loose(tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
     return diagnose(case.campaign, threads=1)
 
 
+@pytest.fixture(scope="module")
+def nothing_missing(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Diagnosis]:
+    """The file of a campaign of which nothing is concealed, and its diagnosis."""
+    case = simulate(tmp_path_factory.mktemp("plain") / "c", 3)
+    return case.path, diagnose(case.campaign, threads=1)
+
+
 def test_lost_fasteners_are_named_and_proved(hung_loose: Diagnosis) -> None:
     verdict = hung_loose.verdict
     assert verdict.status == "named"
@@ -54,12 +61,14 @@ def test_the_folder_holds_verdict_and_a_model_that_loads(hung_loose: Diagnosis, 
     assert read_model(tmp_path / "d" / "amended.toml") == hung_loose.amended.campaign.model
 
 
-def test_nothing_missing_is_called_recalibrated_and_again_the_same(tmp_path: Path) -> None:
-    case = simulate(tmp_path / "c", 3)
-    verdict = diagnose(case.campaign, threads=1).verdict
+def test_nothing_missing_is_called_recalibrated_and_again_the_same(
+    nothing_missing: tuple[Path, Diagnosis],
+) -> None:
+    path, found = nothing_missing
+    verdict = found.verdict
     assert verdict.status == "recalibrated"
     assert verdict.detectable
-    again = diagnose(read_campaign(case.path), threads=1).verdict
+    again = diagnose(read_campaign(path), threads=1).verdict
     assert again.to_json() == verdict.to_json()
 
 
@@ -68,9 +77,11 @@ def test_nothing_missing_is_called_recalibrated_and_again_the_same(tmp_path: Pat
     raises=AssertionError,
     reason="half as far again as the smallest size that would be seen is a suspicion only, with 0.7 for its name",
 )
-def test_a_gain_that_would_have_been_seen_is_seen_on_every_channel(tmp_path: Path) -> None:
+def test_a_gain_that_would_have_been_seen_is_seen_on_every_channel(
+    tmp_path: Path, nothing_missing: tuple[Path, Diagnosis]
+) -> None:
     """Half as far again from 1 as said, for the size is known to first order; a third as far is not seen."""
-    smallest = diagnose(simulate(tmp_path / "plain", 3).campaign, threads=1).verdict.detectable["sensor_gain"]
+    smallest = nothing_missing[1].verdict.detectable["sensor_gain"]
     assert smallest.value is not None
     for name, times in (("rail@6", 1.5), ("deck@3", 1.5), ("rail@6", 0.33), ("deck@3", 0.33)):
         gain = 1.0 + times * (smallest.value - 1.0)
@@ -102,7 +113,7 @@ def test_the_tools_own_base_as_data_shows_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.injection
 def test_twenty_campaigns_with_nothing_missing_raise_one_alarm_at_most(tmp_path: Path) -> None:
-    """Smooth errors of 0.2 to 1.3 dB, parameters from their priors: seeds 100 to 119, not chosen."""
+    """Calibration errors of 0.2 to 1.3 dB, parameters from their priors: seeds 100 to 119, not chosen."""
     alarms = []
     for seed in range(100, 120):
         size = (0.02, 0.06, 0.1, 0.15)[seed % 4]

@@ -22,7 +22,7 @@ NO_ERROR = 1e-9
 """Of pairs and of the floor: these records have noise alone."""
 
 Lines = tuple[np.ndarray, np.ndarray]
-"""Of lines that count by their logarithm: deviations over the measured response, and their weights."""
+"""Of lines that count by their logarithm: residuals over the measured response, and their weights."""
 
 
 @pytest.fixture(scope="module")

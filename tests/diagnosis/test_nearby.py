@@ -47,8 +47,8 @@ def test_slopes_are_those_of_solves(tmp_path: Path, kind: str) -> None:
         if found is None:
             continue
         spared += 1
-        slope = (evidence.deviations(found.datasets) - state.deviations) / STEP
-        solved = (problem.deviations(moved)[0] - state.deviations) / STEP
+        slope = (evidence.residuals(found.datasets) - state.residuals) / STEP
+        solved = (problem.residuals(moved)[0] - state.residuals) / STEP
         assert np.linalg.norm(slope - solved) < 5e-3 * np.linalg.norm(solved), free.name
     assert spared >= len(problem.free) // 2
 
@@ -100,7 +100,7 @@ def test_a_share_at_all_frequencies_is_a_parameter_moved(tmp_path: Path) -> None
     plain = evidence.predicted(campaign)
     nearby, values = Nearby(evidence, plain), campaign.parameters.nominal()
     for name, part, index in (("pad.k", "law", 0), ("bearing.k", "law", 1), ("deck.E", "bending", 1)):
-        bent = nearby.bent(part, [index], lambda frequency: np.full(frequency.size, 1e-5))  # type: ignore[arg-type]
+        bent = nearby.perturbed(part, [index], lambda frequency: np.full(frequency.size, 1e-5))  # type: ignore[arg-type]
         assert bent is not None
         solved = evidence.predicted(campaign.with_values({**values, name: values[name] * (1.0 + 1e-5)}))
         found, right = (s.datasets[0]["frf"].values - plain.datasets[0]["frf"].values for s in (bent, solved))

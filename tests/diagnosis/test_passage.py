@@ -53,7 +53,7 @@ def fitted(campaign: Campaign, datasets: list[Dataset]) -> Fit:
         fit = fitter.fit(replace(fit, hyper=fit.hyper.with_discrepancy(level)), steps=8)
     fit = fitter.fit(estimated(fit), steps=12)
     # Errors of chains act on what the fit predicts.
-    again = Fitter(frame.about(fit.state.solved, fit.covariance, fit.state.deviations))
+    again = Fitter(frame.about(fit.state.solved, fit.covariance, fit.state.residuals))
     fit = again.fit(estimated(again.begin(fit.model, fit.z, fit.hyper)), steps=12)
     return again.settled(estimated(fit))
 
@@ -71,9 +71,9 @@ def simulated(campaign: Campaign, dataset: Dataset, seed: int) -> tuple[Reals, D
     data = dataset.data.copy()
     data["noise_sd"] = (("channel", "frequency"), noise.copy())
     block = PassageBlock(replace(dataset, data=data), reference=found, floor=0.0)
-    smooth = block.smooth
-    sizes = [np.full(o.count, 0.0 if o.fixed else first_size(campaign, o.name)) for o in smooth.origins]
-    errors = smooth.columns.push(np.concatenate(sizes) * random.standard_normal(sum(map(len, sizes))))
+    smooth = block.calibration
+    sizes = [np.full(o.count, 0.0 if o.fixed else first_size(campaign, o.name)) for o in smooth.sources]
+    errors = smooth.columns.times(np.concatenate(sizes) * random.standard_normal(sum(map(len, sizes))))
     off = (errors + random.standard_normal(errors.size)).reshape(2, -1)
     whole = spectrum + (off[0] + 1j * off[1]).reshape(spectrum.shape) * block.sigma
     data["spectrum"] = (("channel", "frequency"), whole, dataset.data["spectrum"].attrs)
@@ -133,7 +133,7 @@ def test_residuals_are_over_noise_and_a_floor(tmp_path: Path) -> None:
     size = np.sqrt(uniform_filter1d(np.abs(data["spectrum"].values) ** 2, ABOUT, axis=-1, mode="nearest"))
     sigma = np.sqrt(data["noise_sd"].values ** 2 + (FLOOR * size) ** 2)
     off = (data["spectrum"].values - found["spectrum"].values) / sigma
-    assert block.deviations(found) == pytest.approx(np.concatenate([off.real.ravel(), off.imag.ravel()]))
+    assert block.residuals(found) == pytest.approx(np.concatenate([off.real.ravel(), off.imag.ravel()]))
     levels = block.levels_dB(found)
     assert np.isnan(levels[levels.size // 2 :]).all()
     assert np.isfinite(levels[: levels.size // 2]).any()

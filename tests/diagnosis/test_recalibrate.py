@@ -83,19 +83,19 @@ def test_what_is_left_is_as_large_as_the_noise(cases: list[tuple[Simulated, Evid
         z = assemble_one(fit)["z"].sel(model=CLEAN)
         found = (z.values**2).reshape(2, 2, 3, -1).mean(axis=(0, 2, 3))
         count = 2 * 3 * z.sizes["frequency"]
-        # Smooth errors of sensors, points and pairs take out up to a part in seven of the degrees of freedom.
+        # Calibration errors of sensors, points and pairs take out up to a part in seven of the degrees of freedom.
         assert (found < expected * (1.0 + 4.0 * np.sqrt(2.0 / count))).all()
         assert (found > expected * (6.0 / 7.0 - 4.0 * np.sqrt(2.0 / count))).all()
 
 
 def assemble_one(fit: Fit) -> Any:
-    (deviations,) = assemble(fit.evidence, fit).deviations
-    return deviations
+    (residuals,) = assemble(fit.evidence, fit).residuals
+    return residuals
 
 
 def test_what_is_left_knows_nothing_of_its_neighbours(cases: list[tuple[Simulated, Evidence, Fit]]) -> None:
     for _, evidence, fit in cases:
-        z = assemble(evidence, fit).deviations[0]["z"]
+        z = assemble(evidence, fit).residuals[0]["z"]
         left = lag_correlation(z.sel(model=CLEAN), lags=4)
         # Of 160 correlations one in ten thousand would be beyond 4 standard deviations; splines that are taken out
         # (a part in seven) leave neighbours alike in the opposite sense by as much.
@@ -150,7 +150,7 @@ def amended(campaign: Campaign, truth: dict[str, Any]) -> Campaign:
 
 
 def check_practice(found: Comparison) -> None:
-    for data in found.deviations:
+    for data in found.residuals:
         rms = channel_rms(data).sel(model=CLEAN)
         left = lag_correlation(data["z"].sel(model=CLEAN), lags=1)
         for sensor in rms["sensor"].values:

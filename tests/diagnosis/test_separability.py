@@ -38,7 +38,7 @@ def test_nothing_explains_an_effect_better_than_itself(found: Separability) -> N
 
 
 def test_a_lost_fastener_and_a_sensors_gain_are_no_twins(found: Separability) -> None:
-    pairs = {frozenset(pair[:2]) for pair in found.twins()}
+    pairs = {frozenset(pair[:2]) for pair in found.inseparable()}
     assert frozenset(("fastener_loss", "sensor_gain")) not in pairs
     said = found.summary()
     assert {row["effect"] for row in said["effects"]} >= {"fastener_loss", "sensor_gain", "deck_attachment"}

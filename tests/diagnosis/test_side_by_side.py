@@ -32,13 +32,13 @@ def _slowly(item: int) -> tuple[int, int]:
 
 
 def test_results_come_in_the_order_of_their_items() -> None:
-    begun: list[int] = []
-    found = each(_slowly, range(20), threads=3, told=begun.append)
+    started: list[int] = []
+    found = each(_slowly, range(20), threads=3, progress=started.append)
     assert [square for square, _ in found] == [item**2 for item in range(20)]
-    # What others begin is not told here.
-    assert begun == sorted(set(begun))
-    assert set(begun) <= set(range(20))
-    assert begun
+    # What others begin is not reported here.
+    assert started == sorted(set(started))
+    assert set(started) <= set(range(20))
+    assert started
 
 
 @forks
@@ -115,10 +115,10 @@ def test_an_interrupt_ends_all_within_a_second() -> None:
         time.sleep(60.0)
         return item
 
-    begun = time.monotonic()
+    started = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         each(work, range(8), threads=2)
-    assert time.monotonic() - begun < 1.0
+    assert time.monotonic() - started < 1.0
     assert not active_children()
 
 

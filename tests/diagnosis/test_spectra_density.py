@@ -58,9 +58,9 @@ def test_lines_within_the_window_s_reach_of_zero_are_not_used() -> None:
 @pytest.mark.parametrize("averages", [4, 14, 120])
 def test_deviations_from_the_truth_have_mean_zero_and_unit_variance(averages: int) -> None:
     found = [block(averages, seed) for seed in range(20)]
-    deviations = np.array([one.deviations(one._expected) for one in found])
+    residuals = np.array([one.residuals(one._expected) for one in found])
     # Every second line, of which there are three hundred: power, transfer twice, rest.
-    for part in np.split(deviations, 4, axis=1):
+    for part in np.split(residuals, 4, axis=1):
         assert part.mean() == pytest.approx(0.0, abs=0.06)
         assert np.sqrt(np.mean(part**2)) == pytest.approx(1.0, abs=0.1)
 
@@ -72,20 +72,20 @@ def test_where_noise_is_large_no_gain_is_better_than_the_right_one() -> None:
         gains = np.linspace(0.7, 1.5, 81)
         for seed in range(10):
             one = block(14, seed, coherence)
-            squares = [np.sum(one.deviations(csd(truth(gain, coherence), 14)) ** 2) for gain in gains]
+            squares = [np.sum(one.residuals(csd(truth(gain, coherence), 14)) ** 2) for gain in gains]
             best.append(gains[int(np.argmin(squares))])
         assert np.mean(best) == pytest.approx(1.0, abs=0.02)
 
 
 def test_chains_errors_act_on_what_moves_and_not_on_hum() -> None:
-    """What a smooth error does to a line is as much as of its power moves: half of it, then none."""
+    """What a calibration error does to a line is as much as of its power moves: half of it, then none."""
     plain, moving = block(14, 3), truth()
     hum = np.zeros_like(moving.real)
     hum[:, :, 20], hum[:, :, 40] = moving[0, 0, 20].real * np.ones((2, 2)), 1e9 * np.ones((2, 2))
     expected = csd(moving + hum, 14)
     hummed = SpectraBlock(plain.dataset, expected, added=hum, floor=0.0)
     # The root's power comes first in the rows, and the first channel's gain in the columns.
-    before, after = (one.smooth.columns.matrix[: one.frequency.size] for one in (plain, hummed))
+    before, after = (one.calibration.columns.matrix[: one.frequency.size] for one in (plain, hummed))
     share = np.abs(after).max(axis=1) / np.abs(before).max(axis=1)
     expected_share = np.ones(plain.frequency.size)
     expected_share[10], expected_share[20] = 0.5, 0.0

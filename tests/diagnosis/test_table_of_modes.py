@@ -37,8 +37,8 @@ def test_residuals_are_logarithms_over_their_standard_deviations(tmp_path: Path)
     measured = block.dataset.data["modes"].values
     (predicted,) = evidence.predicted(campaign).datasets
     expected = np.log(measured / predicted["modes"].values) / [[tables.SD], [tables.SD_DAMPING]]
-    assert block.deviations(predicted) == pytest.approx(expected.reshape(-1), rel=1e-6)
-    assert block.levels_dB(predicted) == pytest.approx(block.deviations(predicted) * block.rows.scale_dB)
+    assert block.residuals(predicted) == pytest.approx(expected.reshape(-1), rel=1e-6)
+    assert block.levels_dB(predicted) == pytest.approx(block.residuals(predicted) * block.rows.scale_dB)
 
 
 def test_recalibration_finds_the_parameters(tmp_path: Path) -> None:
@@ -68,7 +68,7 @@ def test_both_methods_have_the_same_slopes_of_modes(tmp_path: Path) -> None:
         for side in (-1.0, 1.0):
             z = np.zeros(3)
             z[index] = side * step
-            ends.append(problem.at(z).deviations)
+            ends.append(problem.at(z).residuals)
         assert found[:, index] == pytest.approx((ends[1] - ends[0]) / (2.0 * step), rel=1e-2, abs=1e-2)
 
 
@@ -81,7 +81,7 @@ def test_the_posterior_of_one_table_has_no_chains(tmp_path: Path) -> None:
     free = free_parameters(campaign)
     fitter = Fitter(frame)
     fit = fitter.fit(fitter.begin(Model(campaign.with_values, free), np.zeros(3), hyper), steps=20)
-    residuals, sigma = fit.state.deviations, frame.sigma
+    residuals, sigma = fit.state.residuals, frame.sigma
     variance = 1.0 + (hyper["discrepancy modes"] / sigma) ** 2
     assert fit.covariance.square(residuals) == pytest.approx(float((residuals**2 / variance).sum()))
     assert fit.values()["E"] == pytest.approx(1.08 * 3.4e10, rel=0.02)
@@ -94,7 +94,7 @@ def test_a_missed_mode_is_said_and_costs(tmp_path: Path) -> None:
     assert "no mode within a factor of 1.5 of 6.24515" in missed
     evidence = gather(campaign)
     solved = evidence.predicted(campaign)
-    off = evidence.deviations(solved.datasets)
+    off = evidence.residuals(solved.datasets)
     assert np.isfinite(off).all()
     assert off.max() == pytest.approx(np.log(1.5) / tables.SD, rel=1e-6)
 

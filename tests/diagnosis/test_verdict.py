@@ -249,8 +249,8 @@ def test_a_parameter_that_nobody_would_believe_is_said() -> None:
     near = Moved(value=1.05e9, prior=1e9, z=1.2)
     far = {"level": Moved(value=7.0, prior=0.0, z=7.0), "pad.k": Moved(value=2e7, prior=6e7, z=-4.4, unit="N/m")}
     words = (
-        "; level has to be 7.00 for it, 7 standard deviations from the owner's 0"
-        " and pad.k has to be 20.0 MN/m for it, 4.4 standard deviations from the owner's 60 MN/m."
+        "; level has to be 7.00 for it, 7 standard deviations from the nominal 0"
+        " and pad.k has to be 20.0 MN/m for it, 4.4 standard deviations from the nominal 60 MN/m."
     )
     told = Recalibrated(before={"slab.E": near, **far})
     found = verdict("located", effects=(LOST,), recalibrated=told).sentence

@@ -101,7 +101,7 @@ def test_what_a_fit_gains_of_held_out_rows_is_a_ratio_of_gaussian_densities(tmp_
     def conditional(one, out: np.ndarray) -> float:  # type: ignore[no-untyped-def]
         whole = dense(fitter.frame, one.hyper) + one.jacobian @ one.jacobian.T
         mean = one.jacobian @ one.z
-        off = one.state.deviations - mean
+        off = one.state.residuals - mean
         gain = np.linalg.solve(whole[np.ix_(~out, ~out)], whole[np.ix_(~out, out)]).T
         left = off[out] - gain @ off[~out]
         inner = whole[np.ix_(out, out)] - gain @ whole[np.ix_(~out, out)]

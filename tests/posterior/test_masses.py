@@ -24,7 +24,7 @@ def member(*names: str, nats: float, novel: float = 0.0) -> Member:
         fit=SimpleNamespace(
             log_evidence=nats,
             hyper=SimpleNamespace(novel=novel),
-            state=SimpleNamespace(deviations=np.zeros(COUNT)),
+            state=SimpleNamespace(residuals=np.zeros(COUNT)),
         ),
         log_prior=prior,
         log_mass=prior + tempered(nats, COUNT),

@@ -55,7 +55,7 @@ def member(
         spread=np.eye(len(at)),
         log_evidence=nats,
         hyper=SimpleNamespace(novel=novel),
-        state=SimpleNamespace(deviations=np.zeros(COUNT), solved=SimpleNamespace(campaign=campaign)),
+        state=SimpleNamespace(residuals=np.zeros(COUNT), solved=SimpleNamespace(campaign=campaign)),
         model=SimpleNamespace(free=range(len(at))),
     )
     return Member(tuple(hypothesis(*one) for one in at), cast(object, fit), (-6.0,) * len(at))  # type: ignore[arg-type]

@@ -28,7 +28,7 @@ def norm(fit: Fit, cell: Cell) -> float:
     model = grown(fit, cell.hypothesis, "1.")
     state = Problem(fit.frame.evidence, model.build, model.free).at(np.concatenate([fit.z, cell.z]))
     assert state is not None
-    return float(np.sqrt(fit.covariance.square(state.deviations - fit.state.deviations)))
+    return float(np.sqrt(fit.covariance.square(state.residuals - fit.state.residuals)))
 
 
 def off(cell: Cell) -> float:

@@ -31,7 +31,7 @@ def test_idealisation_is_a_stiffness_that_is_off_at_each_frequency(tmp_path: Pat
     x = (2.0 * octaves - octaves.min() - octaves.max()) / (octaves.max() - octaves.min())
     values = {f.name: f.value(0.0) for f in model.free}
     moved = campaign.with_values(values | {name: values[name] * (1.0 + 0.01 * LARGEST)})
-    change = 100.0 * (evidence.deviations(evidence.predicted(moved).datasets) - fit.state.deviations)
+    change = 100.0 * (evidence.residuals(evidence.predicted(moved).datasets) - fit.state.residuals)
     expected = np.where(fitter.frame.statistic == "frf", change * x**power, 0.0)
     columns = LARGEST * idealised(fit)
     roots = fit.covariance.roots(columns)

@@ -127,7 +127,7 @@ def test_a_run_without_a_rate_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_pair_that_was_not_measured_stays_empty(tmp_path: Path) -> None:
-    import permway.campaign.load as module
+    import permway.campaign.kinds.responses as module
     from permway.recordings.record import FrfRecord
 
     (tmp_path / "frf.npz").write_bytes(b"later")

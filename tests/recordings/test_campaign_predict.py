@@ -12,8 +12,8 @@ from campaigns import small, tables, write
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.load import Dataset, log_variance
 from permway.campaign.predict import plan, predict, request_of
-from permway.campaign.predict.run import solved_lines
-from permway.campaign.predict.sweeps import Request, Result
+from permway.campaign.predictions.run import solved_lines
+from permway.campaign.predictions.sweeps import Request, Result
 from permway.errors import InputError
 from permway.model.place import Place
 from permway.recordings.estimates.decay_rate import grid_positions, track_decay_rate

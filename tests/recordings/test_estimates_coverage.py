@@ -9,9 +9,10 @@ Lines that detrending touches are left out, as the dataset states (`usable`).
 
 import numpy as np
 import pytest
+from covered import phase_covered
 from permway.recordings.estimates.coherence import coherence_interval
 from permway.recordings.estimates.frf import frequency_response
-from permway.recordings.estimates.intervals import frf_interval, phase_covered, power_interval
+from permway.recordings.estimates.intervals import frf_interval, power_interval
 from permway.recordings.estimates.third_octaves import band_levels
 from permway.recordings.estimates.welch import cross_spectra
 from permway.recordings.estimates.windows import segment_for_peak, segments

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from covered import phase_covered
 from permway.errors import InputError
 from permway.recordings.estimates.blows import blow_spectra
 from permway.recordings.estimates.frf import frequency_response
-from permway.recordings.estimates.intervals import frf_interval, phase_covered
+from permway.recordings.estimates.intervals import frf_interval
 from permway.recordings.estimates.welch import cross_spectra
 from scipy import signal
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from permway.errors import InputError
-from permway.recordings.estimates.coherence import coherence_cdf, coherence_interval, fisher_z, unbiased_coherence
+from permway.recordings.estimates.coherence import coherence_cdf, coherence_interval, unbiased_coherence
 from permway.recordings.estimates.intervals import (
     frf_interval,
     log_frf_variance,
@@ -67,13 +67,6 @@ def test_no_coherence_is_within_the_interval_as_often_as_said():
     edge = 1.0 - 0.025 ** (1.0 / (averages - 1.0))
     assert coherence_interval(edge * 0.999, averages).low == 0.0
     assert coherence_interval(edge * 1.001, averages).low > 0.0
-
-
-def test_fishers_z_agrees_where_it_is_good():
-    z, variance = fisher_z(0.7, 60.0)
-    exact = coherence_interval(0.7, 60.0)
-    reach = 1.96 * np.sqrt(variance)
-    assert np.tanh([z - reach, z + reach]) ** 2 == pytest.approx(np.array(exact), abs=0.01)
 
 
 def test_frf_interval_closed_forms():

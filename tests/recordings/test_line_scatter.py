@@ -56,7 +56,7 @@ def test_a_parabola_has_no_noise_whatever_the_steps() -> None:
 
 
 def test_few_lines_are_refused() -> None:
-    with pytest.raises(InputError, match="11 lines tell no scatter"):
+    with pytest.raises(InputError, match="11 lines show no scatter"):
         scatter_variance(np.arange(1.0, 12.0), np.ones(11, dtype=complex), where="x")
 
 

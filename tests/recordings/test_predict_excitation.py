@@ -10,9 +10,9 @@ import pytest
 from campaigns import tables, write
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.excitation import Push, TrackLines
-from permway.campaign.predict.excitation import deposit, push
-from permway.campaign.predict.grid import grid_of
-from permway.campaign.predict.run import expected_csd, influence, solved_lines, wheels_of
+from permway.campaign.predictions.excitation import deposit, push
+from permway.campaign.predictions.grid import grid_of
+from permway.campaign.predictions.run import expected_csd, influence, solved_lines, wheels_of
 from permway.errors import InputError
 from permway.model.place import Place
 from permway.recordings.estimates.welch import cross_spectra

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from permway.campaign.predict.grid import HANN, grid_of, halved, hann, interpolating, solved_lines
+from permway.campaign.predictions.grid import HANN, grid_of, halved, hann, interpolating, solved_lines
 
 ESTIMATE_HZ = np.arange(5.0, 200.0)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from permway.campaign.predict.motion import influence
-from permway.campaign.predict.sliding import retuned, shares, with_vehicle
+from permway.campaign.predictions.motion import influence
+from permway.campaign.predictions.sliding import retuned, shares, with_vehicle
 from permway.errors import SolveError
 from permway.model.irregularity import GermanLow
 from permway.model.presets import slab_track_viaduct_32m

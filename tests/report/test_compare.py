@@ -93,7 +93,7 @@ def test_numbers_are_labelled(comparison: Comparison) -> None:
     assert record["predicted"].dims == ("model", "channel", "frequency")
     assert record["model"].values.tolist() == [RAW, RECALIBRATED]
     assert record["channel"].values[1] == "rail@6 < hit far"
-    assert comparison.deviations[0]["model"].values.tolist() == [RAW, RECALIBRATED, CLEAN]
+    assert comparison.residuals[0]["model"].values.tolist() == [RAW, RECALIBRATED, CLEAN]
     for name, variable in record.data_vars.items():
         assert variable.attrs["long_name"], name
 

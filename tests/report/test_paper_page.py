@@ -25,7 +25,9 @@ def own(report: Any) -> str:
     return page.replace(get_plotlyjs(), "")
 
 
-@pytest.mark.parametrize("name", [*FIGURES, *TABLES, "table-figures-11-13", "table-8-open", "slips", "choices"])
+@pytest.mark.parametrize(
+    "name", [*FIGURES, *TABLES, "table-figures-11-13", "table-8-open", "misprints", "choices"]
+)
 def test_every_part_is_there_once(own: str, name: str) -> None:
     assert own.count(f'id="{name}"') == 1
 

@@ -10,7 +10,7 @@ import permway
 import pytest
 from permway.arrays import Complexes, Reals
 from permway.campaign.importers.sheet import import_sheet
-from permway.campaign.predict.motion import influence
+from permway.campaign.predictions.motion import influence
 from permway.challenge import rolling as marched
 from permway.challenge.case import Case, draw, write
 from permway.challenge.irregularity import profile

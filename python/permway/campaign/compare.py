@@ -9,25 +9,12 @@ import xarray as xr
 
 from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
-from permway.campaign.load import SI_UNITS, Dataset
+from permway.campaign.dataset import Dataset
+from permway.campaign.kinds import kind_of
+from permway.campaign.kinds.kind import NEPER_DB, POWER_DB
 from permway.recordings.estimates.bands import Bands
-from permway.recordings.estimates.intervals import frf_interval, power_interval
-from permway.recordings.line_scatter import FREEDOM as SCATTER_FREEDOM
 
-NEPER_DB, POWER_DB = 20.0 / np.log(10.0), 10.0 / np.log(10.0)
-"""Decibels of a natural logarithm: of an amplitude, and of a power."""
-
-VARIABLE = {
-    "frf": "frf",
-    "csd": "psd",
-    "psd": "psd",
-    "decay": "decay_rate",
-    "transmissibility": "transmissibility",
-    "material": "modulus",
-    "modes": "modes",
-    "passage": "spectrum",
-}
-"""What is compared of each statistic."""
+__all__ = ["NEPER_DB", "POWERS", "POWER_DB", "UNSURE_DB", "curves", "flat", "line_frequency", "third_octaves"]
 
 POWERS = ("psd", "decay_rate")
 """Variables whose decibels are 10 lg."""
@@ -58,16 +45,17 @@ def curves(
         `deviation_dB`, measured over predicted; coordinates `sensor` and `force` of each channel.
         Without a known uncertainty the intervals are NaN. The deviation of a line that was not measured is NaN.
     """
-    variable = VARIABLE[dataset.record.statistic]
+    kind = kind_of(dataset.record)
+    variable = kind.variable
     measured = flat(dataset, dataset.data)
     models = list(predicted)
     values = np.stack([flat(dataset, predicted[name]) for name in models])
-    sensor, force = _channels(dataset)
+    sensor, force = kind.channels(dataset)
     labels = [f"{s} < {f}" if f else s for s, f in zip(sensor, force, strict=True)]
-    low, high, half = _interval(dataset, measured, scatter_dB)
+    low, high, half = kind.interval(dataset, measured, scatter_dB)
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.log(np.abs(measured) / np.abs(values))
-    deviation = np.where(np.isfinite(ratio), ratio, np.nan) * (POWER_DB if variable in POWERS else NEPER_DB)
+    deviation = np.where(np.isfinite(ratio), ratio, np.nan) * (POWER_DB if kind.power else NEPER_DB)
     dims = ("channel", "frequency")
     data = xr.Dataset(
         {
@@ -85,7 +73,7 @@ def curves(
             "frequency": ("frequency", line_frequency(dataset), {"units": "Hz", "long_name": "frequency"}),
             "sensor": ("channel", np.array(sensor, dtype=str)),
             "force": ("channel", np.array(force, dtype=str)),
-            "unit": ("channel", [_unit(campaign, dataset, name) for name in sensor]),
+            "unit": ("channel", [kind.unit(campaign, dataset, name) for name in sensor]),
         },
         attrs={
             "record": dataset.record.name,
@@ -102,7 +90,7 @@ def curves(
 
 def flat(dataset: Dataset, data: xr.Dataset) -> Complexes | Reals:
     """Measured or predicted values as (channel, frequency); pairs of sensor and point are channels."""
-    values = data[VARIABLE[dataset.record.statistic]].values
+    values = data[kind_of(dataset.record).variable].values
     return np.asarray(values.reshape(-1, values.shape[-1]))
 
 
@@ -169,50 +157,3 @@ def third_octaves(record: xr.Dataset) -> xr.Dataset:
             "band": ("band", bands.nominal_Hz, {"units": "Hz", "long_name": "nominal middle of the band"}),
         },
     )
-
-
-def _channels(dataset: Dataset) -> tuple[list[str], list[str]]:
-    data = dataset.data
-    if dataset.record.statistic == "frf":
-        sensors, forces = data["sensor"].values.astype(str), data["force"].values.astype(str)
-        return [str(s) for s in sensors for _ in forces], [str(f) for _ in sensors for f in forces]
-    if dataset.record.statistic == "modes":
-        quantities = [str(n) for n in data["quantity"].values]
-        return quantities, [""] * len(quantities)
-    names = [str(n) for n in data["channel"].values] if "channel" in data.dims else [dataset.record.name]
-    return names, [""] * len(names)
-
-
-def _unit(campaign: Campaign, dataset: Dataset, sensor: str) -> str:
-    statistic = dataset.record.statistic
-    if statistic == "modes":
-        return "Hz" if sensor == "natural frequency" else "1"
-    if statistic not in ("frf", "csd", "psd", "passage"):
-        return str(dataset.data[VARIABLE[statistic]].attrs.get("units", "1"))
-    si = SI_UNITS[campaign.sensor(sensor).quantity]
-    return {"frf": f"({si})/N", "passage": f"({si}) s"}.get(statistic, f"({si})2/Hz")
-
-
-def _interval(dataset: Dataset, measured: np.ndarray, scatter_dB: Reals) -> tuple[Reals, Reals, Reals]:
-    """Bounds of the modulus, and half the interval of the phase, each (channel, frequency)."""
-    data, modulus = dataset.data, np.abs(measured)
-    low, high, half = (np.full(modulus.shape, np.nan) for _ in range(3))
-    match dataset.record.statistic:
-        case "frf":
-            variance = data["log_variance"].values.reshape(modulus.shape)
-            scattered = dataset.record.noise == "scatter"
-            free = SCATTER_FREEDOM if scattered else 2.0 * (float(data.attrs.get("averages", np.nan)) - 1.0)
-            known = np.isfinite(variance) & np.isfinite(measured) & (free > 0.0)
-            if known.any():
-                found = frf_interval(measured[known], variance[known], free)
-                low[known], high[known] = found.magnitude
-                half[known] = 0.5 * (found.phase_rad.high - found.phase_rad.low)
-        case "csd" | "psd":
-            freedom = data["degrees_of_freedom"].broadcast_like(data["psd"]).transpose(*data["psd"].dims)
-            low, high = power_interval(modulus, freedom.values)
-        case statistic:
-            power = VARIABLE[statistic] in POWERS
-            reach = 1.96 * scatter_dB / (POWER_DB if power else NEPER_DB)
-            low, high = modulus * np.exp(-reach), modulus * np.exp(reach)
-            half = half if power else reach
-    return low, high, half

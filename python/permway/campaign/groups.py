@@ -8,23 +8,12 @@ import numpy as np
 import xarray as xr
 
 from permway.campaign.checks import SAME_SPEED
+from permway.campaign.kinds import kind_of
 from permway.campaign.parts import HeldOut
 
 if TYPE_CHECKING:
     from permway.campaign.campaign import Campaign
     from permway.campaign.load import Dataset
-
-_DIMENSIONS = {
-    "frf": ("sensor", "force", "frequency"),
-    "csd": ("channel", "frequency"),
-    "psd": ("channel", "frequency"),
-    "bands": ("channel", "band"),
-    "decay": ("band",),
-    "transmissibility": ("channel", "frequency"),
-    "material": ("point",),
-    "modes": ("quantity", "frequency"),
-    "passage": ("channel", "frequency"),
-}
 
 
 def held_out(campaign: Campaign, group: HeldOut, dataset: Dataset) -> xr.DataArray:
@@ -45,7 +34,7 @@ def held_out(campaign: Campaign, group: HeldOut, dataset: Dataset) -> xr.DataArr
         a material's table, (quantity, frequency) of modes.
     """
     data, condition = dataset.data, dataset.condition
-    dimensions = _DIMENSIONS[dataset.record.statistic]
+    dimensions = kind_of(dataset.record).dimensions
     whole = xr.DataArray(
         np.zeros([data.sizes[d] for d in dimensions], dtype=np.bool_),
         dims=dimensions,

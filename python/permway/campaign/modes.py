@@ -109,12 +109,12 @@ def _check_columns(header: Line, record: Record, path: Path, damping: tuple[str,
         what = "has no column, and other channels have one: shapes are at all of them or at none"
         raise InputError(what, where=f"channels.{without}", remedy=f"it has {list(header.cells)}")
     known = {*wanted, *shaped, *KEPT}
-    strange = next((cell for cell in header.cells if cell not in known), None)
-    if strange is not None:
+    unknown = next((cell for cell in header.cells if cell not in known), None)
+    if unknown is not None:
         raise InputError(
             "the column is not understood",
             where=where,
-            value=strange,
+            value=unknown,
             remedy=f"use {[*FREQUENCY, *damping]}, labels of channels, {list(KEPT)}, or columns of select",
         )
     return shaped

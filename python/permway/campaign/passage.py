@@ -43,7 +43,7 @@ ORDER = 6
 """Polynomials of x between two supports."""
 
 OFFSET_M = 1e-3
-"""Distance of three points that tell how a beam is bent, over its length; of one without end over 10 m."""
+"""Distance of three points that show how a beam is bent, over its length; of one without end over 10 m."""
 
 SI = {
     "displacement": "m",

@@ -90,8 +90,8 @@ def _supports(model: Model, runs: list[Condition]) -> float:
     InputError
         Without supports that repeat, and on a rail too short to follow wheels along.
     """
-    from permway.campaign.predict.excitation import speed_of
-    from permway.campaign.predict.motion import wheels_of
+    from permway.campaign.predictions.excitation import speed_of
+    from permway.campaign.predictions.motion import wheels_of
 
     remedy = "write rolling = false if the records are of a model whose train stands"
     if model.train is None or not runs:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
+from permway.campaign.dataset import in_band
 from permway.campaign.parts import Record
 from permway.errors import InputError
 from permway.laws.dma import DmaTable, read_dma, read_modulus_pair
@@ -51,8 +52,6 @@ def bands(campaign: Campaign, record: Record) -> xr.Dataset:
 
 def transmissibility(campaign: Campaign, record: Record) -> xr.Dataset:
     """A swept sine: the sensor's motion over that of the ground."""
-    from permway.campaign.load import in_band
-
     file = read_shaker(campaign.path(record))
     used = in_band(file.frequency_Hz, record)
     names = list(record.channels.values())

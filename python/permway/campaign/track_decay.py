@@ -7,7 +7,7 @@ import xarray as xr
 
 from permway import _core
 from permway.arrays import is_real
-from permway.campaign.predict.decay import band_moduli, lines_of
+from permway.campaign.predictions.decay import band_moduli, lines_of
 from permway.errors import InputError
 from permway.model.line import Line
 from permway.model.place import Place

@@ -13,10 +13,10 @@ import numpy as np
 from permway.challenge.effects import (
     CATALOGUE,
     FADING,
+    NEAR_DEGENERATE,
     NONLINEAR,
     OUTSIDE,
     STRENGTHS,
-    TWINS,
     Effect,
     Site,
     Strength,
@@ -149,11 +149,11 @@ def draw(seed: int, tier: Tier) -> Case:
     seed : int
         Zero or more.
     tier : Tier
-        "null": nothing concealed; "single": one effect of the catalogue; "twin": one that has a near twin;
-        "multiple": two or three; "outside": one of no catalogue, or one whose family is taken out of it;
-        "nonlinear": one that depends on amplitude; "graded": one of the catalogue that is there to be faded;
-        "sparse": one that has a near twin, in records so few that they may leave it open; "running": trains that
-        truly run, where the model has them stand.
+        "null": nothing concealed; "single": one effect of the catalogue; "twin": one that has a near-degenerate
+        alternative; "multiple": two or three; "outside": one of no catalogue, or one whose family is taken out of
+        it; "nonlinear": one that depends on amplitude; "graded": one of the catalogue that is there to be
+        faded; "sparse": as "twin", in records so few that they may leave it open; "running": trains that truly
+        run, where the model has them stand.
 
     Raises
     ------
@@ -209,11 +209,11 @@ def _kinds(random: np.random.Generator, tier: Tier) -> list[type[Effect]]:
         case "single" | "twin" | "outside" | "nonlinear" | "graded" | "sparse":
             pool = {
                 "single": CATALOGUE,
-                "twin": TWINS,
+                "twin": NEAR_DEGENERATE,
                 "outside": OUTSIDE,
                 "nonlinear": NONLINEAR,
                 "graded": FADING,
-                "sparse": TWINS,
+                "sparse": NEAR_DEGENERATE,
             }[tier]
             return [pool[int(random.integers(len(pool)))]]
         case "multiple":
@@ -242,7 +242,7 @@ def _noisier(random: np.random.Generator, tier: Tier) -> float:
 def _chain(random: np.random.Generator, noisier: float) -> Chain:
     speeds = tuple(round(1.0 + float(x), 5) for x in random.uniform(-SLOW_OR_FAST, SLOW_OR_FAST, 2))
     return Chain(
-        wander_dB=round(float(random.uniform(0.5, 1.5)), 3),
+        calibration_dB=round(float(random.uniform(0.5, 1.5)), 3),
         noise=round(noisier * 1.2e-6 * float(np.exp(0.4 * random.standard_normal())), 9),
         speed=speeds,
         warmer_C=tuple(round(WARMER_K * float(x), 3) for x in random.standard_normal(2)),

@@ -137,9 +137,9 @@ def follow(folder: Path, read: Read) -> list[Path]:
     made = []
     for name, verdict in _advised(folder):
         out = folder / FOLLOWED
-        new, said = out / name, out / ADVICE / f"{name}.json"
+        new, file = out / name, out / ADVICE / f"{name}.json"
         made.append(new)
-        if said.is_file():
+        if file.is_file():
             continue
         words = verdict["next"][0]["measurement"]
         advice = read(folder / "verdicts" / name / "campaign" / "campaign.toml", words)
@@ -156,7 +156,7 @@ def follow(folder: Path, read: Read) -> list[Path]:
             (out / place).mkdir(parents=True, exist_ok=True)
         write_truth(case, out / "truth" / f"{name}.json")
         found = {"measurement": words, "separates": verdict["next"][0]["separates"], **asdict(advice)}
-        whole(said, json.dumps(found, indent=1) + "\n")
+        whole(file, json.dumps(found, indent=1) + "\n")
     if not made:
         raise InputError(
             "no verdict advises a measurement",
@@ -182,16 +182,16 @@ def separated(folder: Path) -> list[Separated]:
         As for :func:`follow`.
     """
     found = []
-    for said in sorted((Path(folder) / FOLLOWED / ADVICE).glob("*.json")):
-        path = said.parent.parent / "verdicts" / said.stem / VERDICT
+    for file in sorted((Path(folder) / FOLLOWED / ADVICE).glob("*.json")):
+        path = file.parent.parent / "verdicts" / file.stem / VERDICT
         if path.is_file():
-            truth = json.loads((said.parent.parent / "truth" / said.name).read_text())
-            found.append(_judged(said.stem, json.loads(said.read_text()), truth, json.loads(path.read_text())))
+            truth = json.loads((file.parent.parent / "truth" / file.name).read_text())
+            found.append(_judged(file.stem, json.loads(file.read_text()), truth, json.loads(path.read_text())))
     return found
 
 
-def _judged(name: str, said: dict[str, Any], truth: dict[str, Any], verdict: dict[str, Any]) -> Separated:
-    rivals = tuple(said["separates"])
+def _judged(name: str, advice: dict[str, Any], truth: dict[str, Any], verdict: dict[str, Any]) -> Separated:
+    rivals = tuple(advice["separates"])
     true = tuple(str(one["id"]) for one in truth["effects"]) or (NOTHING,)
     called = verdict["effects"] if verdict["status"] in FOUND else []
     classes = [{m["name"] for m in effect["class"]} | {effect["name"]} - {None} for effect in called]
@@ -201,7 +201,7 @@ def _judged(name: str, said: dict[str, Any], truth: dict[str, Any], verdict: dic
     known = set(true) & set(rivals)
     return Separated(
         name=name,
-        measurement=said["measurement"],
+        measurement=advice["measurement"],
         rivals=rivals,
         truth=true,
         after=tuple("|".join(sorted(one)) or "not named" for one in classes) or (verdict["status"],),

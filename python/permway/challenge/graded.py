@@ -14,10 +14,10 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from permway.challenge.case import Case, draw, write
-from permway.challenge.weigh import Against, twin_of
+from permway.challenge.weigh import Against, control_of
 
 LEAST, MOST = 10.0, 300.0
-"""Deviances that are drawn, equally likely in their logarithm: from too small to tell to easy."""
+"""Deviances that are drawn, equally likely in their logarithm: from too small to find to easy."""
 
 NEAR = 1.25
 """Factor by which an effect's deviance may be off what was drawn."""
@@ -51,9 +51,9 @@ def graded(seed: int, against: Against) -> tuple[Case, float]:
     case = draw(seed, "graded")
     target = float(np.exp(np.random.default_rng([seed, 7]).uniform(math.log(LEAST), math.log(MOST))))
     with TemporaryDirectory() as place:
-        folder, twin = Path(place) / "case", Path(place) / "twin"
-        write(twin_of(case), twin)
-        deviance = against(twin)
+        folder, control = Path(place) / "case", Path(place) / "control"
+        write(control_of(case), control)
+        deviance = against(control)
 
         def weight(share: float) -> float:
             write(case.faded(share), folder)

@@ -1,4 +1,4 @@
-"""The irregularity of the rail: a profile whose level wanders from place to place, and is not Gaussian."""
+"""The irregularity of the rail: a profile whose level varies from place to place, and is not Gaussian."""
 
 from __future__ import annotations
 

@@ -85,7 +85,7 @@ def measure(plan: Plan, random: np.random.Generator) -> tuple[list[HammerTest], 
     off_dB = deviation(random)
     samples = round(tests.seconds * tests.sampling_Hz)
     frequency = np.asarray(np.fft.rfftfreq(samples, 1.0 / tests.sampling_Hz), dtype=np.float64)
-    chains = [_wander(plan, random, frequency, "sensor") for _ in tests.channels]
+    chains = [_calibration_error(plan, random, frequency, "sensor") for _ in tests.channels]
     under_wheels = (grid, under)
     runs = [
         _run(plan, random, index, np.column_stack(chains), off_dB, under_wheels)
@@ -94,17 +94,17 @@ def measure(plan: Plan, random: np.random.Generator) -> tuple[list[HammerTest], 
     return hammers, runs
 
 
-def _wander(plan: Plan, random: np.random.Generator, frequency_Hz: Reals, of: str) -> Complexes:
+def _calibration_error(plan: Plan, random: np.random.Generator, frequency_Hz: Reals, of: str) -> Complexes:
     """The calibration error of one chain, which it has in all tests."""
     if plan.chain.clean:
         return np.ones(frequency_Hz.size, dtype=np.complex128)
-    return calibration_error(random, frequency_Hz, size_dB=plan.chain.wander_dB * SHARE[of])
+    return calibration_error(random, frequency_Hz, size_dB=plan.chain.calibration_dB * SHARE[of])
 
 
 def _errors(plan: Plan, random: np.random.Generator, lines: Reals) -> Complexes:
     """Of all pairs of a hammer test, (F, sensors, points)."""
-    sensors = np.column_stack([_wander(plan, random, lines, "sensor") for _ in plan.tests.sensors])
-    points = np.column_stack([_wander(plan, random, lines, "point") for _ in plan.tests.points])
+    sensors = np.column_stack([_calibration_error(plan, random, lines, "sensor") for _ in plan.tests.sensors])
+    points = np.column_stack([_calibration_error(plan, random, lines, "point") for _ in plan.tests.points])
     return np.asarray(sensors[:, :, None] * points[:, None, :])
 
 

@@ -28,7 +28,7 @@ class Chain:
 
     Parameters
     ----------
-    wander_dB : float
+    calibration_dB : float
         Calibration errors of a sensor and a hammer point together, standard deviation of level and, in as many
         nepers, of phase.
     noise : float
@@ -41,7 +41,7 @@ class Chain:
         Neither noise nor errors of gain: for tests.
     """
 
-    wander_dB: float = 1.0
+    calibration_dB: float = 1.0
     noise: float = 1.2e-6
     speed: tuple[float, ...] = (1.0, 1.0)
     warmer_C: tuple[float, ...] = (0.0, 0.0)

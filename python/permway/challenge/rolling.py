@@ -67,7 +67,7 @@ def rolled(plan: Plan, met: Complexes, speed: float, *, samples: int, sampling_H
     along = speed * seconds * np.arange(fine + 1) / fine
     surface = CubicSpline(along, np.append(height, height[0]), bc_type="periodic", extrapolate="periodic")
     start = round(BEFORE_S * sampling_Hz) * FINER
-    # Where the sheet has them, which rounds: lags between wheels are what records tell best.
+    # Where the sheet has them, which rounds: lags between wheels are what records constrain best.
     stand = plan.layout.wheels_m(plan.values["vehicle"])
     wheels = tuple(stand[0] - x for x in stand)
     train = Consist(plan.values, cars=1, car_m=ring.length_m, speed_m_per_s=speed, wheels_m=wheels)

@@ -100,8 +100,8 @@ def diagnosed(case: Path, out: Path, threads: int, *, without: Sequence[str] = (
             (out / FAILED).write_text(f"permway {' '.join(command)}\n{ended.stderr[-4000:]}")
             return False
     (out / FAILED).unlink(missing_ok=True)
-    said = json.loads(ended.stdout.splitlines()[-1])
-    (out / "seconds.json").write_text(json.dumps(said.get("seconds", {})))
+    output = json.loads(ended.stdout.splitlines()[-1])
+    (out / "seconds.json").write_text(json.dumps(output.get("seconds", {})))
     return True
 
 

@@ -1,4 +1,4 @@
-"""How hard each campaign of a challenge is: weighed against its twin, in which nothing is concealed."""
+"""How hard each campaign of a challenge is: weighed against its control, in which nothing is concealed."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from permway.errors import InputError
 
 Progress = Callable[[int, int], object]
 Against = Callable[[Path], Callable[[Path], float]]
-"""From the folder of a twin, as `write` writes it, to the deviance of folders of campaigns with effects."""
+"""From the folder of a control, as `write` writes it, to the deviance of folders of campaigns with effects."""
 
 WEIGHTS = "weights"
 
 
-def twin_of(case: Case) -> Case:
+def control_of(case: Case) -> Case:
     """The same line, train, noise and errors, and nothing concealed."""
     return replace(case, effects=())
 
@@ -35,7 +35,7 @@ def weigh(
     folder : Path
         As :func:`permway.challenge.make.make` made it; gets `weights/<case>.json`.
     against : callable
-        What an effect does to the records and no recalibration takes away, against a twin without it.
+        What an effect does to the records and no recalibration takes away, against a control without it.
     workers : int
         Processes.
     progress : callable, optional
@@ -111,9 +111,9 @@ def _weighed(folder: Path, seed: int, tier: str, against: Against) -> list[float
     """All effects together, and each alone where there are several."""
     case = draw(seed, tier)  # type: ignore[arg-type]  # draw refuses what is no tier
     with TemporaryDirectory() as place:
-        twin = Path(place) / "twin"
-        write(twin_of(case), twin)
-        deviance = against(twin)
+        control = Path(place) / "control"
+        write(control_of(case), control)
+        deviance = against(control)
         found = [deviance(folder)]
         for index, effect in enumerate(case.effects if len(case.effects) > 1 else ()):
             alone = Path(place) / f"alone-{index}"

@@ -7,7 +7,7 @@ from typing import Literal
 
 Kind = Literal[
     "unreadable",
-    "spoilt",
+    "bad channel",
     "factor",
     "quantity",
     "sign",
@@ -28,7 +28,7 @@ class Blunder:
     Attributes
     ----------
     kind : str
-        "unreadable": a record that cannot be read or predicted; "spoilt": a channel whose samples are no
+        "unreadable": a record that cannot be read or predicted; "bad channel": a channel whose samples are no
         measurement; "factor": one factor on levels; "quantity": a derivative or an integral of what is stated;
         "sign"; "conjugate": phases run backwards; "labels": two have changed places; "decibels": levels read as
         sizes; "angle": degrees for radians; "noise_floor": none is stated; "tolerance"; "place".

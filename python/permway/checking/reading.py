@@ -71,7 +71,7 @@ def read(campaign: Campaign) -> Reading:
 def _one(campaign: Campaign, record: Record) -> tuple[Dataset, list[Blunder]]:
     alone, bad = without_bad_channels(campaign.with_records([record]))
     channels_out = [
-        Blunder("spoilt", f"records.{one.record}: {one.channel}", f"{one.kind}: {one.what}", "it is left out")
+        Blunder("bad channel", f"records.{one.record}: {one.channel}", f"{one.kind}: {one.what}", "it is left out")
         for one in bad
     ]
     with warnings.catch_warnings():

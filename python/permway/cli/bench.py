@@ -99,7 +99,7 @@ def time_lines(
         if done and time.perf_counter() - begun > enough_s:
             break
         for name, (line, grid) in tried.items():
-            # One thread: what the processor spends, whatever else runs. Of several only the clock tells the gain.
+            # One thread: what the processor spends, whatever else runs. Of several only the clock shows the gain.
             for kind, count, clock in (("one", 1, time.process_time), ("all", threads, time.perf_counter)):
                 start = clock()
                 receptance(line, grid, forces=at, sensors=at, threads=count)

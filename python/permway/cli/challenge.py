@@ -88,9 +88,9 @@ def challenge_weigh(
 ) -> None:
     """How hard each campaign is, by its deviance.
 
-    The deviance that no recalibration takes away, against a twin with the same parameters, noise and errors, and
-    nothing concealed. Easy above 200, medium above 50, hard above 15; below, the right answer is that the records
-    do not tell.
+    The deviance that no recalibration takes away, against a control with the same parameters, noise and errors,
+    and nothing concealed. Easy above 200, medium above 50, hard above 15; below, the right answer is that the
+    records leave it open.
     """
     from permway.challenge.weigh import weigh
     from permway.posterior.deviance import against_folder

@@ -1,4 +1,4 @@
-"""The next measurement: the one on the menu that would tell two rivals apart, for its cost."""
+"""The next measurement: the one on the menu that would separate two rivals best, for its cost."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ def advise(
     measured = right.evidence.selected(right.evidence.records).datasets
     items = list(menu(right.evidence.campaign, measured))
 
-    def told(begun: int) -> None:
+    def started(index: int) -> None:
         if progress is not None:
-            progress("advise", begun, len(items))
+            progress("advise", index, len(items))
 
     def expected(item: Item) -> float | None:
         try:
@@ -50,7 +50,7 @@ def advise(
             # What the model cannot predict cannot be advised.
             return None
 
-    expectations = each(expected, items, threads=right.evidence.threads, told=told)
+    expectations = each(expected, items, threads=right.evidence.threads, progress=started)
     for item, more in zip(items, expectations, strict=True):
         if more is None:
             continue
@@ -73,20 +73,20 @@ def separation(item: Item, right: Fit, other: Fit) -> float:
     measured = dataset.data.assign({name: values[name] for name in values.data_vars if name in dataset.data})
     evidence = evidence_of(truth, [replace(dataset, data=measured)], right.evidence)
 
-    # Deviations are held against what noise does to them on the mean, and here is none.
-    nothing = evidence.deviations(evidence.predicted(truth).datasets)
+    # Residuals are held against what noise does to them on the mean, and here is none.
+    nothing = evidence.residuals(evidence.predicted(truth).datasets)
 
-    def deviations(z: Reals) -> Reals:
+    def residuals(z: Reals) -> Reals:
         rival = item.planned(other.build({f.name: f.value(float(v)) for f, v in zip(other.free, z, strict=True)}))
-        return evidence.deviations(evidence.predicted(rival).datasets) - nothing
+        return evidence.residuals(evidence.predicted(rival).datasets) - nothing
 
-    plain = deviations(other.z)
+    plain = residuals(other.z)
     jacobian = np.zeros((plain.size, other.z.size))
     for i, f in enumerate(other.free):
         moved = other.z.copy()
         step = STEP if moved[i] + STEP <= f.limits[1] else -STEP
         moved[i] += step
-        jacobian[:, i] = (deviations(moved) - plain) / step
+        jacobian[:, i] = (residuals(moved) - plain) / step
     whitener = evidence.whitener
     reduced, left = whitener.reduce(jacobian), whitener.reduce(plain)
     curvature = jacobian.T @ jacobian - reduced.T @ reduced

@@ -1,8 +1,8 @@
-"""What a prediction is held against: standardised deviations, dataset by dataset.
+"""What a prediction is held against: standardised residuals, dataset by dataset.
 
-A block turns one dataset of a campaign into deviations of unit variance if the model is right: of the complex
+A block turns one dataset of a campaign into residuals of unit variance if the model is right: of the complex
 frequency response by its noise, of power by its Gamma distribution, of what two channels share by their coherence.
-Beside them it says how the smooth errors of measuring chains and of the irregularity would move them.
+Beside them it says how the calibration errors of measuring chains and of the irregularity would move them.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import xarray as xr
 
 from permway.arrays import Reals
 from permway.campaign.load import Dataset
-from permway.diagnosis.smooth import Smooth
+from permway.diagnosis.calibration_errors import CalibrationErrors
 
 SURE = 0.25
 """Relative error of a response or a transfer below which it counts by its logarithm."""
@@ -44,27 +44,30 @@ class Rows:
 
 
 class Block(Protocol):
-    """A dataset that deviations are taken of."""
+    """A dataset that residuals are taken of."""
 
     dataset: Dataset
     rows: Rows
 
     @property
     def log_determinant(self) -> float:
-        """Of the covariance that the deviations were whitened by, over that of their noise."""
+        """Of the covariance that the residuals were whitened by, over that of their noise."""
 
-    def deviations(self, predicted: xr.Dataset) -> Reals:
+    def residuals(self, predicted: xr.Dataset) -> Reals:
         """Standardised, shape (n,)."""
 
     def levels_dB(self, predicted: xr.Dataset) -> Reals:
         """Measured over predicted, no error taken out, shape (n,); NaN where a row is no level, but a phase."""
 
+    def scatter_dB(self) -> Reals:
+        """One standard deviation of every line's level, (channel, frequency)."""
+
     def of(self, dataset: Dataset) -> Block:
         """Another record of the same channels and lines, with the same errors."""
 
     @property
-    def smooth(self) -> Smooth:
-        """What smooth errors would do."""
+    def calibration(self) -> CalibrationErrors:
+        """What calibration errors would do."""
 
 
 @dataclass

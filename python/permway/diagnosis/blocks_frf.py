@@ -9,11 +9,12 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.compare import flat
 from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import SURE, Basis, Rows
+from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PairColumns, as_complex, as_parts
+from permway.diagnosis.gaussian_process import GaussianProcess
 from permway.diagnosis.line_noise import noise_variance, widened
-from permway.diagnosis.smooth import Origin, PairColumns, Smooth, as_complex, as_parts
-from permway.diagnosis.wander import Wander
 
 FLOOR = 0.003
 """Relative error that no record is free of: rounding, discretisation, the last decimals (0.026 dB)."""
@@ -23,15 +24,15 @@ REACH = 2
 
 
 class FrfBlock:
-    """Frequency responses: complex deviations by the noise of each line, from coherence, and a floor.
+    """Frequency responses: complex residuals by the noise of each line, from coherence, and a floor.
 
     Errors of chains multiply: a deviation is the logarithm of measured over predicted, in units of the measured
     response. Where noise is large the logarithm is biased, and the difference stands for it, taken about the
-    errors that the other lines tell of: of exp(e) it is linear in e.
+    errors that the other lines show: of exp(e) it is linear in e.
 
-    Beside the noise, which is new on every line, each pair of sensor and point has a smooth error of its own: of
-    the model's idealisation, of where exactly the hammer fell. It is integrated out pair by pair, once, with the
-    measured response for the true one.
+    Beside the noise, which is new on every line, each pair of sensor and point has a calibration error of its own:
+    of the model's idealisation, of where exactly the hammer fell. It is integrated out pair by pair, once, with
+    the measured response for the true one.
 
     Parameters
     ----------
@@ -39,13 +40,13 @@ class FrfBlock:
     floor : float or ndarray, shape (sensors, points, 1)
         Relative error that adds to the noise of each line.
     pair : float
-        Size of a pair's smooth error, neper and rad.
+        Size of a pair's calibration error, neper and rad.
     reference : Dataset of xarray
         A prediction, which stands for what is there where noise hides it.
     errors : ndarray of complex128, shape (sensors, points, F), optional
         Log gain and phase by which chains are expected to be off, that prediction being so; by default none.
     span : (float, float), optional
-        Hz, over which chains' errors wander, where other records of the same chains reach further.
+        Hz, over which chains' errors vary, where other records of the same chains reach further.
     """
 
     KNOTS_PER_OCTAVE = 3.0
@@ -86,11 +87,11 @@ class FrfBlock:
         self._hidden = used & ~self._logarithmic
         gains, offs = (np.broadcast_to(v, used.shape)[self._hidden] for v in (self._gain, off))
         # exp(e) is, about errors E, exp(E) (1 - E) + exp(E) e.
-        self._heard = gains, self._measured[self._hidden] + expected[self._hidden] * offs
+        self._hidden_measured = gains, self._measured[self._hidden] + expected[self._hidden] * offs
         self._chain: Complexes = reference["chain"].values[self._hidden]
         # A response that noise has made larger weighs more: so much is the weighed logarithm above zero.
         self._lifted: Reals = 2.0 * (noise[self._logarithmic] / np.abs(self._seen) ** 2)
-        # Of what is mostly noise, smooth errors act on what is there.
+        # Of what is mostly noise, calibration errors act on what is there.
         self._there: Complexes = np.where(self._logarithmic, self._measured, expected)
         self._span = span or (float(self.frequency[0]), float(self.frequency[-1]))
         fine = Basis(float(self.frequency[0]), float(self.frequency[-1]), self.KNOTS_PER_OCTAVE)
@@ -126,7 +127,7 @@ class FrfBlock:
         self.pair = pair
         self._shrink = 1.0 - 1.0 / np.sqrt(1.0 + (pair * self._singular) ** 2)
         self._last: tuple[xr.Dataset, Reals] | None = None
-        self.__dict__.pop("smooth", None)
+        self.__dict__.pop("calibration", None)
 
     def with_pair(self, pair: float) -> FrfBlock:
         """The same with another size of the pairs' errors."""
@@ -141,6 +142,11 @@ class FrfBlock:
     def with_reference(self, reference: xr.Dataset, errors: Complexes) -> FrfBlock:
         """The same with another prediction, and errors of chains, where noise hides what is there."""
         return self._other(reference=reference, errors=errors)
+
+    def scatter_dB(self) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        scale = self.rows.scale_dB
+        return np.asarray(scale[: scale.size // 2].reshape(flat(self.dataset, self.dataset.data).shape))
 
     def of(self, dataset: Dataset) -> FrfBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
@@ -175,7 +181,7 @@ class FrfBlock:
         return float(2.0 * np.log1p((self.pair * self._singular) ** 2).sum())
 
     def white(self, values: Complexes) -> Complexes:
-        """Takes out of weighted values (sensor, force, frequency) what the pairs' smooth errors would explain."""
+        """Takes out of weighted values (sensor, force, frequency) what calibration errors of pairs explain."""
         parts = as_parts((values * self._phase.conj())[..., None])
         parts -= self._directions @ (self._shrink[..., None] * self._within(parts))
         return np.asarray(as_complex(parts)[..., 0] * self._phase)
@@ -184,7 +190,7 @@ class FrfBlock:
         """Of real columns (sensor, force, frequency, k) what lies along each pair's directions, one for each."""
         return np.asarray(self._directions.swapaxes(-1, -2) @ parts)
 
-    def deviations(self, predicted: xr.Dataset) -> Reals:
+    def residuals(self, predicted: xr.Dataset) -> Reals:
         """Real parts, then imaginary parts."""
         last = self._last
         if last is None or last[0] is not predicted:
@@ -204,8 +210,8 @@ class FrfBlock:
         model = predicted["frf"].values
         found = np.zeros_like(self._measured)
         found[self._logarithmic] = self._seen * (self._logarithms(model) - self._lifted)
-        hidden, (gains, heard) = model[self._hidden], self._heard
-        found[self._hidden] = heard - gains * hidden * _straight(
+        hidden, (gains, measured) = model[self._hidden], self._hidden_measured
+        found[self._hidden] = measured - gains * hidden * _straight(
             predicted["chain"].values[self._hidden] / self._chain
         )
         return found
@@ -229,15 +235,17 @@ class FrfBlock:
             return np.asarray(np.where(self._logarithmic, self._measured / predicted["frf"].values, self._gain))
 
     @cached_property
-    def smooth(self) -> Smooth:
+    def calibration(self) -> CalibrationErrors:
         """Of each sensor's chain and of the hammer's at each point: log gain and phase."""
-        wander = Wander(*self._span)
+        process = GaussianProcess(*self._span)
         sensors, points = (self.dataset.data[kind].values.astype(str) for kind in ("sensor", "force"))
-        # Measured is what is there times the error: deviations grow by it.
-        gains = self._relative[..., None] * wander.values(self.frequency)
+        # Measured is what is there times the error: residuals grow by it.
+        gains = self._relative[..., None] * process.values(self.frequency)
         gains -= self._directions @ (self._shrink[..., None] * self._within(gains))
         names = [*(f"sensor {name}" for name in sensors), *(f"force {name}" for name in points)]
-        return Smooth(tuple(Origin(name, wander, 2) for name in names), PairColumns(gains, self._phase))
+        return CalibrationErrors(
+            tuple(ErrorSource(name, process, 2) for name in names), PairColumns(gains, self._phase)
+        )
 
 
 def _square(values: Complexes) -> Reals:
@@ -245,10 +253,10 @@ def _square(values: Complexes) -> Reals:
 
 
 def _straight(chain: Complexes) -> Complexes:
-    """By what a hidden prediction is multiplied, so that smooth errors may undo what its chain is off by.
+    """By what a hidden prediction is multiplied, so that calibration errors may undo what its chain is off by.
 
     It is off from the reference's by exp(r), and errors by -r undo that where logarithms count. So does 1 + r
-    here, and exp(r) would leave r^2 / 2: a delay whose phase smooth errors take back would be louder. What is
+    here, and exp(r) would leave r^2 / 2: a delay whose phase calibration errors take back would be louder. What is
     farther off than errors go stays as predicted.
     """
     if np.all(chain == 1.0):

@@ -8,9 +8,9 @@ import xarray as xr
 from permway.arrays import Reals
 from permway.campaign.compare import NEPER_DB
 from permway.campaign.load import Dataset
-from permway.campaign.predict.modes import FARTHEST, LIGHTEST
+from permway.campaign.predictions.modes import FARTHEST, LIGHTEST
 from permway.diagnosis.blocks import Rows
-from permway.diagnosis.smooth import PlainColumns, Smooth
+from permway.diagnosis.calibration_errors import CalibrationErrors, PlainColumns
 from permway.errors import InputError
 
 MISSED = (float(np.log(FARTHEST)), 0.0)
@@ -63,7 +63,7 @@ class ModesBlock:
                 remedy="give bodies or laws of the model a loss_factor, or leave the damping of the mode empty",
             )
 
-    def deviations(self, predicted: xr.Dataset) -> Reals:
+    def residuals(self, predicted: xr.Dataset) -> Reals:
         """Logarithms of measured over predicted, in standard deviations."""
         return np.asarray(self._logarithms(predicted) / self.sigma)
 
@@ -80,14 +80,18 @@ class ModesBlock:
             off[row, missed] = size
         return np.asarray(off[self._stated])
 
+    def scatter_dB(self) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        return np.asarray(NEPER_DB * self.dataset.data["relative_sd"].values)
+
     def of(self, dataset: Dataset) -> ModesBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
         return ModesBlock(dataset)
 
     @property
-    def smooth(self) -> Smooth:
+    def calibration(self) -> CalibrationErrors:
         """None: what is listed has its own standard deviation."""
-        return Smooth((), PlainColumns(np.zeros((self.sigma.size, 0))))
+        return CalibrationErrors((), PlainColumns(np.zeros((self.sigma.size, 0))))
 
 
 def missed_modes(record: xr.Dataset) -> list[str]:

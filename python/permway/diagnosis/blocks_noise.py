@@ -1,4 +1,4 @@
-"""Noise of the sensors of a hammer test against each other, as their coherence tells it."""
+"""Noise of the sensors of a hammer test against each other, as their coherence states it."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import xarray as xr
 from permway.arrays import Reals
 from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import Rows
-from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
+from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
 
 FEWEST = 5
-"""Sensors that tell how much their noise differs; with fewer none is told from the others."""
+"""Sensors that show how much their noise differs; with fewer none stands out from the others."""
 
 SCATTER = 0.7
 """Of the logarithm of noise from sensor to sensor, in power, at least: a factor of 2."""
@@ -23,14 +23,14 @@ NORMAL = 1.4826
 """Standard deviations of a normal variable in its median absolute deviation."""
 
 QUIETEST = 0.1
-"""Quantile over pairs and lines that tells a sensor's noise: where it hears little. Elsewhere the force cell's
+"""Quantile over pairs and lines that shows a sensor's noise: where it hears little. Elsewhere the force cell's
 noise, or the decimals that coherence is written with, come to more."""
 
 ANY = 20.0
 """Of what all sensors have in common, hammer and ground: unknown."""
 
 UNKNOWN = 1e3
-"""dB: no level is told by noise."""
+"""dB: noise constrains no level."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class NoiseBlock:
     """Logarithms of noise by sensor, in power of the response.
 
     What hammer and ground do, all sensors of a test have in common; what is left is each one's own. How far these
-    may differ is told by the middle of the sensors, so that one that is far off stands out.
+    may differ is given by the middle of the sensors, so that one that is far off stands out.
 
     Parameters
     ----------
@@ -79,13 +79,13 @@ class NoiseBlock:
         )
 
     @staticmethod
-    def tells(dataset: Dataset) -> bool:
+    def is_constrained(dataset: Dataset) -> bool:
         """Whether a dataset has enough sensors, and their coherence."""
         if dataset.record.statistic != "frf" or dataset.data.sizes["sensor"] < FEWEST:
             return False
         return bool(np.isfinite(_noise(dataset.data)).any(axis=(1, 2)).all())
 
-    def deviations(self, predicted: xr.Dataset) -> Reals:
+    def residuals(self, predicted: xr.Dataset) -> Reals:
         """Measured less predicted over how far sensors differ, as a normal variable of the same density has it."""
         off = np.asarray((self.own - np.log(predicted["noise_factor"].values)) / self.scatter)
         if not self._student:
@@ -94,11 +94,15 @@ class NoiseBlock:
         return np.asarray(np.sign(off) * np.sqrt((freedom + 1.0) * np.log1p(off**2 / freedom)))
 
     def levels_dB(self, predicted: xr.Dataset) -> Reals:
-        """None: noise tells no level."""
+        """None: noise constrains no level."""
         return np.full(self.own.size, np.nan)
 
+    def scatter_dB(self) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`; noise has no level that is compared."""
+        return np.zeros((0, 0))
+
     def of(self, dataset: Dataset) -> NoiseBlock:
-        """See :class:`permway.diagnosis.blocks.Block`; how far sensors may differ, each test tells itself."""
+        """See :class:`permway.diagnosis.blocks.Block`; how far sensors may differ, each test states itself."""
         return NoiseBlock(dataset, student=self._student)
 
     def as_student(self) -> NoiseBlock:
@@ -106,11 +110,11 @@ class NoiseBlock:
         return NoiseBlock(self.dataset, student=True)
 
     @cached_property
-    def smooth(self) -> Smooth:
+    def calibration(self) -> CalibrationErrors:
         """What all sensors of the test have in common."""
         column = np.full((self.names.size, 1), ANY / self.scatter)
-        origin = Origin(f"unrest {self.dataset.record.name}", Level(), 1, fixed=True)
-        return Smooth((origin,), PlainColumns(column))
+        source = ErrorSource(f"unrest {self.dataset.record.name}", Level(), 1, fixed=True)
+        return CalibrationErrors((source,), PlainColumns(column))
 
 
 def _noise(data: xr.Dataset) -> Reals:

@@ -10,12 +10,12 @@ import xarray as xr
 from scipy.ndimage import uniform_filter1d
 
 from permway.arrays import Complexes, Reals
-from permway.campaign.compare import NEPER_DB
+from permway.campaign.compare import NEPER_DB, flat
 from permway.campaign.load import Dataset
 from permway.campaign.passage import spectrum_of
 from permway.diagnosis.blocks import Rows
-from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
-from permway.diagnosis.wander import Wander
+from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
+from permway.diagnosis.gaussian_process import GaussianProcess
 
 FLOOR = 0.003
 """Relative error that no record is free of, as of frequency responses: of the spectrum's size about a line."""
@@ -57,7 +57,7 @@ class PassageBlock:
     floor : float
         Relative error beside the noise of each line.
     span : (float, float), optional
-        Hz, over which chains' errors wander, where other passages reach further.
+        Hz, over which chains' errors vary, where other passages reach further.
     """
 
     log_determinant = 0.0
@@ -84,7 +84,7 @@ class PassageBlock:
         columns = (label, label, np.full(label.shape, ""), at, scale)
         self.rows = Rows(*(np.tile(v.reshape(-1), 2) for v in columns))
 
-    def deviations(self, predicted: xr.Dataset) -> Reals:
+    def residuals(self, predicted: xr.Dataset) -> Reals:
         """Measured less predicted, in standard deviations."""
         return _parts((self.measured - predicted["spectrum"].values) / self.sigma)
 
@@ -94,6 +94,11 @@ class PassageBlock:
             levels = NEPER_DB * np.log(np.abs(self.measured) / np.abs(predicted["spectrum"].values))
         levels = np.where(np.abs(self.measured) > LOW * self.size, levels, np.nan).reshape(-1)
         return np.concatenate([levels, np.full(levels.size, np.nan)])
+
+    def scatter_dB(self) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        scale = self.rows.scale_dB
+        return np.asarray(scale[: scale.size // 2].reshape(flat(self.dataset, self.dataset.data).shape))
 
     def of(self, dataset: Dataset) -> PassageBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
@@ -108,33 +113,33 @@ class PassageBlock:
         return self._as(self.dataset, self._reference, floor)
 
     def _as(self, dataset: Dataset, spectrum: Complexes, floor: float | None = None) -> PassageBlock:
-        reference = dataset.template.copy(data={"spectrum": spectrum})
+        reference = dataset.data[["spectrum"]].copy(data={"spectrum": spectrum})
         floor = self.floor if floor is None else floor
         return PassageBlock(dataset, reference=reference, floor=floor, span=self._span)
 
     @cached_property
-    def smooth(self) -> Smooth:
+    def calibration(self) -> CalibrationErrors:
         """Of every channel its chain, and its drift in this record."""
-        wander = Wander(*(self._span or (float(self.frequency[0]), float(self.frequency[-1]))))
-        values = wander.values(self.frequency)
+        process = GaussianProcess(*(self._span or (float(self.frequency[0]), float(self.frequency[-1]))))
+        values = process.values(self.frequency)
         drift = _drifts(self.dataset.data)
-        origins: list[Origin] = []
+        sources: list[ErrorSource] = []
         columns: list[Reals] = []
         for index, name in enumerate(self.names):
             read = (self._reference[index] / self.sigma[index])[:, None]
             gain = read * values
             size = DRIFT * float(np.sqrt(np.mean(np.abs(self.measured[index]) ** 2)))
             moved = size * drift / self.sigma[index][:, None]
-            origins += [
-                Origin(f"gain {name}", Apart(1), 1, chain=False),
-                Origin(f"channel {name}", wander, 2),
-                Origin(f"drift of {self.dataset.record.name}: {name}", Apart(3), 1, chain=False, fixed=True),
+            sources += [
+                ErrorSource(f"gain {name}", Apart(1), 1, chain=False),
+                ErrorSource(f"channel {name}", process, 2),
+                ErrorSource(f"drift of {self.dataset.record.name}: {name}", Apart(3), 1, chain=False, fixed=True),
             ]
             for column in np.hstack([read, gain, 1j * gain, moved]).T:
                 whole = np.zeros(self.measured.shape, dtype=np.complex128)
                 whole[index] = column
                 columns.append(_parts(whole))
-        return Smooth(tuple(origins), PlainColumns(np.stack(columns, axis=1)))
+        return CalibrationErrors(tuple(sources), PlainColumns(np.stack(columns, axis=1)))
 
 
 def _parts(values: Complexes) -> Reals:

@@ -9,20 +9,21 @@ import xarray as xr
 from scipy.special import polygamma
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.compare import POWER_DB, flat
 from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import SURE, Rows
-from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
+from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
+from permway.diagnosis.gaussian_process import GaussianProcess
 from permway.diagnosis.spectra_errors import Moved, Part, at_most
 from permway.diagnosis.spectra_parts import coherence, mean_of_logarithm, remainder, transfer, tree_of
-from permway.diagnosis.wander import Wander
 from permway.errors import InputError
 
 FIRST_LINE = 4
 """From zero, from which lines are used: Hann's window reaches over four: nearer ones hold what is beyond zero."""
 
 TORN = 0.08
-"""Of a channel's power, at the first line from zero, what smooth errors of 1.5 dB and as many neper of phase tear
-from what it shares with another: they differ within the window. At further lines less by their square."""
+"""Of a channel's power, at the first line from zero, what calibration errors of 1.5 dB and as many neper of phase
+tear from what it shares with another: they differ within the window. At further lines less by their square."""
 
 FEWEST = 3.0
 """Averages of a run."""
@@ -49,7 +50,7 @@ class SpectraBlock:
     floor : float
         Relative error of transfers that adds to their scatter.
     span : (float, float), optional
-        Hz, over which chains' errors wander, where other records of the same channels reach further.
+        Hz, over which chains' errors vary, where other records of the same channels reach further.
     """
 
     LEAST_COHERENCE = 0.1
@@ -129,7 +130,7 @@ class SpectraBlock:
         )
         self._span = span or (float(self.frequency[0]), float(self.frequency[-1]))
 
-    def deviations(self, predicted: xr.Dataset) -> Reals:
+    def residuals(self, predicted: xr.Dataset) -> Reals:
         """Part by part, transfers as real then imaginary."""
         model = predicted["csd"].values[:, :, self._lines]
         found = []
@@ -152,7 +153,7 @@ class SpectraBlock:
 
     @property
     def unshared(self) -> Reals:
-        """What a neper more of all that channels do not share does to the deviations, (n,)."""
+        """What a neper more of all that channels do not share does to the residuals, (n,)."""
         found = []
         for what, _, _, at, sigma in self._parts:
             found.extend([np.zeros(at.size)] * (1 + (what == "transfer")))
@@ -167,11 +168,16 @@ class SpectraBlock:
             parts.append(np.ones(at.size))
             if what == "transfer":
                 parts.append(np.full(at.size, np.nan))
-        return np.asarray(self.deviations(predicted) * self.rows.scale_dB * np.concatenate(parts))
+        return np.asarray(self.residuals(predicted) * self.rows.scale_dB * np.concatenate(parts))
 
     def expecting(self, expected: xr.Dataset, added: Reals, away: Complexes) -> SpectraBlock:
         """The same weighed by another prediction."""
         return SpectraBlock(self.dataset, expected, added=added, away=away, floor=self._floor, span=self._span)
+
+    def scatter_dB(self) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`; that of a power's estimate."""
+        data = self.dataset.data
+        return np.full(flat(self.dataset, data).shape, POWER_DB / np.sqrt(float(data.attrs["averages"])))
 
     def of(self, dataset: Dataset) -> SpectraBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
@@ -192,22 +198,22 @@ class SpectraBlock:
         return Moved(tuple(self._parts), model, added, self._away[:, :, self._lines])
 
     @cached_property
-    def smooth(self) -> Smooth:
+    def calibration(self) -> CalibrationErrors:
         """Of each channel's chain, log gain and phase, and of the irregularity's level."""
         names = self.dataset.data["channel"].values.astype(str)
         speed, step_Hz = self.dataset.condition.speed_m_per_s, 1.0 / self.dataset.record.segment_s
-        moved, wander, each = self.moved, Wander(*self._span), np.eye(names.size, dtype=np.complex128)
-        origins = [Origin(f"channel {name}", wander, 2) for name in names]
+        moved, process, each = self.moved, GaussianProcess(*self._span), np.eye(names.size, dtype=np.complex128)
+        sources = [ErrorSource(f"channel {name}", process, 2) for name in names]
         columns = [
-            moved.columns(part * one, wander, self.frequency, step_Hz) for one in each for part in (1.0, 1j)
+            moved.columns(part * one, process, self.frequency, step_Hz) for one in each for part in (1.0, 1j)
         ]
         if speed is not None:
             # The same track under every speed: of a power, as half as much in every channel.
             half = np.full(names.size, 0.5, dtype=np.complex128)
-            origins.append(Origin("irregularity", LEVEL, 1, chain=False))
+            sources.append(ErrorSource("irregularity", LEVEL, 1, chain=False))
             columns.append(moved.columns(half, LEVEL, self.frequency / speed, step_Hz / speed))
-        return Smooth(tuple(origins), PlainColumns(np.hstack(columns)))
+        return CalibrationErrors(tuple(sources), PlainColumns(np.hstack(columns)))
 
 
-LEVEL = Wander(0.005, 20.0, shortest=0.7)
+LEVEL = GaussianProcess(0.005, 20.0, shortest=0.7)
 """Of the irregularity, over cycles per metre."""

@@ -8,10 +8,11 @@ import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
+from permway.campaign.compare import flat
 from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import Rows
-from permway.diagnosis.smooth import Origin, PlainColumns, Smooth
-from permway.diagnosis.wander import Wander
+from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
+from permway.diagnosis.gaussian_process import GaussianProcess
 
 SCATTER_DB = {"decay_rate": 1.0, "transmissibility": 0.3, "modulus": 0.5}
 """One standard deviation of a value, where the record says none: 10 lg of a decay rate, 20 lg of the others."""
@@ -27,7 +28,7 @@ class TableBlock:
     scatter_dB : float, optional
         By default :data:`SCATTER_DB`.
     span : (float, float), optional
-        Hz, over which errors wander, where other records reach further.
+        Hz, over which errors vary, where other records reach further.
     """
 
     log_determinant = 0.0
@@ -54,34 +55,38 @@ class TableBlock:
             text, text, np.full(text.size, ""), np.tile(self.frequency, count), np.full(text.size, scatter)
         )
 
-    def deviations(self, predicted: xr.Dataset) -> Reals:
+    def residuals(self, predicted: xr.Dataset) -> Reals:
         """Logarithms of measured over predicted; of complex values modulus, then phase."""
         ratio = np.log((self.measured / predicted[self.name].values).reshape(-1)) / self.sigma
         return np.concatenate([ratio.real, ratio.imag]) if self.complex else np.asarray(ratio)
 
     def levels_dB(self, predicted: xr.Dataset) -> Reals:
         """See :class:`permway.diagnosis.blocks.Block`."""
-        found = self.deviations(predicted) * self.rows.scale_dB
+        found = self.residuals(predicted) * self.rows.scale_dB
         if self.complex:
             found[found.size // 2 :] = np.nan
         return np.asarray(found)
+
+    def scatter_dB(self) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        return np.full(flat(self.dataset, self.dataset.data).shape, float(self.rows.scale_dB[0]))
 
     def of(self, dataset: Dataset) -> TableBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
         return TableBlock(dataset, scatter_dB=self._scatter, span=self._span)
 
     @cached_property
-    def smooth(self) -> Smooth:
-        """Of the rig, or of the method: a smooth error of the logarithm.
+    def calibration(self) -> CalibrationErrors:
+        """Of the rig, or of the method: a calibration error of the logarithm.
 
         What a model misses of the decay along one section, it misses at every visit.
         """
-        wander = Wander(*(self._span or (float(self.frequency.min()), float(self.frequency.max()))))
-        values = wander.values(self.frequency) / self.sigma
+        process = GaussianProcess(*(self._span or (float(self.frequency.min()), float(self.frequency.max()))))
+        values = process.values(self.frequency) / self.sigma
         zero = np.zeros_like(values)
         matrix = np.block([[values, zero], [zero, values]]) if self.complex else values
-        origin = Origin(f"record {self.dataset.record.name}", wander, 2 if self.complex else 1)
+        source = ErrorSource(f"record {self.dataset.record.name}", process, 2 if self.complex else 1)
         if self.name != "decay_rate":
-            return Smooth((origin,), PlainColumns(matrix))
-        section = Origin("decay of the section", wander, 1)
-        return Smooth((origin, section), PlainColumns(np.hstack([matrix, matrix])))
+            return CalibrationErrors((source,), PlainColumns(matrix))
+        section = ErrorSource("decay of the section", process, 1)
+        return CalibrationErrors((source, section), PlainColumns(np.hstack([matrix, matrix])))

@@ -1,4 +1,4 @@
-"""Predicted against measured, with the owner's values and recalibrated: all numbers, none of them drawn."""
+"""Predicted against measured, with the nominal values and recalibrated: all numbers, none of them drawn."""
 
 from __future__ import annotations
 
@@ -11,18 +11,16 @@ import xarray as xr
 
 from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
-from permway.campaign.compare import NEPER_DB, POWER_DB, POWERS, VARIABLE, curves, flat, third_octaves
-from permway.diagnosis.blocks import Block
-from permway.diagnosis.blocks_frf import FrfBlock
-from permway.diagnosis.blocks_modes import ModesBlock, missed_modes
-from permway.diagnosis.blocks_passage import PassageBlock
-from permway.diagnosis.compare_tables import parameters_of, smooth_of
+from permway.campaign.compare import NEPER_DB, POWER_DB, curves, flat, third_octaves
+from permway.campaign.kinds import kind_of
+from permway.diagnosis.blocks_modes import missed_modes
+from permway.diagnosis.compare_tables import calibration_of, parameters_of
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.fit import Fit, Free, free_parameters
 from permway.diagnosis.residuals import standardised
 from permway.diagnosis.tangent import STEP
 
-RAW, RECALIBRATED, CLEAN = "raw", "recalibrated", "smooth errors out"
+RAW, RECALIBRATED, CLEAN = "raw", "recalibrated", "calibration errors out"
 
 KIND = {
     "frf": "hammer responses",
@@ -43,7 +41,7 @@ class Comparison:
     Attributes
     ----------
     campaign : Campaign
-        With its owner's values.
+        With its nominal values.
     fit : Fit or None
         None if nothing was recalibrated.
     records : tuple of Dataset
@@ -52,12 +50,12 @@ class Comparison:
         them for the recalibrated one.
     bands : tuple of Dataset
         Record by record, see :func:`permway.campaign.compare.third_octaves`.
-    deviations : tuple of Dataset
+    residuals : tuple of Dataset
         Record by record `z` (model, part, row, frequency): see :func:`permway.diagnosis.residuals.standardised`.
     parameters : Dataset
         By `parameter`.
-    smooth : Dataset
-        By `origin`: the size of the smooth errors that were allowed.
+    calibration : Dataset
+        By `source`: the size of the calibration errors that were allowed.
     left_out : mapping of str to str
         Records that cannot be predicted, and why.
     """
@@ -66,9 +64,9 @@ class Comparison:
     fit: Fit | None
     records: tuple[xr.Dataset, ...]
     bands: tuple[xr.Dataset, ...]
-    deviations: tuple[xr.Dataset, ...]
+    residuals: tuple[xr.Dataset, ...]
     parameters: xr.Dataset
-    smooth: xr.Dataset
+    calibration: xr.Dataset
     left_out: Mapping[str, str]
 
     @property
@@ -84,7 +82,7 @@ class Comparison:
         list of dict
             `kind`, `records`, `channels`; `noise_dB_rms`, what noise alone would leave of levels in one-third
             octaves; of each model `MODEL_dB_rms` of these, and `MODEL_within_2_sigma`, the share of standardised
-            deviations, of which 95 % would be if there were noise alone.
+            residuals, of which 95 % would be if there were noise alone.
         """
         rows = []
         for kind in dict.fromkeys(KIND[record.attrs["statistic"]] for record in self.records):
@@ -101,7 +99,7 @@ class Comparison:
                 level = np.concatenate(
                     [self.bands[i]["deviation_dB"].sel(model=model).values.ravel() for i in mine]
                 )
-                z = np.concatenate([self.deviations[i]["z"].sel(model=model).values.ravel() for i in mine])
+                z = np.concatenate([self.residuals[i]["z"].sel(model=model).values.ravel() for i in mine])
                 z, level = z[np.isfinite(z)], level[np.isfinite(level)]
                 row[f"{model}_dB_rms"] = float(np.sqrt(np.mean(level**2))) if level.size else None
                 row[f"{model}_within_2_sigma"] = float(np.mean(np.abs(z) <= 2.0)) if z.size else None
@@ -131,7 +129,7 @@ def assemble(
 ) -> Comparison:
     """The comparison of records that are read, and of a model that is recalibrated, already.
 
-    Deviations are counted in the noise and the smooth errors of pairs of the fit, for both models.
+    Residuals are counted in the noise and the calibration errors of pairs of the fit, for both models.
     """
     campaign = evidence.campaign
     whole = evidence if fit is None else fit.evidence
@@ -142,7 +140,7 @@ def assemble(
     spreads: dict[str, list[Reals] | None] = {
         RAW: _spread(measure, free, np.zeros(len(free)), np.eye(len(free)), solved[RAW])
     }
-    rows = {RAW: measure.deviations(solved[RAW].datasets)}
+    rows = {RAW: measure.residuals(solved[RAW].datasets)}
     if fit is not None:
         solved[RECALIBRATED] = measure.predicted(fit.campaign)
         # An amendment may have brought parameters of its own, which a campaign's values do not hold.
@@ -150,12 +148,12 @@ def assemble(
         spreads[RECALIBRATED] = (
             _spread(measure, free, fit.z, fit.covariance, solved[RECALIBRATED]) if alike else None
         )
-        rows |= {RECALIBRATED: fit.deviations[mine], CLEAN: fit.clean[mine]}
+        rows |= {RECALIBRATED: fit.residuals[mine], CLEAN: fit.clean[mine]}
     block_of = measure.block_of
-    records, bands, deviations = [], [], []
+    records, bands, residuals = [], [], []
     for index, block in enumerate(measure.blocks):
         predictions = {name: s.datasets[index] for name, s in solved.items()}
-        record = curves(campaign, block.dataset, predictions, _scatter_dB(block))
+        record = curves(campaign, block.dataset, predictions, block.scatter_dB())
         unknown = np.full(record["scatter_dB"].shape, np.nan)
         spread = np.stack([unknown if s is None else s[index] for s in spreads.values()])
         attrs = {"long_name": "standard deviation of the predicted level", "units": "dB"}
@@ -165,31 +163,17 @@ def assemble(
         own = {name: values[block_of == index] for name, values in rows.items()}
         if fit is not None:
             predictions[CLEAN] = predictions[RECALIBRATED]
-        deviations.append(standardised(block, own, predictions))
+        residuals.append(standardised(block, own, predictions))
     return Comparison(
         campaign=campaign,
         fit=fit,
         records=tuple(records),
         bands=tuple(bands),
-        deviations=tuple(deviations),
+        residuals=tuple(residuals),
         parameters=parameters_of(campaign, fit),
-        smooth=smooth_of(measure),
+        calibration=calibration_of(measure),
         left_out=dict(left_out or {}),
     )
-
-
-def _scatter_dB(block: Block) -> Reals:
-    """One standard deviation of every line's level, (channel, frequency)."""
-    data = block.dataset.data
-    shape = flat(block.dataset, data).shape
-    statistic = block.dataset.record.statistic
-    if isinstance(block, FrfBlock | PassageBlock):
-        return np.asarray(block.rows.scale_dB[: block.rows.scale_dB.size // 2].reshape(shape))
-    if statistic in ("csd", "psd"):
-        return np.full(shape, POWER_DB / np.sqrt(float(data.attrs["averages"])))
-    if isinstance(block, ModesBlock):
-        return np.asarray(NEPER_DB * data["relative_sd"].values)
-    return np.full(shape, float(block.rows.scale_dB[0]))
 
 
 def _spread(evidence: Evidence, free: Sequence[Free], z: Reals, covariance: Reals, solved: Solved) -> list[Reals]:
@@ -208,7 +192,7 @@ def _spread(evidence: Evidence, free: Sequence[Free], z: Reals, covariance: Real
             slope.append(np.asarray(np.log(change) / step))
     found = []
     for slope, dataset in zip(slopes, evidence.datasets, strict=True):
-        scale = POWER_DB if VARIABLE[dataset.record.statistic] in POWERS else NEPER_DB
+        scale = POWER_DB if kind_of(dataset.record).power else NEPER_DB
         if not slope:
             found.append(np.zeros(flat(dataset, dataset.data).shape))
             continue

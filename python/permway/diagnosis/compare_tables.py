@@ -1,4 +1,4 @@
-"""Parameters and sizes of smooth errors of a comparison, as labelled tables."""
+"""Parameters and sizes of calibration errors of a comparison, as labelled tables."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import numpy as np
 import xarray as xr
 
 from permway.campaign.campaign import Campaign
-from permway.campaign.compare import NEPER_DB, POWER_DB, POWERS, VARIABLE
+from permway.campaign.compare import NEPER_DB, POWER_DB
+from permway.campaign.kinds import kind_of
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import WIDTH, Fit
@@ -22,7 +23,7 @@ LEFT = 2.0
 
 
 def parameters_of(campaign: Campaign, fit: Fit | None) -> xr.Dataset:
-    """Owner's value and tolerance of every parameter; recalibrated, beside them, what was found."""
+    """Nominal value and tolerance of every parameter; recalibrated, beside them, what was found."""
     known = list(campaign.parameters.known.values())
     nominal = np.array([k.nominal for k in known])
     columns: dict[str, Any] = {
@@ -50,17 +51,17 @@ def parameters_of(campaign: Campaign, fit: Fit | None) -> xr.Dataset:
             "parameter": np.array([k.name for k in known], dtype=str),
             "unit": ("parameter", np.array([k.parameter.unit for k in known], dtype=str)),
         },
-        attrs={"interval": "low to high hold 90 %", "z": "standard deviations of the owner's prior"},
+        attrs={"interval": "low to high hold 90 %", "z": "standard deviations of the prior"},
     )
 
 
-def smooth_of(evidence: Evidence) -> xr.Dataset:
-    """Sizes of the smooth errors that were allowed, dB of the level they act on."""
-    decay = {f"record {d.record.name}" for d in evidence.datasets if VARIABLE[d.record.statistic] in POWERS}
+def calibration_of(evidence: Evidence) -> xr.Dataset:
+    """Sizes of the calibration errors that were allowed, dB of the level they act on."""
+    decay = {f"record {d.record.name}" for d in evidence.datasets if kind_of(d.record).power}
     sizes = {
-        origin: size * (POWER_DB if origin.startswith(("irregularity", "decay")) or origin in decay else NEPER_DB)
-        for origin, size in evidence.sizes.items()
-        if origin in {o.name for o in evidence.columns.origins}
+        source: size * (POWER_DB if source.startswith(("irregularity", "decay")) or source in decay else NEPER_DB)
+        for source, size in evidence.sizes.items()
+        if source in {o.name for o in evidence.columns.sources}
     }
     for block in evidence.blocks:
         if isinstance(block, FrfBlock):
@@ -68,10 +69,10 @@ def smooth_of(evidence: Evidence) -> xr.Dataset:
     return xr.Dataset(
         {
             "size_dB": (
-                "origin",
+                "source",
                 np.array(list(sizes.values())),
                 {"long_name": "standard deviation", "units": "dB"},
             )
         },
-        coords={"origin": np.array(list(sizes), dtype=str)},
+        coords={"source": np.array(list(sizes), dtype=str)},
     )

@@ -1,4 +1,4 @@
-"""A diagnosis that tells of blunders first."""
+"""A diagnosis that names blunders first."""
 
 from __future__ import annotations
 
@@ -29,6 +29,6 @@ def doubted(diagnosis: Diagnosis, checked: Checked) -> Diagnosis:
         )
         # Spoilt channels are effects of the verdict already.
         for one in checked.blunders
-        if one.kind != "spoilt"
+        if one.kind != "bad channel"
     )
     return replace(diagnosis, verdict=diagnosis.verdict.model_copy(update={"blunders": doubts}))

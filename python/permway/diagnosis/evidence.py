@@ -1,4 +1,4 @@
-"""All records of a campaign together: deviations, what smooth errors explain of them, and what is left."""
+"""All records of a campaign together: residuals, what calibration errors explain of them, and what is left."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from permway.campaign.predict import (
 )
 from permway.diagnosis.blocks import Block, Rows
 from permway.diagnosis.blocks_noise import NoiseBlock
+from permway.diagnosis.gaussian_process import FIRST_LENGTH
 from permway.diagnosis.side_by_side import threads_of_solver
 from permway.diagnosis.thinning import thinned
-from permway.diagnosis.wander import FIRST_LENGTH
 from permway.diagnosis.whitener import AllColumns, Whitener
 
 
@@ -96,15 +96,15 @@ def _read_alike(one: Campaign, other: Campaign, dataset: Dataset) -> bool:
 
 @dataclass(frozen=True)
 class Evidence:
-    """The records of a campaign as one vector of standardised deviations.
+    """The records of a campaign as one vector of standardised residuals.
 
     Attributes
     ----------
     campaign : Campaign
-        As its owner believes it; its values are what is varied.
+        With its nominal values, which are varied.
     blocks : tuple of Block
     sizes : mapping of origin to float
-        Standard deviation of each origin's smooth errors, neper or rad.
+        Standard deviation of each origin's calibration errors, neper or rad.
     length : float
         Octaves over which the errors of chains correlate.
     threads : int, optional
@@ -160,9 +160,9 @@ class Evidence:
             datasets.append(made[id(dataset)])
         return Solved(campaign, tuple(needs), answers, datasets)
 
-    def deviations(self, predicted: Sequence[xr.Dataset]) -> Reals:
-        """Standardised deviations of all rows."""
-        return np.concatenate([b.deviations(p) for b, p in zip(self.blocks, predicted, strict=True)])
+    def residuals(self, predicted: Sequence[xr.Dataset]) -> Reals:
+        """Standardised residuals of all rows."""
+        return np.concatenate([b.residuals(p) for b, p in zip(self.blocks, predicted, strict=True)])
 
     def levels_dB(self, predicted: Sequence[xr.Dataset]) -> Reals:
         """Measured over predicted of all rows, no error taken out; NaN where a row is no level."""
@@ -170,21 +170,23 @@ class Evidence:
 
     @cached_property
     def columns(self) -> AllColumns:
-        """What smooth errors of unit size do to the deviations."""
-        return AllColumns.of([block.smooth for block in self.blocks], [b.rows.channel.size for b in self.blocks])
+        """What calibration errors of unit size do to the residuals."""
+        return AllColumns.of(
+            [block.calibration for block in self.blocks], [b.rows.channel.size for b in self.blocks]
+        )
 
     @cached_property
     def whitener(self) -> Whitener:
-        """What takes out the smooth errors."""
+        """What takes out the calibration errors."""
         return Whitener.of(self.columns, self.sizes, self.length)
 
     @property
     def log_determinant(self) -> float:
-        """Of the covariance by which the blocks' own smooth errors are taken out."""
+        """Of the covariance by which the blocks' own calibration errors are taken out."""
         return sum(block.log_determinant for block in self.blocks)
 
     def with_sizes(self, sizes: Mapping[str, float], length: float | None = None) -> Evidence:
-        """The same with other sizes of smooth errors, and another length."""
+        """The same with other sizes of calibration errors, and another length."""
         other = replace(self, sizes=dict(sizes), length=self.length if length is None else length)
         if "columns" in self.__dict__:
             other.__dict__["columns"] = self.columns

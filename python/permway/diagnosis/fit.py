@@ -60,21 +60,21 @@ class Fit:
     campaign : Campaign
         With these values.
     evidence : Evidence
-        With the sizes of smooth errors.
-    deviations : ndarray, shape (n,)
-        Standardised, smooth errors not taken out.
+        With the sizes of calibration errors.
+    residuals : ndarray, shape (n,)
+        Standardised, calibration errors not taken out.
     clean : ndarray, shape (n,)
-        With the most probable smooth errors taken out.
+        With the most probable calibration errors taken out.
     chi2 : float
-        Quadratic form of the deviations, smooth errors integrated out.
+        Quadratic form of the residuals, calibration errors integrated out.
     prior : float
         Sum of squares of z.
     log_determinant : float
-        Of the covariance of smooth errors and noise, over that of noise.
+        Of the covariance of calibration errors and noise, over that of noise.
     jacobian : ndarray, shape (n, p)
-        Derivative of the deviations by z.
-    heat : float
-        Mean square of the deviations, at least 1: the records count so much less while no model fits.
+        Derivative of the residuals by z.
+    inflation : float
+        Mean square of the residuals, at least 1: the records count so much less while no model fits.
     evaluations : int
     build : callable
         From values of `free` to a campaign.
@@ -85,13 +85,13 @@ class Fit:
     covariance: Reals
     campaign: Campaign
     evidence: Evidence
-    deviations: Reals
+    residuals: Reals
     clean: Reals
     chi2: float
     prior: float
     log_determinant: float
     jacobian: Reals
-    heat: float
+    inflation: float
     evaluations: int
     build: Build
 
@@ -126,7 +126,7 @@ class Fit:
 
 
 def free_parameters(campaign: Campaign) -> tuple[Free, ...]:
-    """The campaign's parameters, each about its owner's belief."""
+    """The campaign's parameters, each about its nominal value."""
     found = []
     for known in campaign.parameters.known.values():
         low, high = known.bounds

@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from permway.campaign.bad_channels import BadChannel, without_bad_channels
 from permway.campaign.campaign import Campaign
+from permway.campaign.kinds import kind_of
 from permway.campaign.load import Dataset
-from permway.campaign.predict import added_to, predict, why_not
-from permway.diagnosis.blocks import Block
+from permway.campaign.predict import predict, why_not
+from permway.diagnosis.block_of import block_of
 from permway.diagnosis.blocks_frf import FrfBlock
-from permway.diagnosis.blocks_modes import ModesBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
-from permway.diagnosis.blocks_passage import PassageBlock
-from permway.diagnosis.blocks_spectra import SpectraBlock
-from permway.diagnosis.blocks_tabular import TableBlock
 from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.thinning import LINES_PER_FREQUENCY, thinned
 from permway.errors import InputError
@@ -32,13 +28,13 @@ class Readable(NamedTuple):
     kept : list of Dataset
     left_out : dict of str to str
         Why not, by name of a record, or of a record and its channel.
-    spoilt : tuple of Spoilt
+    bad : tuple of BadChannel
         Channels that are left out because their samples are no measurement.
     """
 
     kept: list[Dataset]
     left_out: dict[str, str]
-    spoilt: tuple[BadChannel, ...]
+    bad: tuple[BadChannel, ...]
 
 
 def predictable(campaign: Campaign, *, screened: bool = True) -> Readable:
@@ -48,14 +44,14 @@ def predictable(campaign: Campaign, *, screened: bool = True) -> Readable:
     ----------
     campaign : Campaign
     screened : bool
-        Whether channels that screening finds spoilt are left out.
+        Whether channels that screening finds bad are left out.
 
     Raises
     ------
     InputError
-        If none can be predicted, all are spoilt, or a file cannot be read.
+        If none can be predicted, all are bad, or a file cannot be read.
     """
-    whole, spoilt = without_bad_channels(campaign) if screened else (campaign, ())
+    whole, bad = without_bad_channels(campaign) if screened else (campaign, ())
     datasets = whole.load()
     reasons = {dataset.record.name: why_not(campaign, dataset) for dataset in datasets}
     left_out = {name: str(why) for name, why in reasons.items() if why is not None}
@@ -63,8 +59,8 @@ def predictable(campaign: Campaign, *, screened: bool = True) -> Readable:
     if not kept:
         name, why = next(iter(left_out.items()))
         raise InputError("no record can be predicted", where=f"records.{name}", remedy=why)
-    left_out |= {f"{one.record}: {one.channel}": f"{one.kind}: {one.what}" for one in spoilt}
-    return Readable(kept, left_out, spoilt)
+    left_out |= {f"{one.record}: {one.channel}": f"{one.kind}: {one.what}" for one in bad}
+    return Readable(kept, left_out, bad)
 
 
 def gather(
@@ -92,28 +88,29 @@ def gather(
         From reading, or for a record that cannot be predicted.
     """
     evidence = _blocked(campaign, campaign.load() if datasets is None else datasets, threads, lines)
-    origins = evidence.columns.origins
-    return evidence.with_sizes({o.name: 1.0 if o.fixed else first_size(campaign, o.name) for o in origins})
+    sources = evidence.columns.sources
+    return evidence.with_sizes({o.name: 1.0 if o.fixed else first_size(campaign, o.name) for o in sources})
 
 
 def evidence_of(campaign: Campaign, datasets: Sequence[Dataset], like: Evidence) -> Evidence:
-    """Datasets that need not be of the campaign's files, with the sizes of smooth errors that another has."""
+    """Datasets that need not be of the campaign's files, with the sizes of calibration errors that another has."""
     evidence = _blocked(campaign, datasets, like.threads)
-    learnt = [like.sizes[o.name] for o in like.columns.origins if not o.fixed]
-    usual = float(np.median(learnt)) if learnt else first_size(campaign, "")
-    sizes = {o.name: 1.0 if o.fixed else like.sizes.get(o.name, usual) for o in evidence.columns.origins}
+    estimated = [like.sizes[o.name] for o in like.columns.sources if not o.fixed]
+    usual = float(np.median(estimated)) if estimated else first_size(campaign, "")
+    sizes = {o.name: 1.0 if o.fixed else like.sizes.get(o.name, usual) for o in evidence.columns.sources}
     return evidence.with_sizes(sizes, like.length)
 
 
 def _blocked(
     campaign: Campaign, datasets: Sequence[Dataset], threads: int | None, lines: float = LINES_PER_FREQUENCY
 ) -> Evidence:
-    """Evidence whose smooth errors have no sizes yet."""
+    """Evidence whose calibration errors have no sizes yet."""
     loaded = [thinned(dataset, lines) for dataset in datasets]
     predicted = predict(campaign, loaded, threads=threads)
     spans = _spans(loaded)
     blocks = [
-        _block(campaign, dataset, prediction, spans) for dataset, prediction in zip(loaded, predicted, strict=True)
+        block_of(campaign, dataset, prediction, spans)
+        for dataset, prediction in zip(loaded, predicted, strict=True)
     ]
     for block in blocks:
         if isinstance(block, FrfBlock) and not (block.weight > 0.0).any():
@@ -123,7 +120,7 @@ def _blocked(
                 remedy="look at its coherence, its units and its band",
             )
     # Of several tests by the same sensors each has the same noise.
-    tests = {tuple(d.names("sensor")): d for d in reversed(loaded) if NoiseBlock.tells(d)}
+    tests = {tuple(d.names("sensor")): d for d in reversed(loaded) if NoiseBlock.is_constrained(d)}
     blocks += [NoiseBlock(dataset) for dataset in tests.values()]
     return Evidence(campaign, tuple(blocks), {}, threads=threads)
 
@@ -134,36 +131,16 @@ def _spans(datasets: Sequence[Dataset]) -> dict[str, tuple[float, float]]:
     for dataset in datasets:
         name = next((n for n in ("frequency", "band") if n in dataset.data.dims), None)
         if name is not None and dataset.data[name].size:
-            frequency, kind = np.asarray(dataset.data[name].values, dtype=np.float64), _kind(dataset)
+            frequency, kind = np.asarray(dataset.data[name].values, dtype=np.float64), kind_of(dataset.record).name
             low, high = spans.get(kind, (np.inf, -np.inf))
             spans[kind] = min(low, float(frequency.min())), max(high, float(frequency.max()))
     return spans
 
 
-def _kind(dataset: Dataset) -> str:
-    return "spectra" if dataset.record.statistic in ("csd", "psd") else dataset.record.statistic
-
-
-def first_size(campaign: Campaign, origin: str) -> float:
-    """Size of an origin's smooth errors before anything is learnt, neper; the irregularity's is its owner's."""
+def first_size(campaign: Campaign, source: str) -> float:
+    """Size of a source's calibration errors before anything is estimated, neper; the irregularity's as stated."""
     known = campaign.stated.irregularity
-    if origin == "irregularity":
+    if source == "irregularity":
         # Two standard deviations, of a power.
         return {"known": 0.01, "unknown": 1.0}.get(known.knowledge, 0.5 * (known.within_dB or 2.0) / 4.343)
     return 0.02
-
-
-def _block(
-    campaign: Campaign, dataset: Dataset, predicted: xr.Dataset, spans: Mapping[str, tuple[float, float]]
-) -> Block:
-    match dataset.record.statistic:
-        case "frf":
-            return FrfBlock(dataset, reference=predicted, span=spans["frf"])
-        case "csd" | "psd":
-            return SpectraBlock(dataset, predicted, added=added_to(campaign, dataset), span=spans["spectra"])
-        case "passage":
-            return PassageBlock(dataset, reference=predicted, span=spans["passage"])
-        case "modes":
-            return ModesBlock(dataset, predicted)
-        case _:
-            return TableBlock(dataset, span=spans.get(_kind(dataset)))

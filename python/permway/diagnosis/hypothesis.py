@@ -86,7 +86,7 @@ class Hypothesis:
         Identifier in the catalogue.
     domain : "path", "irregularity", "vehicle" or "measurement"
     family : str
-        Effects that are near twins share one.
+        Effects that are near-degenerate share one.
     free : tuple of Free
         The effect's parameters, each a priori normal with unit variance in its coordinate z.
     amend : callable
@@ -101,7 +101,7 @@ class Hypothesis:
     none : float
         The value of `size` at which there is no effect.
     variant : str
-        What tells forms of the effect apart that have the same parameters.
+        What distinguishes forms of the effect that have the same parameters.
     moves : str
         Nominal parameter that the first of its own moves, in standard deviations of that one's prior; "" for none.
     """

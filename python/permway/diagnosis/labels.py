@@ -54,7 +54,7 @@ def mislabelled(fit: Fit) -> Mislabelled | None:
     Parameters
     ----------
     fit : Fit
-        With the owner's values: a recalibration would bend them towards wrong labels.
+        With the nominal values: a recalibration would bend them towards wrong labels.
     """
     predicted = fit.evidence.predicted(fit.evidence.campaign).datasets
     for block, prediction in zip(fit.evidence.blocks, predicted, strict=True):
@@ -82,8 +82,8 @@ def _exchanged(block: FrfBlock, predicted: Complexes) -> Mislabelled | None:
     rows, columns = linear_sum_assignment(cost)
     if len(names) > 1 and float(cost[rows, columns].sum()) < BETTER * given:
         pairs = [(names[i], names[j]) for i, j in zip(rows, columns, strict=True) if i != j]
-        said = ", ".join(f"{label} is {sensor}" for label, sensor in pairs)
-        return Mislabelled(record, f"labels of channels are mixed up: {said}", tuple(label for label, _ in pairs))
+        words = ", ".join(f"{label} is {sensor}" for label, sensor in pairs)
+        return Mislabelled(record, f"labels of channels are mixed up: {words}", tuple(label for label, _ in pairs))
     return None
 
 

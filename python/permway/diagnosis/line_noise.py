@@ -1,4 +1,4 @@
-"""Noise of the lines of a frequency response, as its coherence tells."""
+"""Noise of the lines of a frequency response, as its coherence states it."""
 
 from __future__ import annotations
 

@@ -164,8 +164,8 @@ def _other_condition(dataset: Dataset, words: str, kind: Kind, **changed: float)
     condition = dataset.condition.model_copy(update={"name": f"planned {dataset.condition.name}", **changed})
 
     def planned(campaign: Campaign) -> Campaign:
-        said = campaign.stated.model_copy(update={"conditions": (*campaign.stated.conditions, condition)})
-        return replace(campaign, stated=said)
+        stated = campaign.stated.model_copy(update={"conditions": (*campaign.stated.conditions, condition)})
+        return replace(campaign, stated=stated)
 
     (value,) = changed.values()
     return Item(words, kind, COST[kind], planned, replace(dataset, condition=condition), value=value)
@@ -173,15 +173,15 @@ def _other_condition(dataset: Dataset, words: str, kind: Kind, **changed: float)
 
 def _with_sensor(sensor: Sensor) -> Callable[[Campaign], Campaign]:
     def planned(campaign: Campaign) -> Campaign:
-        said = campaign.stated.model_copy(update={"sensors": (*campaign.stated.sensors, sensor)})
-        return replace(campaign, stated=said)
+        stated = campaign.stated.model_copy(update={"sensors": (*campaign.stated.sensors, sensor)})
+        return replace(campaign, stated=stated)
 
     return planned
 
 
 def _with_point(point: Point) -> Callable[[Campaign], Campaign]:
     def planned(campaign: Campaign) -> Campaign:
-        said = campaign.stated.model_copy(update={"forces": (*campaign.stated.forces, point)})
-        return replace(campaign, stated=said)
+        stated = campaign.stated.model_copy(update={"forces": (*campaign.stated.forces, point)})
+        return replace(campaign, stated=stated)
 
     return planned

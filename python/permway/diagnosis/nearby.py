@@ -18,7 +18,7 @@ from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.factors import model_under
 from permway.campaign.predict import Request, Result, Sweep, plan, predict_one, request_of, solve
-from permway.campaign.predict.sweeps import places_of
+from permway.campaign.predictions.sweeps import places_of
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.side_by_side import threads_of_solver
 from permway.model.line import Line
@@ -106,7 +106,7 @@ class Nearby:
             return None
         return self._read(campaign, {id(n): self._moved(n, campaign) for n in near.needs if n is not None})
 
-    def bent(self, part: Part, indices: Sequence[int], share: Callable[[Reals], Reals]) -> Solved | None:
+    def perturbed(self, part: Part, indices: Sequence[int], share: Callable[[Reals], Reals]) -> Solved | None:
         """What is predicted with some numbers of the line off at some frequencies.
 
         Parameters

@@ -1,7 +1,7 @@
-"""Which values the tolerances allow the parameters to take up, the sizes of smooth errors being known.
+"""Which values the tolerances allow the parameters to take up, the sizes of calibration errors being known.
 
-Gauss-Newton with Levenberg's damping on the standardised deviations, each parameter in standard deviations of its
-owner's prior, smooth errors integrated out.
+Gauss-Newton with Levenberg's damping on the standardised residuals, each parameter in standard deviations of its
+nominal prior, calibration errors integrated out.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from permway.diagnosis.tangent import Problem, State, Tangent
 from permway.errors import InputError
 
 UNFIT, COARSE = 1.5, 1e-3
-"""Mean square of the deviations from which a model does not fit, and share of them that a step must then gain."""
+"""Mean square of the residuals from which a model does not fit, and share of them that a step must then gain."""
 
 FORETOLD = 0.95
-"""Ratio of a step's gain to what the slopes foretold, or the other way round, from which they serve once more."""
+"""Ratio of a step's gain to what the slopes predicted, or the other way round, from which they serve once more."""
 
 CURVED, BENDS = 0.5, 3
-"""Ratio of a step's gain to what the slopes foretold below which the step is taken again with the curvature
+"""Ratio of a step's gain to what the slopes predicted below which the step is taken again with the curvature
 that it met: a second-order correction, as Fletcher's (1982) of constrained steps; and how often."""
 
 AT_REST = 0.1
@@ -67,22 +67,22 @@ def recalibrate(
         z = begin(evidence, problem) if build == evidence.campaign.with_values else np.zeros(len(free))
     state, tangent = _descended(problem, z, most_steps)
     chi2 = tangent.chi2(state)
-    heat = max(1.0, chi2 / max(1, state.deviations.size))
+    inflation = max(1.0, chi2 / max(1, state.residuals.size))
     whitener = tangent.whitener
-    smooth = whitener.smooth(whitener.explained(state.deviations), state.deviations.size)
+    explained = whitener.calibration(whitener.explained(state.residuals), state.residuals.size)
     return Fit(
         free=free,
         z=state.z,
-        covariance=np.asarray(linalg.inv(tangent.normal(heat))),
+        covariance=np.asarray(linalg.inv(tangent.normal(inflation))),
         campaign=state.solved.campaign,
         evidence=evidence,
-        deviations=state.deviations,
-        clean=state.deviations - smooth,
+        residuals=state.residuals,
+        clean=state.residuals - explained,
         chi2=chi2,
         prior=float(state.z @ state.z),
         log_determinant=whitener.log_determinant,
         jacobian=tangent.jacobian,
-        heat=heat,
+        inflation=inflation,
         evaluations=problem.evaluations,
         build=build,
     )
@@ -96,28 +96,28 @@ def _descended(problem: Problem, z: Reals, most_steps: int) -> tuple[State, Tang
         raise InputError("the model cannot be solved there", where="start", value=z.tolist())
     tangent, damping = problem.tangent(state), 1e-3
     for _ in range(most_steps):
-        # Far from the records the priors lead: the deviations count as if each were no better than all are.
-        heat = max(1.0, tangent.chi2(state) / max(1, state.deviations.size))
-        enough = 0.5 if heat < UNFIT else COARSE * state.deviations.size
-        normal, slope = tangent.normal(heat), tangent.slope(state, heat)
+        # Far from the records the priors lead: the residuals count as if each were no better than all are.
+        inflation = max(1.0, tangent.chi2(state) / max(1, state.residuals.size))
+        enough = 0.5 if inflation < UNFIT else COARSE * state.residuals.size
+        normal, slope = tangent.normal(inflation), tangent.slope(state, inflation)
         fresh = tangent.at is state
-        moved, gained, foretold = None, 0.0, 0.0
+        moved, gained, predicted = None, 0.0, 0.0
         for _ in range(8 if fresh else 2):
             shift = bounded_step(normal, slope, state.z, low, high, damping)
-            foretold = -float(2.0 * slope @ shift + shift @ normal @ shift)
-            if fresh and foretold < AT_REST * enough:
+            predicted = -float(2.0 * slope @ shift + shift @ normal @ shift)
+            if fresh and predicted < AT_REST * enough:
                 break
             tried = problem.at(np.clip(state.z + shift, low, high))
             if tried is not None:
-                tried, gained = _to_the_floor(problem, tangent, state, tried, heat, damping, foretold)
+                tried, gained = _to_the_floor(problem, tangent, state, tried, inflation, damping, predicted)
                 if gained > 0.0:
                     moved, damping = tried, max(damping / 10.0, 1e-9)
                     break
             damping = max(damping * 10.0, 1e-6)
         state = state if moved is None else moved
         if gained >= enough:
-            # Where the step did what the slopes foretold, they do for the next.
-            if not FORETOLD * foretold < gained < foretold / FORETOLD:
+            # Where the step did what the slopes predicted, they do for the next.
+            if not FORETOLD * predicted < gained < predicted / FORETOLD:
                 tangent = problem.tangent(state)
         elif fresh and moved is None:
             break
@@ -127,21 +127,27 @@ def _descended(problem: Problem, z: Reals, most_steps: int) -> tuple[State, Tang
 
 
 def _to_the_floor(
-    problem: Problem, tangent: Tangent, state: State, tried: State, heat: float, damping: float, foretold: float
+    problem: Problem,
+    tangent: Tangent,
+    state: State,
+    tried: State,
+    inflation: float,
+    damping: float,
+    predicted: float,
 ) -> tuple[State, float]:
-    """A step that gained less than foretold, taken as far along a bent valley, and back to its floor; its gain."""
+    """A step that gained less than predicted, as far along a curved valley, and back to its floor; its gain."""
     low, high = limits_of(problem.free)
-    before, normal = tangent.heated(state, heat), tangent.normal(heat)
-    gained = before - tangent.heated(tried, heat)
+    before, normal = tangent.inflated(state, inflation), tangent.normal(inflation)
+    gained = before - tangent.inflated(tried, inflation)
     for _ in range(BENDS):
-        if gained > CURVED * foretold:
+        if gained > CURVED * predicted:
             break
-        bent = tangent.slope(tangent.bent(state, tried), heat)
-        shift = bounded_step(normal, bent, state.z, low, high, damping)
+        curved = tangent.slope(tangent.curved(state, tried), inflation)
+        shift = bounded_step(normal, curved, state.z, low, high, damping)
         other = problem.at(np.clip(state.z + shift, low, high))
         if other is None:
             break
-        more = before - tangent.heated(other, heat)
+        more = before - tangent.inflated(other, inflation)
         if more <= gained:
             break
         tried, gained = other, more

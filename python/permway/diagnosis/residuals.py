@@ -1,4 +1,4 @@
-"""Standardised deviations as maps, channel against frequency, and whether they look like noise."""
+"""Standardised residuals as maps, channel against frequency, and whether they look like noise."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ PARTS = ("level", "phase")
 LAGS = 12
 
 
-def standardised(block: Block, deviations: Mapping[str, Reals], predicted: Mapping[str, xr.Dataset]) -> xr.Dataset:
+def standardised(block: Block, residuals: Mapping[str, Reals], predicted: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """Deviations of a block, row by row of its map.
 
-    Complex deviations are turned by the predicted phase, so that their real part is one of level and their
+    Complex residuals are turned by the predicted phase, so that their real part is one of level and their
     imaginary part one of phase; noise is as large either way. (What was measured holds the noise itself: turned by
     its phase, noise alone would seem to raise the level.)
 
     Parameters
     ----------
     block : Block
-    deviations : mapping of model's name to ndarray, shape (n,)
+    residuals : mapping of model's name to ndarray, shape (n,)
         Standardised, of the block's rows.
     predicted : mapping of model's name to Dataset
-        What the deviations are from.
+        What the residuals are from.
 
     Returns
     -------
@@ -37,9 +37,9 @@ def standardised(block: Block, deviations: Mapping[str, Reals], predicted: Mappi
         are channels, or what two channels share; coordinate `sensor` of each row.
     """
     if isinstance(block, FrfBlock):
-        z, labels, sensors, frequency = _frf(block, deviations, predicted)
+        z, labels, sensors, frequency = _frf(block, residuals, predicted)
     else:
-        z, labels, sensors, frequency = _by_label(block, deviations)
+        z, labels, sensors, frequency = _by_label(block, residuals)
     return xr.Dataset(
         {
             "z": (
@@ -49,7 +49,7 @@ def standardised(block: Block, deviations: Mapping[str, Reals], predicted: Mappi
             )
         },
         coords={
-            "model": list(deviations),
+            "model": list(residuals),
             "part": list(PARTS),
             "row": labels,
             "sensor": ("row", sensors),
@@ -60,12 +60,12 @@ def standardised(block: Block, deviations: Mapping[str, Reals], predicted: Mappi
 
 
 def _frf(
-    block: FrfBlock, deviations: Mapping[str, Reals], predicted: Mapping[str, xr.Dataset]
+    block: FrfBlock, residuals: Mapping[str, Reals], predicted: Mapping[str, xr.Dataset]
 ) -> tuple[Reals, list[str], list[str], Reals]:
     shape = block.measured.shape
     half = block.measured.size
     found = []
-    for model, values in deviations.items():
+    for model, values in residuals.items():
         turn = np.where(block.weight > 0.0, block.along(predicted[model]).conj(), np.nan)
         turned = (values[:half] + 1j * values[half:]).reshape(shape) * turn
         found.append(np.stack([turned.real, turned.imag]).reshape(2, -1, shape[-1]))
@@ -75,7 +75,7 @@ def _frf(
     return np.stack(found), labels, sensors, block.frequency
 
 
-def _by_label(block: Block, deviations: Mapping[str, Reals]) -> tuple[Reals, list[str], list[str], Reals]:
+def _by_label(block: Block, residuals: Mapping[str, Reals]) -> tuple[Reals, list[str], list[str], Reals]:
     rows = block.rows
     labels = list(dict.fromkeys(str(label) for label in rows.channel))
     places = {}
@@ -90,8 +90,8 @@ def _by_label(block: Block, deviations: Mapping[str, Reals]) -> tuple[Reals, lis
     repeated = any(np.unique(rows.frequency_Hz[parts[0]]).size < parts[0].size for parts in places.values())
     # A material's points repeat frequencies; then lines go by number.
     frequency = rows.frequency_Hz[places[labels[0]][0]] if repeated else np.unique(rows.frequency_Hz)
-    z = np.full((len(deviations), len(PARTS), len(labels), frequency.size), np.nan)
-    for model, values in enumerate(deviations.values()):
+    z = np.full((len(residuals), len(PARTS), len(labels), frequency.size), np.nan)
+    for model, values in enumerate(residuals.values()):
         for row, label in enumerate(labels):
             for part, where in enumerate(places[label]):
                 at = np.arange(where.size) if repeated else np.searchsorted(frequency, rows.frequency_Hz[where])
@@ -101,7 +101,7 @@ def _by_label(block: Block, deviations: Mapping[str, Reals]) -> tuple[Reals, lis
 
 
 def lag_correlation(z: xr.DataArray, *, lags: int = LAGS) -> xr.Dataset:
-    """How alike deviations are to those so many lines further, sensor by sensor.
+    """How alike residuals are to those so many lines further, sensor by sensor.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def lag_correlation(z: xr.DataArray, *, lags: int = LAGS) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        `correlation` (part, sensor, lag), 1 to `lags`, of products over the mean square, not of deviations from a
+        `correlation` (part, sensor, lag), 1 to `lags`, of products over the mean square, not of residuals from a
         mean, for the mean is known to be zero; `chance`, half the width of what 95 % of independent noise shows.
     """
     sensors = list(dict.fromkeys(str(s) for s in z["sensor"].values))
@@ -140,9 +140,9 @@ def lag_correlation(z: xr.DataArray, *, lags: int = LAGS) -> xr.Dataset:
     )
 
 
-def channel_rms(deviations: xr.Dataset) -> xr.DataArray:
-    """Root mean square of standardised deviations by model and sensor: 1 for noise alone."""
-    z = deviations["z"]
+def channel_rms(residuals: xr.Dataset) -> xr.DataArray:
+    """Root mean square of standardised residuals by model and sensor: 1 for noise alone."""
+    z = residuals["z"]
     sensors = list(dict.fromkeys(str(s) for s in z["sensor"].values))
     values = np.array(
         [

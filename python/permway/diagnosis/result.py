@@ -19,11 +19,11 @@ class Diagnosis:
     ----------
     verdict : Verdict
     base : Fit
-        The owner's model, recalibrated.
+        The nominal model, recalibrated.
     amended : Fit, optional
         With the effects that were found; None without any.
     comparison : Comparison
-        Of the owner's values and the recalibrated.
+        Of the nominal values and the recalibrated.
     after : Comparison, optional
         Of the amended model: its last model is the amended, recalibrated.
     seconds : mapping of stage to float

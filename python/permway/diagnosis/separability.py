@@ -1,8 +1,8 @@
-"""What the sensors of a campaign can tell apart, before what they read is looked at.
+"""What the sensors of a campaign can separate, before what they read is looked at.
 
-Every effect of the catalogue is put into the owner's model at the size it starts from; what it does to the
-records, with all that recalibration and smooth errors could do taken out, is held against what every other effect
-could do at any size. Measured values play no part: only where, what and how well was measured.
+Every effect of the catalogue is put into the nominal model at the size it starts from; what it does to the
+records, with all that recalibration and calibration errors could do taken out, is held against what every other
+effect could do at any size. Measured values play no part: only where, what and how well was measured.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from permway.diagnosis.clock import Progress
 from permway.diagnosis.fit import Fit, free_parameters, limits_of
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Hypothesis, Situation
-from permway.diagnosis.quick import stacked
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.spot import Found, Spot
+from permway.diagnosis.stacking import stacked
 from permway.diagnosis.tangent import Problem
 from permway.errors import InputError, SolveError
 from permway.model.line import Line
@@ -63,8 +63,8 @@ class Separability:
     seen: Reals
     apart: Reals
 
-    def twins(self) -> list[tuple[str, str, float]]:
-        """Pairs of different effects that are seen and cannot be told apart, with their deviance."""
+    def inseparable(self) -> list[tuple[str, str, float]]:
+        """Pairs of different effects that are seen and cannot be separated, with their deviance."""
         found: dict[tuple[str, str], float] = {}
         count = len(self.names)
         for i in range(count):
@@ -87,7 +87,7 @@ class Separability:
                 {"effect": e, "at": self.names[i], "size": self.size[i], "deviance": round(float(self.seen[i]), 1)}
                 for e, i in sorted(best.items(), key=lambda item: -self.seen[item[1]])
             ],
-            "not told apart": [{"one": a, "other": b, "deviance": round(v, 1)} for a, b, v in self.twins()],
+            "inseparable": [{"one": a, "other": b, "deviance": round(v, 1)} for a, b, v in self.inseparable()],
         }
 
 
@@ -95,7 +95,7 @@ class Separability:
 def separability(
     campaign: Campaign, *, threads: int | None = None, progress: Progress | None = None
 ) -> Separability:
-    """What a campaign's records could tell apart.
+    """What a campaign's records could separate.
 
     Parameters
     ----------
@@ -155,8 +155,8 @@ def separability(
 
 def _untouched(fit: Fit) -> Fit:
     """As if the records were what a fit predicts: its slopes and covariance, and no residual."""
-    nothing = np.zeros_like(fit.deviations)
-    return replace(fit, deviations=nothing, clean=nothing, chi2=0.0, prior=0.0, heat=1.0)
+    nothing = np.zeros_like(fit.residuals)
+    return replace(fit, residuals=nothing, clean=nothing, chi2=0.0, prior=0.0, inflation=1.0)
 
 
 def places(fit: Fit) -> Iterator[Found]:
@@ -188,12 +188,12 @@ def _spots(line: Line) -> Iterator[list[Spot]]:
 
 
 class _Base:
-    """The owner's model, and what its moves and smooth errors take out of a change of the residuals."""
+    """The nominal model, and what its moves and calibration errors take out of a change of the residuals."""
 
     def __init__(self, fit: Fit) -> None:
         self.fit, self.whitener = fit, fit.evidence.whitener
         self._solved = fit.evidence.predicted(fit.campaign)
-        self._plain = fit.evidence.deviations(self._solved.datasets)
+        self._plain = fit.evidence.residuals(self._solved.datasets)
         self._reduced = self.whitener.reduce(fit.jacobian)
         normal = fit.jacobian.T @ fit.jacobian - self._reduced.T @ self._reduced
         self._factor = linalg.cho_factor(normal + np.eye(fit.z.size))
@@ -213,11 +213,11 @@ class _Base:
                 slopes = problem.columns(state, range(own, own + z.size))
             except (InputError, SolveError):
                 continue
-            return z, state.deviations - self._plain, slopes
+            return z, state.residuals - self._plain, slopes
         return None
 
     def projected(self, columns: Reals, other: Reals) -> Reals:
-        """Products of columns, (n, p) and (n, q), smooth errors and all moves of the base taken out."""
+        """Products of columns, (n, p) and (n, q), calibration errors and all moves of the base taken out."""
         mine, theirs = self.whitener.reduce(columns), self.whitener.reduce(other)
         left = columns.T @ self.fit.jacobian - mine.T @ self._reduced
         right = other.T @ self.fit.jacobian - theirs.T @ self._reduced

@@ -35,8 +35,8 @@ SMALL = 8
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-Begun = Callable[[int], object]
-"""Told how many items are begun."""
+Started = Callable[[int], object]
+"""Called with how many items are started."""
 
 _shared = False
 """Whether this process shares its work already, or is such a fork itself."""
@@ -48,7 +48,7 @@ def each(
     *,
     threads: int | None,
     least: int = 1,
-    told: Begun = lambda begun: None,
+    progress: Started = lambda started: None,
 ) -> list[Result]:
     """What `work` makes of each item, in their order.
 
@@ -61,8 +61,8 @@ def each(
         Processes, :data:`MOST` at most; by default as many as there are processors for this one.
     least : int
         Items that each process should have: a fork costs some tens of milliseconds.
-    told : callable
-        How many are begun, whenever one is begun here.
+    progress : callable
+        Called with how many are started, whenever one is started here.
 
     Raises
     ------
@@ -76,11 +76,11 @@ def each(
     if others < 1 or _shared or sys.platform != "linux" or current_process().daemon:
         found = []
         for index, item in enumerate(items):
-            told(index)
+            progress(index)
             found.append(work(item))
         return found
     with _sharing():
-        return _forked(work, items, others, told)
+        return _forked(work, items, others, progress)
 
 
 @contextmanager
@@ -113,15 +113,15 @@ def _sharing() -> Iterator[None]:
         _shared = False
 
 
-def _forked(work: Callable[[Item], Result], items: Sequence[Item], others: int, told: Begun) -> list[Result]:
+def _forked(work: Callable[[Item], Result], items: Sequence[Item], others: int, progress: Started) -> list[Result]:
     context = get_context("fork")
-    begun: Synchronized[int] = context.Value("i", 0)
+    started: Synchronized[int] = context.Value("i", 0)
     processes: list[ForkProcess] = []
     ends: list[Connection[Any, Any]] = []
     try:
         for _ in range(others):
             here, there = context.Pipe(duplex=False)
-            process = context.Process(target=_serve, args=(work, items, begun, there), daemon=True)
+            process = context.Process(target=_serve, args=(work, items, started, there), daemon=True)
             with warnings.catch_warnings():
                 # Further threads are those of BLAS, which ends them before a fork.
                 warnings.simplefilter("ignore", DeprecationWarning)
@@ -129,7 +129,7 @@ def _forked(work: Callable[[Item], Result], items: Sequence[Item], others: int, 
             there.close()
             processes.append(process)
             ends.append(here)
-        found = _taken(work, items, begun, told)
+        found = _taken(work, items, started, progress)
         for end in ends:
             try:
                 theirs, error = end.recv()
@@ -151,29 +151,29 @@ def _forked(work: Callable[[Item], Result], items: Sequence[Item], others: int, 
 def _taken(
     work: Callable[[Item], Result],
     items: Sequence[Item],
-    begun: Synchronized[int],
-    told: Begun = lambda begun: None,
+    started: Synchronized[int],
+    progress: Started = lambda started: None,
 ) -> dict[int, Result]:
     """One item after another, until all are taken by somebody."""
     found: dict[int, Result] = {}
     while True:
-        with begun.get_lock():
-            index = begun.value
-            begun.value += 1
+        with started.get_lock():
+            index = started.value
+            started.value += 1
         if index >= len(items):
             return found
-        told(index)
+        progress(index)
         found[index] = work(items[index])
 
 
 def _serve(
-    work: Callable[[Item], Result], items: Sequence[Item], begun: Synchronized[int], end: Connection[Any, Any]
+    work: Callable[[Item], Result], items: Sequence[Item], started: Synchronized[int], end: Connection[Any, Any]
 ) -> None:
     """In a process of its own."""
     # On Ctrl-C the one that waits ends this one, too.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     try:
-        end.send((_taken(work, items, begun), None))
+        end.send((_taken(work, items, started), None))
     except Exception as error:  # noqa: BLE001 - handed on, whatever it is
         end.send(({}, error))

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from permway.arrays import Complexes, Reals
+from permway.diagnosis.gaussian_process import GaussianProcess
 from permway.diagnosis.spectra_parts import remainder, transfer
-from permway.diagnosis.wander import Wander
 
 SMALL = 1e-4
 """Neper, of the errors by which answers to them are found."""
@@ -68,14 +68,14 @@ class Moved:
                 found.append(np.log(remainder(csd, c, o, at)).astype(np.complex128))
         return found
 
-    def columns(self, channels: Complexes, of: Wander, at: Reals, step: float) -> Reals:
-        """What errors in these channels that are sums of functions do to deviations, a column a function.
+    def columns(self, channels: Complexes, of: GaussianProcess, at: Reals, step: float) -> Reals:
+        """What errors in these channels that are sums of functions do to residuals, a column a function.
 
         Parameters
         ----------
         channels : ndarray of complex128, shape (channels,)
             How much of the error each has.
-        of : Wander
+        of : GaussianProcess
         at : ndarray, shape (F,)
             Where its functions are taken, line by line.
         step : float

@@ -44,9 +44,9 @@ def begin(evidence: Evidence, problem: Problem) -> Reals:
         for value in np.linspace(max(low, -LIMITS), min(high, LIMITS), GRID):
             tried = z.copy()
             tried[index] = value
-            deviations, _ = problem.deviations(tried, start.solved)
+            residuals, _ = problem.residuals(tried, start.solved)
             # Few lines must not outweigh all others: the base may be far off in some.
-            misfit = float(np.log1p(deviations**2).sum()) + value**2
+            misfit = float(np.log1p(residuals**2).sum()) + value**2
             if misfit < best:
                 best, z[index] = misfit, value
     return z

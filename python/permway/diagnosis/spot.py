@@ -64,8 +64,3 @@ class Found:
     sigma_N_per_m: Reals
     by_band: Reals
     total: float
-
-    @property
-    def surplus(self) -> float:
-        """Gain beyond what the free numbers would explain of noise."""
-        return self.gain - self.degrees

@@ -22,16 +22,16 @@ STEP = 1e-5
 
 @dataclass(frozen=True)
 class State:
-    """Values of the free parameters in z, and the standardised deviations there."""
+    """Values of the free parameters in z, and the standardised residuals there."""
 
     z: Reals
     solved: Solved
-    deviations: Reals
+    residuals: Reals
 
 
 @dataclass(frozen=True)
 class Tangent:
-    """Slopes and smooth errors about a state, also used near it."""
+    """Slopes and calibration errors about a state, also used near it."""
 
     at: State
     whitener: Whitener
@@ -43,26 +43,26 @@ class Tangent:
     """Log determinant of what the blocks take out themselves."""
 
     def chi2(self, state: State) -> float:
-        """Quadratic form of the deviations, smooth errors integrated out, and the blocks' log determinant."""
-        return self.whitener.square(state.deviations) + self.blocks
+        """Quadratic form of the residuals, calibration errors integrated out, and the blocks' log determinant."""
+        return self.whitener.square(state.residuals) + self.blocks
 
-    def heated(self, state: State, heat: float) -> float:
+    def inflated(self, state: State, inflation: float) -> float:
         """Minus twice the log posterior, the records counting so much less."""
-        return self.chi2(state) / heat + float(state.z @ state.z) + self.whitener.log_determinant
+        return self.chi2(state) / inflation + float(state.z @ state.z) + self.whitener.log_determinant
 
-    def normal(self, heat: float) -> Reals:
-        """Half the curvature of the heated objective, (p, p)."""
-        return np.asarray(self.curvature / heat + np.eye(self.jacobian.shape[1]))
+    def normal(self, inflation: float) -> Reals:
+        """Half the curvature of the inflated objective, (p, p)."""
+        return np.asarray(self.curvature / inflation + np.eye(self.jacobian.shape[1]))
 
-    def bent(self, state: State, tried: State) -> State:
+    def curved(self, state: State, tried: State) -> State:
         """A state with the part of its change on the way to another that slopes do not foretell."""
-        further = tried.deviations - self.jacobian @ (tried.z - state.z)
+        further = tried.residuals - self.jacobian @ (tried.z - state.z)
         return State(state.z, state.solved, further)
 
-    def slope(self, state: State, heat: float) -> Reals:
+    def slope(self, state: State, inflation: float) -> Reals:
         """Half its gradient, (p,)."""
-        reduced = self.whitener.reduce(state.deviations)
-        return np.asarray((self.jacobian.T @ state.deviations - self.reduced.T @ reduced) / heat + state.z)
+        reduced = self.whitener.reduce(state.residuals)
+        return np.asarray((self.jacobian.T @ state.residuals - self.reduced.T @ reduced) / inflation + state.z)
 
 
 def tangent_of(at: State, whitener: Whitener, jacobian: Reals, blocks: float) -> Tangent:
@@ -78,18 +78,18 @@ class Problem:
         self.evidence, self.build, self.free = evidence, build, free
         self.evaluations = 0
 
-    def deviations(self, z: Reals, near: Solved | None = None) -> tuple[Reals, Solved]:
+    def residuals(self, z: Reals, near: Solved | None = None) -> tuple[Reals, Solved]:
         """Of a model with these values, and its predictions; those of one near by save solves."""
         self.evaluations += 1
         predicted = self.evidence.predicted(self._campaign(z), near)
-        return self.evidence.deviations(predicted.datasets), predicted
+        return self.evidence.residuals(predicted.datasets), predicted
 
     def _near(self, predicted: Solved, state: State) -> Reals:
         """Deviations, those of datasets that are the state's own taken from it."""
         found, start = [], 0
         for block, new, old in zip(self.evidence.blocks, predicted.datasets, state.solved.datasets, strict=True):
             rows = slice(start, start + block.rows.channel.size)
-            found.append(state.deviations[rows] if new is old else block.deviations(new))
+            found.append(state.residuals[rows] if new is old else block.residuals(new))
             start = rows.stop
         return np.concatenate(found)
 
@@ -99,10 +99,10 @@ class Problem:
     def at(self, z: Reals, near: Solved | None = None) -> State | None:
         """The state; None if the model cannot be solved there. Predictions near by save solves."""
         try:
-            deviations, predicted = self.deviations(z, near)
+            residuals, predicted = self.residuals(z, near)
         except (SolveError, InputError):
             return None
-        return State(z, predicted, deviations) if np.isfinite(deviations).all() else None
+        return State(z, predicted, residuals) if np.isfinite(residuals).all() else None
 
     def tangent(self, state: State, slopes: Reals | None = None) -> Tangent:
         """About a state, by finite differences unless slopes are given."""
@@ -110,7 +110,7 @@ class Problem:
         return tangent_of(state, self.evidence.whitener, slopes, self.evidence.log_determinant)
 
     def jacobian(self, state: State) -> Reals:
-        """Derivative of the deviations by z: forward differences, solves spared where derivatives do."""
+        """Derivative of the residuals by z: forward differences, solves spared where derivatives do."""
         nearby = Nearby(self.evidence, state.solved)
         nearby.derive()
         return self.columns(state, range(len(self.free)), nearby)
@@ -127,7 +127,7 @@ class Problem:
                 return self._slope(state, index, -STEP if forward else STEP, nearby)
 
         columns = each(column, indices, threads=self.evidence.threads, least=SMALL)
-        return np.column_stack(columns) if columns else np.zeros((state.deviations.size, 0))
+        return np.column_stack(columns) if columns else np.zeros((state.residuals.size, 0))
 
     def _slope(self, state: State, index: int, step: float, nearby: Nearby | None) -> Reals:
         moved = state.z.copy()
@@ -135,4 +135,4 @@ class Problem:
         campaign = self._campaign(moved)
         near = None if nearby is None else nearby.predicted(campaign)
         predicted = near or self.evidence.predicted(campaign, state.solved)
-        return np.asarray((self._near(predicted, state) - state.deviations) / step)
+        return np.asarray((self._near(predicted, state) - state.residuals) / step)

@@ -70,9 +70,9 @@ class Verdict(VerdictPart):
     explained_gap: Share | None = None
     """Share of what separated the recalibrated base from the noise ceiling that the amendment closes."""
     recalibrated: Recalibrated = Recalibrated()
-    """The owner's parameters before and after the amendment."""
+    """The nominal parameters before and after the amendment."""
     next: tuple[NextMeasurement, ...] = ()
-    """Measurements that would tell rivals apart, the most telling first."""
+    """Measurements that would separate rivals, the most decisive first."""
     detectable: dict[str, Smallest] = Field(default_factory=dict)
     """By effect: the smallest size that this campaign would have shown."""
     ruled_out: tuple[str, ...] = ()

@@ -117,13 +117,13 @@ class Effect(VerdictPart):
     name: Named | None = None
     """Its id in the catalogue, or what screening calls it; null if the data allow several, or none fits."""
     class_: tuple[ClassMember, ...] = Field(default=(), alias="class")
-    """Effects that these data cannot tell apart, the most probable first."""
+    """Effects that these data cannot separate, the most probable first."""
     law: Mechanics = Mechanics()
     """Its mechanics."""
     parameters: dict[str, Estimate] = Field(default_factory=dict)
     """Its parameters with 90 % intervals."""
     size: Named | None = None
-    """The one of them that says how strong it is; null if none does, or none was said to."""
+    """The one of them that says how strong it is; null if none does, or none is known to."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -153,7 +153,7 @@ class Weight(VerdictPart):
     false_alarm_threshold: Number | None = None
     """Gain of BIC that 95 of 100 campaigns of this layout stay below if nothing is missing."""
     misfit_before: Positive | None = None
-    """Mean square of what the recalibrated base leaves, over what noise and smooth errors explain: 1 fits."""
+    """Mean square of what the recalibrated base leaves, over what noise and calibration errors explain: 1 fits."""
     misfit_after: Positive | None = None
     """The same of the amended model: well above 1 the effects are not all that is missing, or not quite it."""
     unmet: tuple[Condition, ...] = ()
@@ -191,14 +191,14 @@ class HeldOutGain(VerdictPart):
 
 
 class Moved(VerdictPart):
-    """A parameter of the owner's model as recalibration has it."""
+    """A parameter of the nominal model as recalibration has it."""
 
     value: Number
     """Recalibrated value."""
     prior: Number
-    """The owner's value."""
+    """The nominal value."""
     z: Number
-    """Value less prior in standard deviations of the owner's tolerance."""
+    """Value less prior in standard deviations of the tolerance."""
     low: Number | None = None
     """Lower end of the 90 % interval by the fit's covariance."""
     high: Number | None = None
@@ -208,7 +208,7 @@ class Moved(VerdictPart):
 
 
 class Recalibrated(VerdictPart):
-    """The owner's parameters before and after the amendment."""
+    """The nominal parameters before and after the amendment."""
 
     before: dict[str, Moved] = Field(default_factory=dict)
     """Recalibrated without any amendment."""
@@ -221,7 +221,7 @@ RECALIBRATED = "recalibrated"
 
 
 class NextMeasurement(VerdictPart):
-    """A measurement that would tell two rivals apart."""
+    """A measurement that would separate two rivals."""
 
     measurement: Named
     """What to measure, in words."""

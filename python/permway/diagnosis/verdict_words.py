@@ -64,10 +64,10 @@ def _of_physics(verdict: Verdict) -> str:
         case "insufficient":
             # What screening found is no suspicion: it has no class.
             suspects = [effect for effect in verdict.effects if effect.class_]
-            spoilt = [_named(effect) for effect in verdict.effects if not effect.class_]
+            faulty = [_named(effect) for effect in verdict.effects if not effect.class_]
             suspect = f"the suspicion is {_named(suspects[0])}" if suspects else ""
             words = "Nothing that was tried explains enough of these records to be called missing"
-            sure = f"at fault is {' and '.join(spoilt)}" if spoilt else ""
+            sure = f"at fault is {' and '.join(faulty)}" if faulty else ""
             parts = [words, suspect, sure, _short(verdict), _seen(verdict), _advice(verdict)]
         case "named":
             parts = [_named(verdict.effects[0]), _more(verdict), _better(verdict), _open(verdict)]
@@ -77,8 +77,8 @@ def _of_physics(verdict: Verdict) -> str:
             parts = [words, _more(verdict), _better(verdict), _open(verdict)]
         case "ambiguous":
             first = next(i for i, effect in enumerate(verdict.effects) if effect.name is None)
-            said = _rivals(verdict.effects[first])
-            parts = [said, _more(verdict, first), _better(verdict), _open(verdict), _advice(verdict)]
+            rivals = _rivals(verdict.effects[first])
+            parts = [rivals, _more(verdict, first), _better(verdict), _open(verdict), _advice(verdict)]
         case "described":
             effect = verdict.effects[0]
             words = f"{_at(effect)} acts what the catalogue does not hold: {effect.law.words or 'novel physics'}"
@@ -180,9 +180,9 @@ def _rivals(effect: Effect) -> str:
     return f"{_at(effect)} physics is missing that these records allow to be {names}"
 
 
-def _more(verdict: Verdict, said: int = 0) -> str:
-    """The effects beside the one that was said."""
-    others = [_named(e) for i, e in enumerate(verdict.effects) if i != said and not _disbelieved(e)]
+def _more(verdict: Verdict, first: int = 0) -> str:
+    """The effects beside the first that is named."""
+    others = [_named(e) for i, e in enumerate(verdict.effects) if i != first and not _disbelieved(e)]
     return f"beside that {' and '.join(others)}" if others else ""
 
 
@@ -237,25 +237,25 @@ def _moved(verdict: Verdict) -> dict[str, Moved]:
 
 
 def _beyond(verdict: Verdict) -> str:
-    """Parameters outside their tolerances beside what else is said, the farthest first."""
+    """Parameters outside their tolerances beside those named, the farthest first."""
     known = _moved(verdict)
-    # What an effect of its own says already.
-    told = {effect.place.body for effect in verdict.effects if effect.name == STATED}
-    said = [
+    # Those that an effect of its own states.
+    named = {effect.place.body for effect in verdict.effects if effect.name == STATED}
+    words = [
         f"{name} has to be {estimate(known[name])} for it, {quantity(abs(known[name].z))} standard "
-        f"deviations from the owner's {stated(known[name].prior, known[name].unit)}"
-        for name in [name for name in outside(known) if name not in told][:MOST_OUTSIDE]
+        f"deviations from the nominal {stated(known[name].prior, known[name].unit)}"
+        for name in [name for name in outside(known) if name not in named][:MOST_OUTSIDE]
     ]
-    return " and ".join(said)
+    return " and ".join(words)
 
 
 def _outside(verdict: Verdict) -> str:
     """That the model fits with values only that the tolerances do not allow."""
     known, names = _moved(verdict), outside(_moved(verdict))
-    said = " and ".join(_off(name, known[name]) for name in names[:MOST_OUTSIDE])
+    words = " and ".join(_off(name, known[name]) for name in names[:MOST_OUTSIDE])
     more = f" (and {len(names) - MOST_OUTSIDE} more)" if len(names) > MOST_OUTSIDE else ""
     return (
-        f"The model fits only with {said or 'a value outside its tolerance'}{more}: what is stated there is "
+        f"The model fits only with {words or 'a value outside its tolerance'}{more}: what is stated there is "
         "wrong, or something is missing that acts like it"
     )
 

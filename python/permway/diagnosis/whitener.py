@@ -1,4 +1,4 @@
-"""Taking out of deviations what smooth errors of all blocks would explain."""
+"""Taking out of residuals what calibration errors of all blocks would explain."""
 
 from __future__ import annotations
 
@@ -11,58 +11,58 @@ import numpy as np
 from scipy import linalg, sparse
 
 from permway.arrays import Reals
-from permway.diagnosis.smooth import Columns, Origin, Smooth
+from permway.diagnosis.calibration_errors import CalibrationErrors, Columns, ErrorSource
 
 
 @dataclass(frozen=True)
 class AllColumns:
-    """The columns of all blocks: one origin met by two records is one.
+    """The columns of all blocks: one source met by two records is one.
 
     Attributes
     ----------
-    origins : tuple of Origin
+    sources : tuple of ErrorSource
     parts : tuple of (slice, ndarray of int, Columns)
         Of each block: its rows, where its columns stand among all, and they themselves.
     gram : ndarray, shape (c, c)
     """
 
-    origins: tuple[Origin, ...]
+    sources: tuple[ErrorSource, ...]
     parts: tuple[tuple[slice, np.ndarray, Columns], ...]
     gram: Reals
 
     @staticmethod
-    def of(blocks: Sequence[Smooth], sizes: Sequence[int]) -> AllColumns:
+    def of(blocks: Sequence[CalibrationErrors], sizes: Sequence[int]) -> AllColumns:
         """From what the blocks say, and how many rows they have."""
         first: dict[str, int] = {}
-        origins: list[Origin] = []
+        sources: list[ErrorSource] = []
         count = 0
-        for origin in (o for smooth in blocks for o in smooth.origins):
-            if origin.name not in first:
-                first[origin.name] = count
-                origins.append(origin)
-                count += origin.count
+        for source in (o for errors in blocks for o in errors.sources):
+            if source.name not in first:
+                first[source.name] = count
+                sources.append(source)
+                count += source.count
         parts, start = [], 0
-        for smooth, rows in zip(blocks, sizes, strict=True):
-            each = [first[o.name] + np.arange(o.count) for o in smooth.origins]
-            # A table of modes has no smooth errors.
+        for errors, rows in zip(blocks, sizes, strict=True):
+            each = [first[o.name] + np.arange(o.count) for o in errors.sources]
+            # A table of modes has no calibration errors.
             place = np.concatenate(each) if each else np.zeros(0, dtype=np.int64)
-            parts.append((slice(start, start + rows), place, smooth.columns))
+            parts.append((slice(start, start + rows), place, errors.columns))
             start += rows
-        return AllColumns(tuple(origins), tuple(parts), _gram(parts, count))
+        return AllColumns(tuple(sources), tuple(parts), _gram(parts, count))
 
-    def pull(self, values: Reals, only: Sequence[int] | None = None) -> Reals:
+    def transposed_times(self, values: Reals, only: Sequence[int] | None = None) -> Reals:
         """Transposed times values, (n,) or (n, k); of some blocks only, if the values are none elsewhere."""
         found = np.zeros((self.gram.shape[0], *values.shape[1:]))
         for index in range(len(self.parts)) if only is None else only:
             rows, place, columns = self.parts[index]
-            found[place] += columns.pull(values[rows])
+            found[place] += columns.transposed_times(values[rows])
         return found
 
-    def push(self, coefficients: Reals, size: int) -> Reals:
+    def times(self, coefficients: Reals, size: int) -> Reals:
         """Times coefficients, to (size,)."""
         moved = np.zeros(size)
         for rows, place, columns in self.parts:
-            moved[rows] = columns.push(coefficients[place])
+            moved[rows] = columns.times(coefficients[place])
         return moved
 
     @cached_property
@@ -77,8 +77,8 @@ class AllColumns:
 
     @property
     def counts(self) -> list[int]:
-        """Coefficients of every part of every origin, in their order."""
-        return [o.wander.count for o in self.origins for _ in range(o.parts)]
+        """Coefficients of every part of every source, in their order."""
+        return [o.process.count for o in self.sources for _ in range(o.parts)]
 
 
 def _gram(parts: Sequence[tuple[slice, np.ndarray, Columns]], count: int) -> Reals:
@@ -97,10 +97,10 @@ def _at(place: np.ndarray) -> slice | np.ndarray:
 
 @dataclass(frozen=True)
 class Whitener:
-    """Takes out of deviations what smooth errors of known sizes and length would explain.
+    """Takes out of residuals what calibration errors of known sizes and length would explain.
 
-    With columns B and coefficients of covariance D = R R' that of the deviations is I + B D B'. Its inverse is
-    applied by Woodbury's identity, and quadratic forms come out as those of independent deviations less what is
+    With columns B and coefficients of covariance D = R R' that of the residuals is I + B D B'. Its inverse is
+    applied by Woodbury's identity, and quadratic forms come out as those of independent residuals less what is
     explained.
 
     Attributes
@@ -118,11 +118,11 @@ class Whitener:
 
     @staticmethod
     def of(columns: AllColumns, sizes: Mapping[str, float], length: float) -> Whitener:
-        """From the columns, and the sizes and the length of their origins."""
+        """From the columns, and the sizes and the length of their sources."""
         roots = [
             root
-            for o in columns.origins
-            for root in [sizes[o.name] * o.wander.root(length if o.chain else None)] * o.parts
+            for o in columns.sources
+            for root in [sizes[o.name] * o.process.root(length if o.chain else None)] * o.parts
         ]
         of, factors = np.repeat(np.arange(len(roots)), columns.counts), []
         for parts in columns.apart:
@@ -137,23 +137,24 @@ class Whitener:
         """Number of coefficients."""
         return int(self.columns.gram.shape[0])
 
-    def pull(self, values: Reals, only: Sequence[int] | None = None) -> Reals:
+    def transposed_times(self, values: Reals, only: Sequence[int] | None = None) -> Reals:
         """`R' B' v`; values (n,) or (n, k), of some blocks only, if they are none elsewhere."""
-        return _rooted(self.columns.pull(values, only), self.roots, _across)
+        return _rooted(self.columns.transposed_times(values, only), self.roots, _across)
 
     def reduce(self, values: Reals, only: Sequence[int] | None = None) -> Reals:
-        """`L^-1 R' B' v`, of which the squares are what is explained; values as of :meth:`pull`."""
-        return self._each(_forward, self.pull(values, only))
+        """`L^-1 R' B' v`, of which the squares are what is explained; values as of :meth:`transposed_times`."""
+        return self._each(_forward, self.transposed_times(values, only))
 
     def square(self, values: Reals) -> float:
-        """Quadratic form of the deviations, smooth errors integrated out."""
+        """Quadratic form of the residuals, calibration errors integrated out."""
         reduced = self.reduce(values)
         return float(values @ values - reduced @ reduced)
 
     def explained(self, values: Reals) -> Reals:
         """The coefficients that explain most, independent and of unit variance beforehand."""
         return self._each(
-            lambda factor, mine: linalg.cho_solve((factor, True), mine, check_finite=False), self.pull(values)
+            lambda factor, mine: linalg.cho_solve((factor, True), mine, check_finite=False),
+            self.transposed_times(values),
         )
 
     def _each(self, solve: Callable[[Reals, Reals], Reals], pulled: Reals) -> Reals:
@@ -164,9 +165,9 @@ class Whitener:
                 pulled[place] = solve(factor, mine)
         return pulled
 
-    def smooth(self, coefficients: Reals, size: int) -> Reals:
-        """What coefficients do to so many deviations."""
-        return self.columns.push(_rooted(coefficients, self.roots), size)
+    def calibration(self, coefficients: Reals, size: int) -> Reals:
+        """What coefficients do to so many residuals."""
+        return self.columns.times(_rooted(coefficients, self.roots), size)
 
     @property
     def log_determinant(self) -> float:

@@ -96,7 +96,7 @@ def fit_table(
     reference = None if shift == "none" else _reference(table, reference_temperature_C)
     comparison: Comparison | None = None
     if law == COMPARE:
-        # A family with more numbers than the table can tell is no candidate.
+        # A family with more numbers than the table can support is no candidate.
         laws = [name for name in CANDIDATES if all(_affordable(name, table, each) for each in shifts)]
         if not laws:
             raise InputError(

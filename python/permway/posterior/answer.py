@@ -108,7 +108,7 @@ def _effect(masses: Masses, index: int) -> Effect:
     members = _class(masses.names(index))
     named = members[0].name != NOVEL and members[0].probability >= NAMED
     line = best.fit.state.solved.campaign.model.line
-    gained = empty.fit.state.deviations**2 - best.fit.state.deviations**2
+    gained = empty.fit.state.residuals**2 - best.fit.state.residuals**2
     return Effect(
         domain=hypothesis.domain,
         place=Place.of(where, line, within=(min(ends), max(ends)) if ends else None),
@@ -167,4 +167,4 @@ def _misfit(fit: Fit) -> float:
     """Mean square of the residuals if the model lacked nothing."""
     hyper = fit.hyper.exact()
     covariance = fit.frame.covariance(hyper)
-    return covariance.square(fit.state.deviations) / fit.state.deviations.size
+    return covariance.square(fit.state.residuals) / fit.state.residuals.size

@@ -69,7 +69,7 @@ class Member:
     @property
     def log_mass(self) -> float:
         """Logarithm of prior times tempered evidence, up to a constant of the records."""
-        return self.log_prior + tempered(self.fit.log_evidence, self.fit.state.deviations.size)
+        return self.log_prior + tempered(self.fit.log_evidence, self.fit.state.residuals.size)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -207,7 +207,7 @@ def _shared(
         return None if found is None else replace(found, cell=None)  # type: ignore[arg-type]
 
     def take() -> list[Trial | None]:
-        return each(bare, trials, threads=fitter.frame.evidence.threads, least=2, told=progress)
+        return each(bare, trials, threads=fitter.frame.evidence.threads, least=2, progress=progress)
 
     found = kept_trials(take, trials)
     return [replace(one, cell=trial.cell) for one, trial in zip(found, trials, strict=True) if one is not None]

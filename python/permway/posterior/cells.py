@@ -16,8 +16,8 @@ from permway.diagnosis.evidence import Solved
 from permway.diagnosis.fit import Fit as Base
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
-from permway.diagnosis.quick import weaker
 from permway.diagnosis.spot import Found, Spot
+from permway.diagnosis.stacking import weaker
 from permway.posterior import generic, stated
 from permway.posterior.fit import Fit
 from permway.posterior.spans import BEYOND, begun, spread_out, tuned, widened
@@ -201,7 +201,7 @@ def _offered(entry: Entry, situations: list[Situation]) -> Iterator[Hypothesis]:
 
 
 def _key(hypothesis: Hypothesis) -> tuple[object, ...]:
-    """What tells two hypotheses apart: form, place and what their parameters are at some coordinates."""
+    """What distinguishes two hypotheses: form, place and what their parameters are at some coordinates."""
     places = []
     for start in hypothesis.starts[:1]:
         values = {f.name: f.value(float(z)) for f, z in zip(hypothesis.free, start, strict=True)}
@@ -239,7 +239,7 @@ def _place(kind: str, name: str, x: float, joints: tuple[int, ...]) -> Found:
 
 def _as_base(fit: Fit) -> Base:
     """What entries of the catalogue are handed."""
-    residuals = fit.state.deviations
+    residuals = fit.state.residuals
     solved: Solved = fit.state.solved
     return Base(
         free=fit.model.free,
@@ -247,13 +247,13 @@ def _as_base(fit: Fit) -> Base:
         covariance=fit.spread,
         campaign=solved.campaign,
         evidence=fit.frame.evidence,
-        deviations=residuals,
+        residuals=residuals,
         clean=residuals,
         chi2=float(residuals @ residuals),
         prior=float(fit.z @ fit.z),
         log_determinant=0.0,
         jacobian=fit.jacobian,
-        heat=1.0,
+        inflation=1.0,
         evaluations=0,
         build=fit.model.build,
     )

@@ -1,4 +1,4 @@
-"""Predicted against measured, with the owner's values and recalibrated, of a campaign."""
+"""Predicted against measured, with the nominal values and recalibrated, of a campaign."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from permway.posterior.diagnose import as_base
 from permway.posterior.recalibrated import recalibrated
 
 STEPS = 3
-"""That progress tells of: read, recalibrate, compare."""
+"""That progress reports: read, recalibrate, compare."""
 
 Progress = Callable[[int, int], object]
 

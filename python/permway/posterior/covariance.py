@@ -26,7 +26,7 @@ FLOOR = 0.0005
 """Relative error that a response has beside its noise whatever the discrepancy, neper: of its last decimals."""
 
 PAIR = 1e-9
-"""Neper: smooth errors of single pairs of sensor and point, which the discrepancy stands for."""
+"""Neper: calibration errors of single pairs of sensor and point, which the discrepancy stands for."""
 
 UNSHARED = 0.05
 """Neper: what channels of a run do not share is more or less than predicted, on all lines alike. What the window
@@ -162,7 +162,7 @@ def _bare(block: Block) -> Block:
 
 
 def _columns(evidence: Evidence, blocks: tuple[Block, ...]) -> Reals:
-    """Columns of errors that are no chain's, scaled to unit variance; one origin met by two records is one."""
+    """Columns of errors that are no chain's, scaled to unit variance; one source met by two records is one."""
     total = sum(b.rows.channel.size for b in blocks)
     found: dict[str, Reals] = {}
     start = 0
@@ -176,7 +176,7 @@ def _columns(evidence: Evidence, blocks: tuple[Block, ...]) -> Reals:
 
 
 def _own(evidence: Evidence, block: Block) -> dict[str, Reals]:
-    """Of one block, by origin."""
+    """Of one block, by source."""
     if isinstance(block, FrfBlock):
         return {}
     if isinstance(block, SpectraBlock):
@@ -188,16 +188,16 @@ def _own(evidence: Evidence, block: Block) -> dict[str, Reals]:
         step = 1.0 / (block.dataset.record.segment_s * speed)
         level = block.moved.columns(half, LEVEL, block.frequency / speed, step)
         return {"irregularity": first_size(evidence.campaign, "irregularity") * level, **apart}
-    whole, stop, found = block.smooth, 0, {}
-    for origin in whole.origins:
-        start, stop = stop, stop + origin.count
-        unit = np.zeros(sum(o.count for o in whole.origins))
+    whole, stop, found = block.calibration, 0, {}
+    for source in whole.sources:
+        start, stop = stop, stop + source.count
+        unit = np.zeros(sum(o.count for o in whole.sources))
         columns = []
         for index in range(start, stop):
             unit[index] = 1.0
-            columns.append(whole.columns.push(unit))
+            columns.append(whole.columns.times(unit))
             unit[index] = 0.0
-        found[origin.name] = evidence.sizes[origin.name] * np.stack(columns, axis=1)
+        found[source.name] = evidence.sizes[source.name] * np.stack(columns, axis=1)
     return found
 
 

@@ -23,15 +23,15 @@ from permway.posterior.recalibrated import recalibrated
 
 
 @one_thread_of_blas()
-def against(twin: Campaign, *, threads: int | None = None) -> Callable[[Campaign], float]:
-    """Deviance between campaigns with an effect and their best recalibrated base, beyond that of their twin.
+def against(control: Campaign, *, threads: int | None = None) -> Callable[[Campaign], float]:
+    """Deviance between campaigns with an effect and their best recalibrated base, beyond that of their control.
 
-    The twin has the same parameters, noise and errors of chains, and nothing concealed: what its base leaves is no
-    effect. The hyperparameters are those of the twin, where there is nothing else to take for an error.
+    The control has the same parameters, noise and errors of chains, and nothing concealed: what its base leaves is
+    no effect. The hyperparameters are those of the control, where there is nothing else to take for an error.
 
     Parameters
     ----------
-    twin : Campaign
+    control : Campaign
     threads : int, optional
         Of the solver.
 
@@ -39,17 +39,17 @@ def against(twin: Campaign, *, threads: int | None = None) -> Callable[[Campaign
     -------
     callable
         From a campaign of the same layout, conditions and lines to its deviance, of quadratic forms and priors;
-        about 0 without an effect, and it may come out below. InputError for other records than the twin's.
+        about 0 without an effect, and it may come out below. InputError for other records than the control's.
 
     Raises
     ------
     InputError
         If no record can be predicted.
     """
-    measured = predictable(twin, screened=False).kept
-    plain = recalibrated(gather(twin, measured, threads=threads))
+    measured = predictable(control, screened=False).kept
+    plain = recalibrated(gather(control, measured, threads=threads))
     there = [dataset.record.name for dataset in measured]
-    least = _misfit(plain, twin, measured)
+    least = _misfit(plain, control, measured)
 
     @one_thread_of_blas()
     def deviance(campaign: Campaign) -> float:
@@ -57,7 +57,7 @@ def against(twin: Campaign, *, threads: int | None = None) -> Callable[[Campaign
         mine = [dataset.record.name for dataset in datasets]
         if mine != there:
             raise InputError(
-                "does not have the records of its twin", where="records", value=mine, remedy=str(there)
+                "does not have the records of its control", where="records", value=mine, remedy=str(there)
             )
         return _misfit(plain, campaign, datasets) - least
 
@@ -65,9 +65,9 @@ def against(twin: Campaign, *, threads: int | None = None) -> Callable[[Campaign
 
 
 def _misfit(plain: Fit, campaign: Campaign, datasets: Sequence[Dataset]) -> float:
-    """Quadratic forms and priors of the best fit to a campaign's records, weighed as those of its twin are."""
+    """Quadratic forms and priors of the best fit to a campaign's records, weighed as those of its control are."""
     frame = Frame.of(plain.frame.evidence.of(campaign, datasets))
-    # What follows the records' own errors is the idealisation, as the twin's fit has it.
+    # What follows the records' own errors is the idealisation, as the control's fit has it.
     fitter = Fitter(frame.with_idealisation(plain.frame.idealisation))
     model = Model(campaign.with_values, plain.model.free)
     near = fitter.begin(model, plain.z, plain.hyper)
@@ -75,10 +75,10 @@ def _misfit(plain: Fit, campaign: Campaign, datasets: Sequence[Dataset]) -> floa
     for level, steps in zip(LEVELS, STEPS, strict=False):
         far = fitter.fit(replace(far, hyper=plain.hyper.with_discrepancy(level)), steps=steps)
     fits = [fitter.fit(fit, steps=STEPS[-1]) for fit in (near, replace(far, hyper=plain.hyper))]
-    return min(fit.covariance.square(fit.state.deviations) + float(fit.z @ fit.z) for fit in fits)
+    return min(fit.covariance.square(fit.state.residuals) + float(fit.z @ fit.z) for fit in fits)
 
 
-def against_folder(twin: Path) -> Callable[[Path], float]:
+def against_folder(control: Path) -> Callable[[Path], float]:
     """The same of measuring teams' folders, each imported for the time it takes.
 
     Raises
@@ -92,7 +92,7 @@ def against_folder(twin: Path) -> Callable[[Path], float]:
             return plain(_imported(folder, Path(place)))
 
     with TemporaryDirectory() as place:
-        plain = against(_imported(twin, Path(place)), threads=1)
+        plain = against(_imported(control, Path(place)), threads=1)
     return deviance
 
 

@@ -21,10 +21,10 @@ from permway.diagnosis.labels import mislabelled
 from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.side_by_side import one_thread_of_blas
-from permway.diagnosis.speak_measurement import mixed_up, with_spoilt
 from permway.diagnosis.thinning import LINES_PER_FREQUENCY
 from permway.diagnosis.verdict import RIGHT, Verdict
 from permway.diagnosis.verdict_parts import Moved, NextMeasurement
+from permway.diagnosis.verdict_records import mixed_up, with_bad_channels
 from permway.posterior.answer import verdict_of
 from permway.posterior.beam import Member
 from permway.posterior.covariance import Frame
@@ -36,7 +36,7 @@ from permway.posterior.places import weighed
 from permway.posterior.search import explored
 
 ENOUGH = 20_000
-"""Residuals that are weighed: of more, frequency responses are taken at fewer lines. Further ones tell little that
+"""Residuals that are weighed: of more, frequency responses are taken at fewer lines. Further ones show little that
 the model's own idealisation does not hide: :data:`permway.posterior.beam.IDEALISED` is the same number. Twice as
 many make the evidence 1.3 times as large and take twice the time."""
 
@@ -97,7 +97,7 @@ def diagnose(
         base, after = (as_base(_on(whole, member.fit)) for member in (empty, best))
     amended = after if verdict.effects and best.amendments else None
     return Diagnosis(
-        verdict=with_spoilt(verdict, bad).model_copy(update={"ruled_out": ruled_out}),
+        verdict=with_bad_channels(verdict, bad).model_copy(update={"ruled_out": ruled_out}),
         base=base,
         amended=amended,
         comparison=assemble(base.evidence, base, left_out=left_out),
@@ -157,12 +157,12 @@ def as_base(fit: Fit) -> Base:
     """The fit in the form that comparisons and reports draw."""
     sizes = {}
     evidence = fit.frame.evidence
-    for origin in evidence.columns.origins:
-        kind = origin.name.split(" ", 1)[0]
-        sizes[origin.name] = fit.hyper[kind] if kind in fit.hyper.names else evidence.sizes[origin.name]
+    for source in evidence.columns.sources:
+        kind = source.name.split(" ", 1)[0]
+        sizes[source.name] = fit.hyper[kind] if kind in fit.hyper.names else evidence.sizes[source.name]
     evidence = evidence.with_sizes(sizes, max(fit.hyper["length"], 0.5) if "length" in fit.hyper.names else None)
-    residuals, whitener = fit.state.deviations, evidence.whitener
-    clean = residuals - whitener.smooth(whitener.explained(residuals), residuals.size)
+    residuals, whitener = fit.state.residuals, evidence.whitener
+    clean = residuals - whitener.calibration(whitener.explained(residuals), residuals.size)
     chi2 = fit.covariance.square(residuals)
     return Base(
         free=fit.model.free,
@@ -170,13 +170,13 @@ def as_base(fit: Fit) -> Base:
         covariance=fit.spread,
         campaign=fit.state.solved.campaign,
         evidence=evidence,
-        deviations=residuals,
+        residuals=residuals,
         clean=clean,
         chi2=chi2,
         prior=float(fit.z @ fit.z),
         log_determinant=fit.covariance.log_determinant,
         jacobian=fit.jacobian,
-        heat=max(1.0, whitener.square(residuals) / max(1, residuals.size)),
+        inflation=max(1.0, whitener.square(residuals) / max(1, residuals.size)),
         evaluations=0,
         build=fit.model.build,
     )

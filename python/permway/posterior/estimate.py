@@ -18,7 +18,7 @@ from permway.posterior.fit import Fit
 from permway.posterior.hyper import Hyper
 
 SETTLED = 0.1
-"""Of minus two log posterior, that a step has to promise to be taken: a twentieth of a nat."""
+"""Of minus two log posterior, that a step is predicted to gain if it is taken: a twentieth of a nat."""
 
 MOST_STEPS, HALVED = 25, 5
 """Steps at most, and how often each is halved until it descends."""
@@ -40,7 +40,7 @@ def estimated(fit: Fit) -> Fit:
     bend = _curvature(objective, x, value, low, high) if fit.bend is None else fit.bend
     for _ in range(MOST_STEPS):
         shift = _step(slope, bend, x, low, high)
-        # Newton's step gains half of what its slope promises.
+        # Newton's step gains half of what its slope predicts.
         if -0.5 * float(slope @ shift) < SETTLED:
             break
         for _ in range(HALVED):
@@ -60,7 +60,7 @@ def estimated(fit: Fit) -> Fit:
 
 
 def _objective(fit: Fit) -> Callable[[Reals], float]:
-    columns = np.column_stack([fit.state.deviations, fit.jacobian])
+    columns = np.column_stack([fit.state.residuals, fit.jacobian])
 
     def objective(log: Reals) -> float:
         hyper: Hyper = fit.hyper.moved(log)

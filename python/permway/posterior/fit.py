@@ -17,7 +17,7 @@ from permway.campaign.campaign import Campaign
 from permway.diagnosis.bounded import bounded_step
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.hypothesis import Hypothesis
-from permway.diagnosis.quick import stacked
+from permway.diagnosis.stacking import stacked
 from permway.diagnosis.tangent import Problem, State
 from permway.errors import InputError
 from permway.posterior.covariance import Covariance, Frame, Roots
@@ -99,7 +99,7 @@ class Fit:
     @cached_property
     def objective(self) -> float:
         """Minus two log posterior density of z and hyperparameters, up to a constant of the records."""
-        return self.covariance.square(self.state.deviations) + float(self.z @ self.z) + self._of_hyper
+        return self.covariance.square(self.state.residuals) + float(self.z @ self.z) + self._of_hyper
 
     @property
     def _of_hyper(self) -> float:
@@ -148,7 +148,7 @@ class Fit:
         solved = replace(
             solved, needs=tuple(solved.needs[i] for i in kept), datasets=[solved.datasets[i] for i in kept]
         )
-        state = State(self.z, solved, self.state.deviations[rows])
+        state = State(self.z, solved, self.state.residuals[rows])
         return replace(self, frame=frame, state=state, jacobian=self.jacobian[rows])
 
 
@@ -226,7 +226,7 @@ class Fitter:
         low, high = start.model.limits
         fit, damping, fresh, exact = start, 1e-3, True, not fixed
         for _ in range(steps):
-            slope = fit.slope(fit.state.deviations) + fit.z
+            slope = fit.slope(fit.state.residuals) + fit.z
             moved = None
             for _ in range(6):
                 shift = bounded_step(fit.normal, slope, fit.z, low, high, damping)
@@ -287,7 +287,7 @@ class Fitter:
 
     def _corrected(self, problem: Problem, fit: Fit, tried: Fit, damping: float) -> Fit | None:
         """A step again, with the part of the residuals' change that slopes did not foretell."""
-        bent = tried.state.deviations - fit.jacobian @ (tried.z - fit.z)
+        bent = tried.state.residuals - fit.jacobian @ (tried.z - fit.z)
         slope = fit.slope(bent) + fit.z
         low, high = fit.model.limits
         shift = bounded_step(fit.normal, slope, fit.z, low, high, damping)

@@ -85,7 +85,7 @@ def _predicted(fit: Fit, out: np.ndarray) -> tuple[float, float]:
 def _marginal(fit: Fit, keep: np.ndarray) -> tuple[float, np.ndarray]:
     """Log marginal likelihood of some rows, and by how far the parameters are elsewhere without the others."""
     covariance = _of_rows(fit.covariance, keep)
-    columns = np.column_stack([fit.state.deviations, fit.jacobian])
+    columns = np.column_stack([fit.state.residuals, fit.jacobian])
     roots = covariance.roots(columns)
     inner = roots.times(roots)
     normal = inner[1:, 1:] + np.eye(fit.z.size)

@@ -56,10 +56,10 @@ def idealised(fit: Fit) -> Reals:
 
     def column(of: tuple[Part, list[int], int]) -> Reals | None:
         part, indices, order = of
-        bent = nearby.bent(part, indices, partial(_share, band=band, order=order))
+        bent = nearby.perturbed(part, indices, partial(_share, band=band, order=order))
         if bent is None:
             return None
-        return np.asarray((evidence.deviations(bent.datasets) - fit.state.deviations) / STEP)
+        return np.asarray((evidence.residuals(bent.datasets) - fit.state.residuals) / STEP)
 
     wanted = [(part, indices, order) for part, indices in _parts(campaign.model.line) for order in range(SHAPES)]
     found = [one for one in each(column, wanted, threads=evidence.threads, least=SMALL) if one is not None]

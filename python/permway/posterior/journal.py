@@ -56,29 +56,29 @@ Table = TypeVar("Table")
 
 def key_of(campaign: Campaign, ruled_out: Collection[str] = ()) -> str:
     """Of all that a diagnosis depends on: code, libraries, campaign, model, every record, what is ruled out."""
-    said = hashlib.sha256(repr((_made_by(), sorted(set(ruled_out)))).encode())
-    said.update(campaign.stated.model_dump_json().encode())
-    said.update(campaign.model.model_dump_json().encode())
+    sha = hashlib.sha256(repr((_made_by(), sorted(set(ruled_out)))).encode())
+    sha.update(campaign.stated.model_dump_json().encode())
+    sha.update(campaign.model.model_dump_json().encode())
     for record in campaign.stated.records:
         for name in (record.file, record.loss_file):
-            # What cannot be read is told of by its reader.
+            # What cannot be read is reported by its reader.
             with contextlib.suppress(OSError):
                 if name is not None:
                     with (campaign.folder / name).open("rb") as file:
-                        said.update(hashlib.file_digest(file, "sha256").digest())
-    return said.hexdigest()
+                        sha.update(hashlib.file_digest(file, "sha256").digest())
+    return sha.hexdigest()
 
 
 @cache
 def _made_by() -> tuple[str, ...]:
     """The package's own files by their content, for a version may have many; libraries and machine by names."""
-    said = hashlib.sha256()
+    sha = hashlib.sha256()
     root = Path(__file__).parents[1]
     for path in sorted(p for p in root.rglob("*") if p.suffix in (".py", ".so", ".pyd")):
-        said.update(str(path.relative_to(root)).encode())
-        said.update(path.read_bytes())
+        sha.update(str(path.relative_to(root)).encode())
+        sha.update(path.read_bytes())
     libraries = (f"{name} {version(name)}" for name in LIBRARIES)
-    return said.hexdigest(), platform.python_version(), platform.machine(), *libraries
+    return sha.hexdigest(), platform.python_version(), platform.machine(), *libraries
 
 
 class Journal:
@@ -111,10 +111,10 @@ class Journal:
             What the step depends on beside the steps before it; arrays count by their bytes, others by their repr.
         """
         self._step += 1
-        said = hashlib.sha256(self._digest.encode())
+        sha = hashlib.sha256(self._digest.encode())
         for one in given:
-            said.update(np.ascontiguousarray(one).tobytes() if isinstance(one, np.ndarray) else repr(one).encode())
-        self._digest = said.hexdigest()
+            sha.update(np.ascontiguousarray(one).tobytes() if isinstance(one, np.ndarray) else repr(one).encode())
+        self._digest = sha.hexdigest()
         try:
             # What was cut short, or is another's, is no step of ours.
             with np.load(io.BytesIO(self._path.read_bytes()), allow_pickle=False) as file:

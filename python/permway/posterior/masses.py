@@ -91,4 +91,4 @@ class Masses:
 
 def _coarse(member: Member) -> float:
     """Logarithm of a set's mass by which names are weighed, up to a constant of the records."""
-    return member.log_prior + tempered(member.fit.log_evidence, member.fit.state.deviations.size, ALIKE)
+    return member.log_prior + tempered(member.fit.log_evidence, member.fit.state.residuals.size, ALIKE)

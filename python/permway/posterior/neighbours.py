@@ -34,14 +34,14 @@ OCTAVES = (-1.0, -0.5, -0.25, 0.25, 0.5, 1.0)
 """By which a frequency moves."""
 
 WORTH = 2.0
-"""Of the objective, that a move has to promise before it is fitted."""
+"""Of the objective, that a move is predicted to gain before it is fitted."""
 
 MOVES = 6
 """In a row, at most."""
 
 
 def rested(fitter: Fitter, fit: Fit, own: slice, hypothesis: Hypothesis, steps: int) -> Fit:
-    """A fit moved to better neighbours until none promises more.
+    """A fit moved to better neighbours until none is predicted to gain more.
 
     Parameters
     ----------
@@ -57,9 +57,9 @@ def rested(fitter: Fitter, fit: Fit, own: slice, hypothesis: Hypothesis, steps: 
         moved = list(_moves(fit, own, hypothesis))
         if not moved:
             return fit
-        promised = [score for score, _ in _scored(fit, moved)]
-        best = int(np.argmin(promised))
-        if not promised[best] < fit.objective - WORTH:
+        predicted = [score for score, _ in _scored(fit, moved)]
+        best = int(np.argmin(predicted))
+        if not predicted[best] < fit.objective - WORTH:
             return fit
         try:
             start = fitter.begin(fit.model, moved[best][0], fit.hyper, fit.jacobian, fit.bend)
@@ -138,12 +138,12 @@ def _stretches(
 def _scored(fit: Fit, moved: list[tuple[Reals, tuple[int, ...]]]) -> list[tuple[float, int]]:
     """The least objective of each neighbour while all that was not set moves along, and its index."""
     evidence = fit.frame.evidence
-    rest = fit.objective - fit.covariance.square(fit.state.deviations) - float(fit.z @ fit.z)
+    rest = fit.objective - fit.covariance.square(fit.state.residuals) - float(fit.z @ fit.z)
 
     def residuals(one: tuple[Reals, tuple[int, ...]]) -> Reals | None:
         try:
             campaign = fit.model.build(fit.model.values(one[0]))
-            found = evidence.deviations(evidence.predicted(campaign, fit.state.solved).datasets)
+            found = evidence.residuals(evidence.predicted(campaign, fit.state.solved).datasets)
         except (InputError, SolveError):
             return None
         return found if np.isfinite(found).all() else None

@@ -45,7 +45,7 @@ def weighed(
 ) -> tuple[Fitter, list[Fit]]:
     """Records weighed by the first of some fits, and all of them fitted again."""
     best = fits[0]
-    frame = fitter.frame.about(best.state.solved, best.covariance, best.state.deviations)
+    frame = fitter.frame.about(best.state.solved, best.covariance, best.state.residuals)
     slopes = Fitter(frame).begin(best.model, best.z, best.hyper)
     again = Fitter(frame.with_idealisation(idealised(slopes)))
     begun = [again.begin(fit.model, fit.z, fit.hyper, bend=fit.bend) for fit in fits]
@@ -92,7 +92,7 @@ def apart(members: list[Member]) -> list[Member]:
     kept: list[Member] = []
     for one in members:
         change = [
-            one.fit.state.deviations - other.fit.state.deviations for other in kept if other.names == one.names
+            one.fit.state.residuals - other.fit.state.residuals for other in kept if other.names == one.names
         ]
         if not any(one.fit.covariance.square(d) < SAME for d in change):
             kept.append(one)

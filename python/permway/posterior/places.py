@@ -1,7 +1,7 @@
 """Where the posterior mass lies: by place along the line, by channel, and by set of effects.
 
 Of each set's amendments the places are drawn from the normal approximation about its fit (Laplace), so that a
-place that the records hardly tell is spread as far as they leave it.
+place that the records hardly constrain is spread as far as they leave it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from permway.posterior.cells import Cell
 from permway.posterior.masses import ALIKE, SHOWN, Masses
 
 DRAWS = 200
-"""Of the places of one amendment: a probability of a half is then told to 0.035."""
+"""Of the places of one amendment: a probability of a half is then known to 0.035."""
 
 PIECES = 80
 """Of a body over the length that has joints."""
@@ -77,7 +77,7 @@ def _body(where: Where) -> str:
 def _shares(masses: Masses) -> tuple[list[float], float]:
     """Probability of each member, and of what no member is; all sum to one."""
     log = np.array(
-        [m.log_prior + tempered(m.fit.log_evidence, m.fit.state.deviations.size, ALIKE) for m in masses.members]
+        [m.log_prior + tempered(m.fit.log_evidence, m.fit.state.residuals.size, ALIKE) for m in masses.members]
     )
     known = np.array([bool(m.amendments) * (1.0 - m.fit.hyper.novel) for m in masses.members])
     weight = np.exp(log - log.max()) * known

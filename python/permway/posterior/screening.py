@@ -93,7 +93,7 @@ def screened(
         Hyperparameters with which a gain counts, too, less what the fit itself loses by them.
     """
     logs = [hyper.log for hyper in others]
-    given = (fit.state.deviations, fit.z, fit.hyper.log, *logs, len(cells), *(cell.z for cell in cells))
+    given = (fit.state.residuals, fit.z, fit.hyper.log, *logs, len(cells), *(cell.z for cell in cells))
     return kept_table(lambda: _looked(fit, cells, progress, others), Scores, *given)
 
 
@@ -136,7 +136,7 @@ class _View:
     @staticmethod
     def of(fit: Fit) -> _View:
         """Of a fit."""
-        before = fit.covariance.roots(fit.state.deviations[:, None])
+        before = fit.covariance.roots(fit.state.residuals[:, None])
         least = float(before.squares()[0])
         factor = linalg.cho_factor(fit.normal) if fit.z.size else None
         uphill = fit.roots.times(before)[:, 0] + fit.z
@@ -182,7 +182,7 @@ def _scored(
     def residuals(cell: Cell) -> Reals | None:
         try:
             predicted = evidence.predicted(amended(cell), solved)
-            found = evidence.deviations(predicted.datasets)
+            found = evidence.residuals(predicted.datasets)
         except (InputError, SolveError):
             return None
         return found if np.isfinite(found).all() else None

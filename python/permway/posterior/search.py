@@ -44,8 +44,8 @@ BEHIND = 92.0
 """Of the objective, by which a fit may be behind the best at one discrepancy to be fitted at the next: odds of
 1e-20, for at a large discrepancy a fit may still lie beside its best neighbour."""
 
-PROMISED = 0.03
-"""The same by a linear look, which promises too much: it has no penalty for what parameters could have been."""
+PREDICTED = 0.03
+"""The same by a linear look, which predicts too much: it has no penalty for what parameters could have been."""
 
 MOVING = 5.0
 """Nats that a small change may lack before it is moved to better neighbours."""
@@ -122,14 +122,14 @@ def _near(
     fitter: Fitter, root: Member, starts: Sequence[Cell], scores: Scores, progress: Progress, what: str
 ) -> list[Member]:
     """Sets with one amendment more, whose change is small: begun where the smaller set fits best."""
-    count = root.fit.state.deviations.size
-    promised = np.array([tempered(0.5 * gain, count) for gain in scores.gain.tolist()])
-    promised += [cell.log_prior for cell in starts]
+    count = root.fit.state.residuals.size
+    predicted = np.array([tempered(0.5 * gain, count) for gain in scores.gain.tolist()])
+    predicted += [cell.log_prior for cell in starts]
     views = [root.fit.hyper, *root.fit.hyper.smaller()]
     worth = []
-    for i in np.flatnonzero(promised > np.log(PROMISED)).tolist():
+    for i in np.flatnonzero(predicted > np.log(PREDICTED)).tolist():
         cell = resized(starts[i], float(scores.measure[i]))
-        worth.append((-promised[i], cell.hypothesis, Trial.of(root, cell, views[scores.view[i]])))
+        worth.append((-predicted[i], cell.hypothesis, Trial.of(root, cell, views[scores.view[i]])))
     # Hyperparameters are the smaller set's still: what is behind with them hardly comes first with its own.
     least = -tempered(root.fit.log_evidence, count) - float(np.log(NEGLECTED))
     trials = chosen(worth, WIDTHS[1], PER_FORM[1])

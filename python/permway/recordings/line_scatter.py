@@ -22,7 +22,7 @@ FREEDOM = 14.0
 and 0.0025 of its square in common with the next three on either side."""
 
 FEWEST = 12
-"""Lines that tell a scatter at least."""
+"""Fewest lines that show a scatter."""
 
 
 def scatter_variance(frequency_Hz: Reals, values: Complexes, *, where: str) -> Reals:
@@ -53,7 +53,7 @@ def scatter_variance(frequency_Hz: Reals, values: Complexes, *, where: str) -> R
     count = frequency_Hz.size
     if count < FEWEST:
         raise InputError(
-            f"{count} lines tell no scatter, which takes {FEWEST} and more",
+            f"{count} lines show no scatter, which takes {FEWEST} and more",
             where=where,
             remedy="take a wider band, or give a coherence",
         )

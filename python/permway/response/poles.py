@@ -109,9 +109,9 @@ def poles_of(frequency_Hz: Reals, receptance: Complexes) -> Poles:
             f"{MOST_POLES} modes or fewer: a rational function misses it by {error:.1e}"
         )
     found = _modes(whole.poles(), omega)
-    twins = again.poles()
-    if twins.size:
-        found = found[np.abs(found[:, None] - twins).min(axis=1) < SAME * np.abs(found)]
+    second = again.poles()
+    if second.size:
+        found = found[np.abs(found[:, None] - second).min(axis=1) < SAME * np.abs(found)]
     residue = whole.residues(found, responses) / found[:, None] ** 2
     # A mode's residue at a driving point is shape^2 / (2 omega modal mass).
     weight = np.abs(residue * found[:, None]).max(axis=1, initial=0.0)

@@ -12,7 +12,7 @@ from permway.diagnosis.catalogue import support_gradient
 from permway.diagnosis.catalogue._pads import STIFFNESS, factors, keys_of
 from permway.diagnosis.catalogue._relaxing import REFERENCE_HZ, relaxing, relaxing_once
 from permway.diagnosis.hypothesis import Hypothesis, Where, between_free, log_free
-from permway.diagnosis.quick import weaker
+from permway.diagnosis.stacking import weaker
 from permway.laws import Hysteretic, Scaled
 from permway.laws.checks import check_law
 from simulated import simulate

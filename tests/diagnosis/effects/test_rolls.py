@@ -11,7 +11,7 @@ import pytest
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.excitation import Rolling
 from permway.campaign.predict import predict
-from permway.campaign.predict import rolling as rolling_predicted
+from permway.campaign.predictions import rolling as rolling_predicted
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._excite import with_irregularity, with_speed
 from permway.diagnosis.gather import gather
@@ -83,7 +83,7 @@ def test_a_train_that_is_said_to_roll_does_so_over_the_line_that_is_found(said: 
     assert rolling is not None
     assert rolling.about is not None
     assert rolling.about.line.laws["pad"].stiffness == pytest.approx(6.9e7, rel=0.02)  # type: ignore[union-attr]
-    assert base.heat < 1.1
+    assert base.inflation < 1.1
     values = base.values()
     assert values["pad.k"] == pytest.approx(6.9e7, rel=0.01)
     assert values["level"] == pytest.approx(0.7, abs=0.3)

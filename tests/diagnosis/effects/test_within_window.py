@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from permway.campaign.predict.grid import grid_of
+from permway.campaign.predictions.grid import grid_of
 from permway.diagnosis.blocks_spectra import TORN, SpectraBlock
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.gather import gather

@@ -47,7 +47,7 @@ VEHICLE_KEYS = {
 LAYERS = ("pad", "mortar", "sliding", "bearing")
 
 SPEED_2SIGMA, SPEED_BOUND = 0.005, 0.01
-"""How well a train's speed is usually noted, and beyond which it is wrong: wheelsets 20 m apart tell 0.05 %."""
+"""How well a train's speed is usually noted, and beyond which it is wrong: wheelsets 20 m apart resolve 0.05 %."""
 
 NOISE_2SIGMA = 0.4
 """How far noise where the train is measured may be from what a quiet band states, both of one recorder."""

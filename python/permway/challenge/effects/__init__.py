@@ -23,10 +23,10 @@ from permway.challenge.effects.base import STRENGTHS, Domain, Effect, Site, Stre
 __all__ = [
     "CATALOGUE",
     "FADING",
+    "NEAR_DEGENERATE",
     "NONLINEAR",
     "OUTSIDE",
     "STRENGTHS",
-    "TWINS",
     "Domain",
     "Effect",
     "Site",
@@ -75,8 +75,8 @@ CATALOGUE: tuple[type[Effect], ...] = (
 )
 """Effects that the catalogue of diagnoses names."""
 
-TWINS = tuple(effect for effect in CATALOGUE if effect.TWINS)
-"""Effects that have a near twin."""
+NEAR_DEGENERATE = tuple(effect for effect in CATALOGUE if effect.ALTERNATIVES)
+"""Effects that have near-degenerate alternatives."""
 
 FADING = tuple(effect for effect in CATALOGUE if effect.FADES)
 """Effects that can be as weak as one likes."""

@@ -35,8 +35,8 @@ class Effect(ABC):
     ID : str or None
         Its entry in the catalogue; None for what is in no catalogue.
     FAMILY, DOMAIN : str
-    TWINS : tuple of str
-        Entries that the data may hardly tell from it.
+    ALTERNATIVES : tuple of str
+        Entries that the data may hardly distinguish from it.
     TEMPERATURES : int
         Hammer tests at different temperatures that it needs.
     WORDS : tuple of str
@@ -50,7 +50,7 @@ class Effect(ABC):
     ID: ClassVar[str | None] = None
     FAMILY: ClassVar[str]
     DOMAIN: ClassVar[Domain] = "path"
-    TWINS: ClassVar[tuple[str, ...]] = ()
+    ALTERNATIVES: ClassVar[tuple[str, ...]] = ()
     TEMPERATURES: ClassVar[int] = 1
     WORDS: ClassVar[tuple[str, ...]] = ()
     FADES: ClassVar[tuple[tuple[str, float], ...]] = ()
@@ -94,7 +94,7 @@ class Effect(ABC):
             "place": self.place,
             "parameters": {item.name: getattr(self, item.name) for item in fields(self)},
             "mechanical": self.mechanical,
-            "twins": list(self.TWINS),
+            "twins": list(self.ALTERNATIVES),
             "words": list(self.WORDS),
         }
 

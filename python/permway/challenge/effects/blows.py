@@ -46,7 +46,7 @@ class WheelFlat(Effect):
     ID = "wheel_flat"
     FAMILY = "lines over wavelength"
     DOMAIN = "irregularity"
-    TWINS = ("wheel_flat", "wheel_polygon")
+    ALTERNATIVES = ("wheel_flat", "wheel_polygon")
     FADES = (("depth_m", 0.0),)
 
     wheelset: int

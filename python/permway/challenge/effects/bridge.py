@@ -98,7 +98,7 @@ class BearingStiffness(Effect):
     KIND = "bearing"
     ID = "bearing_stiffness"
     FAMILY = "bearing"
-    TWINS = ("bearing_stiffness", "pier_soil")
+    ALTERNATIVES = ("bearing_stiffness", "pier_soil")
     FADES = (("factor", 1.0),)
 
     bearing: int
@@ -136,7 +136,7 @@ class PierSoil(Effect):
     KIND = "pier_soil"
     ID = "pier_soil"
     FAMILY = "bearing"
-    TWINS = ("bearing_stiffness", "pier_soil")
+    ALTERNATIVES = ("bearing_stiffness", "pier_soil")
     FADES = (("soil_N_per_m", math.inf), ("soil_Ns_per_m", math.inf))
 
     pier_kg: float

@@ -22,7 +22,7 @@ class PadSpringpot(Effect):
     KIND = "pad_springpot"
     ID = "pad_frequency"
     FAMILY = "pad law"
-    TWINS = ("pad_frequency", "layer_damping")
+    ALTERNATIVES = ("pad_frequency", "layer_damping")
     FADES = (("order", 0.0),)
 
     order: float
@@ -64,7 +64,7 @@ class PadZener(Effect):
     KIND = "pad_zener"
     ID = "pad_frequency"
     FAMILY = "pad law"
-    TWINS = ("pad_frequency", "layer_damping")
+    ALTERNATIVES = ("pad_frequency", "layer_damping")
     FADES = (("rise", 0.0),)
 
     rise: float
@@ -148,7 +148,7 @@ class FastenersLost(Effect):
     KIND = "lost"
     ID = "fastener_loss"
     FAMILY = "local loss of support"
-    TWINS = ("fastener_loss", "mortar_void")
+    ALTERNATIVES = ("fastener_loss", "mortar_void")
     FADES = (("factor", 1.0),)
 
     stretch_m: tuple[float, float]

@@ -19,7 +19,7 @@ class MortarVoid(Effect):
     KIND = "mortar_void"
     ID = "mortar_void"
     FAMILY = "local loss of support"
-    TWINS = ("fastener_loss", "mortar_void")
+    ALTERNATIVES = ("fastener_loss", "mortar_void")
     FADES = (("factor", 1.0),)
 
     stretch_m: tuple[float, float]
@@ -87,7 +87,7 @@ class ViscousLayer(Effect):
     KIND = "viscous_layer"
     ID = "layer_damping"
     FAMILY = "pad law"
-    TWINS = ("layer_damping", "pad_frequency")
+    ALTERNATIVES = ("layer_damping", "pad_frequency")
 
     equal_Hz: float
 

@@ -59,7 +59,7 @@ class SensorGain(SensorFault):
     KIND = "sensor_gain"
     ID = "sensor_gain"
     FAMILY = "sensor level"
-    TWINS = ("sensor_gain", "irregularity_level")
+    ALTERNATIVES = ("sensor_gain", "irregularity_level")
     FADES = (("gain", 1.0),)
 
     gain: float

@@ -24,7 +24,7 @@ class WheelPolygon(Effect):
     ID = "wheel_polygon"
     FAMILY = "lines over wavelength"
     DOMAIN = "irregularity"
-    TWINS = ("wheel_polygon", "rail_corrugation")
+    ALTERNATIVES = ("wheel_polygon", "rail_corrugation")
     FADES = (("amplitude_m", 0.0),)
 
     wheelset: int
@@ -69,7 +69,7 @@ class RailCorrugation(Effect):
     ID = "rail_corrugation"
     FAMILY = "lines over wavelength"
     DOMAIN = "irregularity"
-    TWINS = ("rail_corrugation", "wheel_polygon")
+    ALTERNATIVES = ("rail_corrugation", "wheel_polygon")
     FADES = (("gain_dB", 0.0),)
 
     wavelength_m: float
@@ -146,7 +146,7 @@ class IrregularityLevel(Effect):
     ID = "irregularity_level"
     FAMILY = "spectrum's level"
     DOMAIN = "irregularity"
-    TWINS = ("irregularity_level", "sensor_gain")
+    ALTERNATIVES = ("irregularity_level", "sensor_gain")
     FADES = (("gain_dB", 0.0),)
 
     gain_dB: float

@@ -32,7 +32,7 @@ class PadPreload(Effect):
     KIND = "pad_preload"
     ID = "pad_preload"
     FAMILY = "load-dependent pad"
-    TWINS = ("pad_preload", "pad_amplitude")
+    ALTERNATIVES = ("pad_preload", "pad_amplitude")
     FADES = (("exponent", 0.0),)
 
     exponent: float
@@ -125,7 +125,7 @@ class ClosingGap(Effect):
     KIND = "closing_gap"
     ID = "mortar_void"
     FAMILY = "local loss of support"
-    TWINS = ("fastener_loss", "mortar_void")
+    ALTERNATIVES = ("fastener_loss", "mortar_void")
 
     stretch_m: tuple[float, float]
     open_factor: float

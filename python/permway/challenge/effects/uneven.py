@@ -19,7 +19,7 @@ class SupportScatter(Effect):
     KIND = "support_scatter"
     ID = "support_scatter"
     FAMILY = "support along x"
-    TWINS = ("support_scatter", "support_gradient")
+    ALTERNATIVES = ("support_scatter", "support_gradient")
     FADES = (("sigma", 0.0),)
 
     sigma: float

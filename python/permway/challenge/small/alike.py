@@ -20,4 +20,4 @@ ALIKE: tuple[tuple[str, str, tuple[str, ...]], ...] = (
 def right_names(truth: Mapping[str, Any]) -> set[str]:
     """All names that are right in a campaign; "novel" of what is in no catalogue."""
     ids = {effect["id"] or NOVEL for effect in truth["effects"]}
-    return ids | {said for true, said, layouts in ALIKE if true in ids and truth["layout"] in layouts}
+    return ids | {named for true, named, layouts in ALIKE if true in ids and truth["layout"] in layouts}

@@ -58,7 +58,7 @@ def _diagnosed(campaign: Path, out: Path, limit: float) -> str:
         verdict.write(out / "verdict.json")
     except TimeUp:
         failure = f"TimeUp: no verdict after {limit:g} s of processor"
-    except Exception as error:  # noqa: BLE001 whatever a method fails with is counted, and told
+    except Exception as error:  # noqa: BLE001 whatever a method fails with is counted, and reported
         failure = f"{type(error).__name__}: {error}\n{traceback.format_exc(limit=-6)}"
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)

@@ -182,9 +182,9 @@ class ByModel:
             return campaign
         law = next(iter(campaign.model.line.laws))
         one = Parameter(name="k", paths=(f"line.laws.{law}.stiffness",), tolerance_2sigma=0.1)
-        said = campaign.stated.model_copy(update={"parameters": (one,)})
-        known = ParameterSet(said.parameters, campaign.model, self.tests.model, said, campaign.folder)
-        return Campaign(said, campaign.model, campaign.folder, known)
+        stated = campaign.stated.model_copy(update={"parameters": (one,)})
+        known = ParameterSet(stated.parameters, campaign.model, self.tests.model, stated, campaign.folder)
+        return Campaign(stated, campaign.model, campaign.folder, known)
 
     def _as_datasets(self) -> list[xr.Dataset]:
         return predict(self.true, self._blank, threads=1)

@@ -97,9 +97,9 @@ def _changes(x: Reals, factors: Reals) -> list[Change]:
 
 def with_chain(campaign: Campaign, sensor: str, chain: Chain) -> Campaign:
     """The campaign with another measuring chain of a sensor."""
-    said = campaign.stated
-    sensors = tuple(s.model_copy(update={"chain": chain}) if s.name == sensor else s for s in said.sensors)
-    changed = said.model_copy(update={"sensors": sensors})
+    stated = campaign.stated
+    sensors = tuple(s.model_copy(update={"chain": chain}) if s.name == sensor else s for s in stated.sensors)
+    changed = stated.model_copy(update={"sensors": sensors})
     return replace(campaign, stated=changed)
 
 

@@ -22,20 +22,20 @@ def with_irregularity(campaign: Campaign, **parts: Any) -> Campaign:
     """The campaign with other numbers of what it says of the irregularity, checked again."""
     known = campaign.stated.irregularity
     changed = IrregularityKnown(**{**dict(known), **parts})
-    said = campaign.stated.model_copy(update={"irregularity": changed})
-    return replace(campaign, stated=said)
+    stated = campaign.stated.model_copy(update={"irregularity": changed})
+    return replace(campaign, stated=stated)
 
 
 def with_speed(campaign: Campaign, factor: float, condition: str | None = None) -> Campaign:
     """The campaign with the speed of one train, or of all, times a factor."""
-    said = campaign.stated
+    stated = campaign.stated
     conditions = tuple(
         c.model_copy(update={"speed_m_per_s": c.speed_m_per_s * factor})
         if c.speed_m_per_s is not None and condition in (None, c.name)
         else c
-        for c in said.conditions
+        for c in stated.conditions
     )
-    changed = said.model_copy(update={"conditions": conditions})
+    changed = stated.model_copy(update={"conditions": conditions})
     return replace(campaign, stated=changed)
 
 

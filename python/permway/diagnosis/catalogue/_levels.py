@@ -1,6 +1,6 @@
 """Joints that answer otherwise the harder they are driven: linear under each condition, and other between them.
 
-What a nonlinear joint does to a response at its own frequency stands as a linear one, told level by level: see
+What a nonlinear joint does to a response at its own frequency stands as a linear one, given level by level: see
 Krylov and Bogoliubov (1947), Introduction to Non-Linear Mechanics, chapter 10.
 """
 

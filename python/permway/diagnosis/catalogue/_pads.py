@@ -92,5 +92,5 @@ def with_factors(campaign: Campaign, by_condition: Mapping[str, Mapping[str, flo
         new = by_condition.get(condition.name, {})
         merged = {**condition.factors, **{p: condition.factors.get(p, 1.0) * f for p, f in new.items()}}
         changed.append(condition.model_copy(update={"factors": merged}) if new else condition)
-    said = campaign.stated.model_copy(update={"conditions": tuple(changed)})
-    return replace(campaign, stated=said)
+    stated = campaign.stated.model_copy(update={"conditions": tuple(changed)})
+    return replace(campaign, stated=stated)

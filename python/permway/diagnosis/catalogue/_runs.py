@@ -63,7 +63,7 @@ class Excess:
     def score_at(self, frequency_Hz: Reals, channel: str = "") -> Reals:
         """What stands out about frequencies, by default in the mean over channels; NaN outside the record.
 
-        And NaN of a channel that this run was not read by, or whose record of it is spoilt.
+        And NaN of a channel that this run was not read by, or whose record of it is bad.
         """
         if channel and channel not in self.sharp:
             return np.full(np.shape(frequency_Hz), np.nan)
@@ -239,12 +239,12 @@ def on_board(situation: Situation) -> list[Sensor]:
 
 
 def suspects(situation: Situation, names: Iterable[str], most: int) -> list[str]:
-    """Sensors by how badly the base fits what they read, smooth errors left in."""
+    """Sensors by how badly the base fits what they read, calibration errors left in."""
     rows = situation.fit.evidence.rows
     square = {}
     for name in names:
         mine = rows.sensor == name
-        square[name] = float(np.mean(situation.fit.deviations[mine] ** 2)) if mine.any() else -1.0
+        square[name] = float(np.mean(situation.fit.residuals[mine] ** 2)) if mine.any() else -1.0
     ranked = sorted(square, key=lambda name: -square[name])
     return [name for name in ranked if square[name] >= 0.0][:most]
 

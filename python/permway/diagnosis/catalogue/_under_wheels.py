@@ -11,7 +11,7 @@ from scipy import linalg
 from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.parts import Condition
-from permway.campaign.predict.motion import wheels_of
+from permway.campaign.predictions.motion import wheels_of
 from permway.diagnosis.catalogue._change import REACH_M, fresh, with_line
 from permway.diagnosis.catalogue._pads import with_factors
 from permway.diagnosis.catalogue._roles import LOW_HZ, ROOM_C, Layer, fasteners, spacing

@@ -1,4 +1,4 @@
-"""What the effects of the vehicle share: additions to it, who reads what, and where deviations are largest."""
+"""What the effects of the vehicle share: additions to it, who reads what, and where residuals are largest."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from permway.model.vehicle import Vehicle
 from permway.model.vehicle_additions import AnyAddition
 
 FITS = 2.0
-"""Mean square of the deviations below which a base nearly fits."""
+"""Mean square of the residuals below which a base nearly fits."""
 
 WIDTH_OCTAVES = 0.1
-"""Over which deviations are added up to find where an effect is strongest."""
+"""Over which residuals are added up to find where an effect is strongest."""
 
 APART_OCTAVES = 0.7
 """At least, between the frequencies where it may be."""
@@ -53,7 +53,7 @@ def sensors_on(situation: Situation, part: str) -> list[str]:
 
 
 def rows_of(situation: Situation, sensors: Sequence[str]) -> np.ndarray:
-    """Which deviations under a train are of sensors: of their power, and of what others share with them."""
+    """Which residuals under a train are of sensors: of their power, and of what others share with them."""
     rows = situation.fit.evidence.rows
     mine = np.isin(rows.sensor, list(sensors))
     for name in sensors:
@@ -64,10 +64,10 @@ def rows_of(situation: Situation, sensors: Sequence[str]) -> np.ndarray:
 def loudest_Hz(
     situation: Situation, sensors: Sequence[str], low_Hz: float, high_Hz: float, most: int
 ) -> list[float]:
-    """Where the deviations of sensors under a train exceed chance most, Hz."""
+    """Where the residuals of sensors under a train exceed chance most, Hz."""
     fit = situation.fit
     rows = fit.evidence.rows
-    left = fit.clean if fit.heat < FITS else fit.deviations
+    left = fit.clean if fit.inflation < FITS else fit.residuals
     mine = rows_of(situation, sensors) & (rows.frequency_Hz >= low_Hz) & (rows.frequency_Hz <= high_Hz)
     if not mine.any():
         return []

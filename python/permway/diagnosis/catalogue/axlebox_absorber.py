@@ -88,4 +88,4 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
 def _deviating(situation: Situation, sensors: tuple[str, ...]) -> float:
     """Mean square of what is left in a wheelset's channels."""
     mine = rows_of(situation, sensors)
-    return float((situation.fit.deviations[mine] ** 2).mean()) if mine.any() else 0.0
+    return float((situation.fit.residuals[mine] ** 2).mean()) if mine.any() else 0.0

@@ -35,8 +35,8 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """One for each of the most telling stations, and where two girders meet one for each of them."""
     line = situation.campaign.model.line
     for layer in bearings(line):
-        told = [f.spot.x_m[0] for f in situation.joints(layer.law, most=MOST)]
-        for x in dict.fromkeys((*told, *layer.x.tolist()[:MOST])) if told else layer.x.tolist()[:MOST]:
+        located = [f.spot.x_m[0] for f in situation.joints(layer.law, most=MOST)]
+        for x in dict.fromkeys((*located, *layer.x.tolist()[:MOST])) if located else layer.x.tolist()[:MOST]:
             if np.abs(layer.x - x).min() < REACH_M:
                 yield _station(layer, float(x))
                 held = _held(line, layer, float(x))

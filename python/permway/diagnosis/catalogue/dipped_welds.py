@@ -36,7 +36,7 @@ EVERY_M = 20.0
 LENGTH_M, LENGTH_FACTOR = 0.5, 2.0
 DEPTH_M, DEPTH_FACTOR = 3e-4, 2.5
 BEGUN_M = ((0.12, 0.17, 0.25, 0.35), (0.5, 0.7, 1.0), (1.4, 2.0, 2.8, 4.0))
-"""Lengths to begin with, half an octave apart: what a wandering level takes up lies between one and the next."""
+"""Lengths to begin with, half an octave apart: what a varying level takes up lies between one and the next."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:

@@ -51,13 +51,13 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
     """One for each row of girders, on the beam of the row that the scan names, else on the first."""
     line = situation.campaign.model.line
     for name in girders(line):
-        told = situation.bodies(name, most=1)
+        located = situation.bodies(name, most=1)
         segments = reaches(line, name)
-        segment = next((s for s in segments if told and s.name == told[0].spot.name), segments[0])
-        yield _on(name, segment, told[0].spot.x_m[0] if told else None)
+        segment = next((s for s in segments if located and s.name == located[0].spot.name), segments[0])
+        yield _on(name, segment, located[0].spot.x_m[0] if located else None)
 
 
-def _on(name: str, segment: Segment, told: float | None) -> Hypothesis:
+def _on(name: str, segment: Segment, located: float | None) -> Hypothesis:
     start, stop = segment.start, segment.stop
     span = stop - start
 
@@ -76,8 +76,8 @@ def _on(name: str, segment: Segment, told: float | None) -> Hypothesis:
 
     middle, sigma = 0.5 * (start + stop), 0.25 * span
     places = [*np.linspace(-1.8, 1.8, STARTS)]
-    if told is not None:
-        places.insert(0, (told - middle) / sigma)
+    if located is not None:
+        places.insert(0, (located - middle) / sigma)
     return Hypothesis(
         entry=ID,
         domain=DOMAIN,

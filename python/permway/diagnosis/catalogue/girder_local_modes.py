@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from permway.campaign.campaign import Campaign
+from permway.diagnosis.catalogue._attached import spread_over
 from permway.diagnosis.catalogue._change import hung_mass
-from permway.diagnosis.catalogue._hung import spread_over
 from permway.diagnosis.catalogue._roles import girders
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.model.bodies import Beam

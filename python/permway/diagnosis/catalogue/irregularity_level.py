@@ -1,4 +1,4 @@
-"""The track is rougher or smoother than its owner says, at all times or in one run."""
+"""The track is rougher or smoother than stated, at all times or in one run."""
 
 from __future__ import annotations
 

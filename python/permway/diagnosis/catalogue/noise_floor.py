@@ -1,4 +1,4 @@
-"""A channel is noisier than its owner says."""
+"""A channel is noisier than stated."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, between_
 ID = "noise_floor"
 DOMAIN: Domain = "measurement"
 FAMILY = "noise"
-SUMMARY = "Noise of density e N ((1 - s) + s 10 Hz / f) on top of one channel's noise floor, N as its owner says."
+SUMMARY = "Noise of density e N ((1 - s) + s 10 Hz / f) on top of one channel's noise floor, N as stated."
 PARAMETERS = {
     "extra": "1, 1.3e-3 to 7.8e4: e",
     "flicker": "1, 0 to 1: s, the share that falls with frequency",
-    "noise_ratio": "1, 1.3e-3 to 7.8e4: in hammer tests, power of its noise, as coherence tells it, over others'",
+    "noise_ratio": "1, 1.3e-3 to 7.8e4: in hammer tests, power of its noise, as coherence states it, over others'",
 }
 SIGNATURE = "Power of one channel where it is low, and its coherence with the others; the same at all speeds."
 CONFUSED_WITH = {
@@ -77,7 +77,7 @@ def _on_board(situation: Situation) -> Iterator[Hypothesis]:
     for name in suspects(situation, names, 4):
         sensor = situation.campaign.sensor(name)
         least = min(float(np.min(power)) for _, power in measured_psd(situation, name))
-        # The owner's floor, not where the base's was driven to.
+        # The stated floor, not where the base's was driven to.
         stated = situation.fit.evidence.campaign.sensor(name).chain.noise_floor
         unit = stated or max(LOWEST * least / sensor.to_SI**2, 1e-30)
         # As much as the least power on record, where that is more than what is stated.

@@ -8,7 +8,7 @@ import numpy as np
 
 from permway.arrays import ABSOLUTE_ZERO_C
 from permway.campaign.campaign import Campaign
-from permway.campaign.predict.hammer import temperature
+from permway.campaign.predictions.hammer import temperature
 from permway.diagnosis.catalogue._change import with_law
 from permway.diagnosis.catalogue._pads import factors, measured_under, pad_laws, scaled, with_factors
 from permway.diagnosis.catalogue._relaxing import relaxing, springpot_free

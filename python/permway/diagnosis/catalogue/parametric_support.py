@@ -30,15 +30,15 @@ SUMMARY = (
     "harmonics coupled, where the campaign says that trains stand; or as lines a n^-p in the profile, beyond that."
 )
 SHAPE_M = tuple(0.2 * 2.0**octave for octave in range(7))
-"""Wavelengths at which the profile's spectrum may differ from its owner's where trains roll."""
+"""Wavelengths at which the profile's spectrum may differ from the stated one where trains roll."""
 
 MOST_DB = 20.0
-"""By which it may, whatever its owner says."""
+"""By which it may, whatever is stated."""
 
 PARAMETERS = {
     "share": "1, 0.4 to 2.5: of what rolling over the model's own supports changes; 1 is as the model has them",
     **{
-        f"shape_{x:g}_m_dB": f"dB, -20 to 20: the spectrum less its owner's at {x:g} m, with share"
+        f"shape_{x:g}_m_dB": f"dB, -20 to 20: the spectrum less the stated one at {x:g} m, with share"
         for x in SHAPE_M
     },
     "amplitude_m": "m, 2.1e-8 to 1.2e-3: a, of the first line",
@@ -58,7 +58,7 @@ SOURCE = (
 AMPLITUDE_M, HARMONICS = 5e-6, 4
 
 RUNS = ("train.", "campaign.")
-"""Where parameters lead that runs alone tell of."""
+"""Where parameters lead that runs alone constrain."""
 
 STANDS_OUT = 5.0
 """Standard deviations by which a line at V over the spacing stands out of a run whose train is looked at rolling:
@@ -139,10 +139,10 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
 
 
 def _known_at_rest(situation: Situation) -> Campaign:
-    """The base without what runs bent it to, for they were told by a train that stands.
+    """The base without what runs fitted it to, for that is by a train that stands.
 
     Of records that are no runs, where there are any: they know nothing of rolling. Without them the base, train
-    and speeds as the owner says.
+    and speeds as stated.
     """
     fit, known = situation.fit, situation.campaign.parameters.known
     of_runs = {n for n, one in known.items() if all(path.startswith(RUNS) for path in one.parameter.paths)}

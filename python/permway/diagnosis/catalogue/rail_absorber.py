@@ -41,7 +41,7 @@ SOURCE = "Thompson and others (2007), Applied Acoustics 68, 43-57: a tuned dampi
 
 
 FEWEST = 8
-"""Fasteners from which a stretch of them is told from all."""
+"""Fasteners from which a stretch of them is distinguished from all."""
 
 STRETCHES = ((0.0, 0.9), (0.0, -0.3), (-0.9, -0.5), (0.9, -0.5))
 """Middle and length that a stretch begins with, in standard deviations: most of it, its middle, either end."""
@@ -80,7 +80,7 @@ def _everywhere(rail: str, x: Reals, where: str) -> Hypothesis:
     reach = float(x.min()), float(x.max())
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
-        return _hung(campaign, rail, x, values)[0]
+        return _attached(campaign, rail, x, values)[0]
 
     return Hypothesis(
         entry=ID,
@@ -111,10 +111,10 @@ def _over_a_stretch(rail: str, x: Reals, where: str) -> Hypothesis:
     middle, length = 0.5 * (low + high), high - low
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
-        amended, law = _hung(campaign, rail, x, values)
+        amended, law = _attached(campaign, rail, x, values)
 
         def within(at: Reals) -> Reals:
-            # Fading over one spacing, and flat nowhere beside: slopes tell where the ends should go.
+            # Fading over one spacing, and flat nowhere beside: slopes show where the ends should go.
             beyond = (np.abs(at - values["centre_m"]) - 0.5 * values["length_m"]) / spacing(x)
             return np.asarray(np.clip(1.0 - beyond, 0.0, 1.0).round(12))
 
@@ -137,8 +137,8 @@ def _over_a_stretch(rail: str, x: Reals, where: str) -> Hypothesis:
     )
 
 
-def _hung(campaign: Campaign, rail: str, x: Reals, values: Mapping[str, float]) -> tuple[Campaign, str]:
-    """Masses on springs hung at some places of a rail, and the name of their law."""
+def _attached(campaign: Campaign, rail: str, x: Reals, values: Mapping[str, float]) -> tuple[Campaign, str]:
+    """Masses on springs at some places of a rail, and the name of their law."""
     name = fresh("rail_absorber", campaign.model.line.laws)
     law = hung_mass(values["mass_kg"], values["frequency_Hz"], values["loss_factor"])
     masses = Joints(between=(rail, GROUND), law=name, at=tuple(float(one) for one in x))

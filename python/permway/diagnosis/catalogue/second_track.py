@@ -1,7 +1,7 @@
 """A second track on the girder that the model leaves out: mass, part of it on its own springs.
 
 What is fixed to the girder is part of its mass per metre, as its density is: at stations, of whatever spacing, it
-would move short waves by some 1e-4, and so seem to be told from the density.
+would move short waves by some 1e-4, and so seem to be distinguished from the density.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from permway.campaign.campaign import Campaign
+from permway.diagnosis.catalogue._attached import spread_over
 from permway.diagnosis.catalogue._change import hung_mass, with_fields
-from permway.diagnosis.catalogue._hung import spread_over
 from permway.diagnosis.catalogue._roles import girders
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.model.bodies import Beam

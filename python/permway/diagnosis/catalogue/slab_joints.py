@@ -200,7 +200,7 @@ def _either_side(tried: list[tuple[float, float]], segment: Segment, measured: R
 def _at_fasteners(name: str, segments: list[Segment], length: float, start: float) -> Hypothesis:
     """Cut through at fasteners, each of which then holds both ends by halves, as does the bed; dowels or none.
 
-    Which fasteners, no slope tells: a hypothesis for each length of so many bays.
+    Which fasteners, no slope shows: a hypothesis for each length of so many bays.
     """
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:

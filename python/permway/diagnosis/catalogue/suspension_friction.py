@@ -52,7 +52,7 @@ def _instead(suspension: Suspension, campaign: Campaign, values: Mapping[str, fl
     force = values["force_N"]
     if np.isinf(force):
         return campaign
-    # At rest it is the damper that its owner says.
+    # At rest it is the damper that is stated.
     v0 = force * np.sqrt(2.0 / np.pi) / damping_of(campaign, suspension)
     slider = Slider(suspension=suspension, force_N=force, velocity_m_per_s=float(v0), alone=True)
     return with_addition(campaign, slider)

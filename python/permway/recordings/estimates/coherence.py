@@ -127,19 +127,6 @@ def _quantiles(averages: float, probability: float) -> tuple[Reals, Reals]:
     return truth, 0.5 * (low + high)
 
 
-def fisher_z(coherence: ArrayLike, averages: float) -> tuple[Reals, float]:
-    """Fisher's z = artanh(sqrt(g2)) less its bias 1 / (2 K - 2), and its variance 1 / (2 K - 2).
-
-    Good for K of twenty or more and g2 from 0.4 to 0.95 (Bendat and Piersol 1971; Benignus 1969); the exact
-    interval is :func:`coherence_interval`.
-    """
-    spread = 1.0 / (2.0 * (_averages(averages) - 1.0))
-    value = as_reals(coherence, "coherence")
-    if np.any((value < 0.0) | (value >= 1.0)):
-        raise InputError("must lie in [0, 1)", where="coherence", value=[float(value.min()), float(value.max())])
-    return np.asarray(np.arctanh(np.sqrt(value)) - spread), spread
-
-
 def _averages(averages: float) -> float:
     number = check_positive(averages, "averages")
     if number <= 1.0:

@@ -123,13 +123,6 @@ def frf_interval(
     return FrfInterval(magnitude, Interval(phase - half, phase + half), radius)
 
 
-def phase_covered(interval: Interval, truth_rad: ArrayLike) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    """Whether a phase lies within an interval, turns apart from it or not."""
-    middle, half = 0.5 * (interval.low + interval.high), 0.5 * (interval.high - interval.low)
-    off = np.angle(np.exp(1j * (np.asarray(truth_rad) - middle)))
-    return np.asarray(np.abs(off) <= half)
-
-
 def _freedom(degrees_of_freedom: ArrayLike) -> Reals:
     freedom = real_numbers(degrees_of_freedom, "degrees_of_freedom")
     check_finite(freedom, "degrees_of_freedom")

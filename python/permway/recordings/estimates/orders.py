@@ -121,7 +121,7 @@ def component_levels(
         if bottom < half_band or top > 0.5 * rate - half_band:
             raise InputError(
                 f"{bottom:.4g} to {top:.4g} Hz lies outside {half_band:.3g} to {0.5 * rate - half_band:.5g} Hz, "
-                "what a record of this length and rate can tell",
+                "what a record of this length and rate can resolve",
                 where=f"wavelength_m[{index}]",
                 value=float(wavelength[index]),
                 remedy="leave it out, or take a longer record",

@@ -52,7 +52,6 @@ _FUNCTION = re.compile(
 _SCALE = re.compile(r"(?P<stem>.*?)(?:^|[\s_\-.]+)(?P<scale>log|lin)", re.IGNORECASE)
 _SPECTRUM = re.compile(r"\b(?:[GSP](?:xx|xy|yx|yy)|psd|csd|asd|(?:cross|auto|power)[ -]?spec\w*)\b")
 _MOST_HEADS = 4
-_LOOKED_AT = 50
 ALONE = ("response", "reference")
 """Labels of a response that its table does not name."""
 

@@ -20,11 +20,11 @@ from permway.recordings.readers.timefile import TimeFile, Timing
 from permway.recordings.readers.uff import Text, open_text
 from permway.recordings.readers.uff58_function import Function, functions, values_of
 from permway.recordings.readers.uff58_labels import (
+    Naming,
     Pair,
-    Tell,
     channel_labels,
     pair_labels,
-    pair_tells,
+    pair_namings,
     plain_pair,
     type_name,
 )
@@ -119,7 +119,7 @@ def read_frf(
         ]
         if not found:
             raise _nothing(source, everything, "frequency response (dataset 58 of type 4)")
-        states = pair_tells(found)
+        states = pair_namings(found)
         every = pair_labels(found, states)
         chosen = [
             i
@@ -167,7 +167,7 @@ class _Chosen:
     rows: list[Function]
     labels: list[Pair]
     every: list[Pair]
-    states: dict[Pair, Tell]
+    states: dict[Pair, Naming]
 
 
 def _coherence(text: Text, everything: list[Function], chosen: _Chosen, frequency: Reals) -> Reals | None:

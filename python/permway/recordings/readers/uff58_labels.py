@@ -18,7 +18,7 @@ _QUANTITIES = {
 }  # fmt: skip
 
 # What states two channels of one node and direction apart, the plainest first.
-_TELLS: tuple[Callable[[Function], str], ...] = (
+_NAMINGS: tuple[Callable[[Function], str], ...] = (
     lambda item: item.response.entity,
     lambda item: _QUANTITIES.get(item.ordinate.kind, ""),
     *(lambda item, line=line: item.ids[line] for line in range(5)),
@@ -38,8 +38,8 @@ def channel_labels(items: Sequence[Function]) -> tuple[str, ...]:
         tied = [i for i, other in enumerate(labels) if other == label]
         if len(tied) == 1:
             continue
-        for tell in _TELLS:
-            found = [tell(items[i]) for i in tied]
+        for name in _NAMINGS:
+            found = [name(items[i]) for i in tied]
             if len(set(found)) == len(tied) and all(found):
                 for i, text in zip(tied, found, strict=True):
                     # Where there is no node, the name alone is the label.
@@ -56,7 +56,7 @@ def _channel(item: Function) -> str:
 
 
 Pair = tuple[str, str]
-Tell = Callable[[Function], Pair]
+Naming = Callable[[Function], Pair]
 """What a function is called: its response and its reference."""
 
 
@@ -65,17 +65,17 @@ def plain_pair(item: Function) -> Pair:
     return item.response.label, item.reference.label
 
 
-def _by_line(line: int) -> Tell:
-    def tell(item: Function) -> Pair:
+def _by_line(line: int) -> Naming:
+    def name(item: Function) -> Pair:
         text = item.ids[line]
         response, reference = plain_pair(item)
         return (response if text.upper() in ("", "NONE") else f"{response} ({text})"), reference
 
-    return tell
+    return name
 
 
 # What distinguishes functions of one pair: entities' names, an identification line, number or version.
-_PAIR_TELLS: tuple[Tell, ...] = (
+_PAIR_NAMINGS: tuple[Naming, ...] = (
     lambda item: (_named(item.response), _named(item.reference)),
     *(_by_line(line) for line in range(5)),
     lambda item: (f"{item.response.label} ({item.number})", item.reference.label),
@@ -83,20 +83,20 @@ _PAIR_TELLS: tuple[Tell, ...] = (
 )
 
 
-def pair_tells(items: Sequence[Function]) -> dict[Pair, Tell]:
+def pair_namings(items: Sequence[Function]) -> dict[Pair, Naming]:
     """For each pair that several functions are of, what distinguishes these; it is missing where nothing does."""
     groups: dict[Pair, list[Function]] = {}
     for item in items:
         groups.setdefault(plain_pair(item), []).append(item)
-    found: dict[Pair, Tell] = {}
+    found: dict[Pair, Naming] = {}
     for pair, tied in groups.items():
-        tell = next((tell for tell in _PAIR_TELLS if len({tell(item) for item in tied}) == len(tied)), None)
-        if len(tied) > 1 and tell is not None:
-            found[pair] = tell
+        name = next((name for name in _PAIR_NAMINGS if len({name(item) for item in tied}) == len(tied)), None)
+        if len(tied) > 1 and name is not None:
+            found[pair] = name
     return found
 
 
-def pair_labels(items: Sequence[Function], states: Mapping[Pair, Tell]) -> list[Pair]:
+def pair_labels(items: Sequence[Function], states: Mapping[Pair, Naming]) -> list[Pair]:
     """Labels of response and reference of each function."""
     return [states.get(plain_pair(item), plain_pair)(item) for item in items]
 

@@ -76,7 +76,7 @@ def sigma_maps(comparison: Comparison) -> Iterator[tuple[str, Figure]]:
             continue
         panels: dict[str, list[Part]] = {"level": [], "phase": []}
         for i in members:
-            data, record = comparison.deviations[i], comparison.records[i]
+            data, record = comparison.residuals[i], comparison.records[i]
             if record.attrs["statistic"] == "frf":
                 order = ordered(comparison.campaign, record)
                 labels = [_row_name(record, channel) for channel in order]
@@ -91,7 +91,7 @@ def sigma_maps(comparison: Comparison) -> Iterator[tuple[str, Figure]]:
                     mine = [labels[row] for row in there]
                     panels[panel].append((data["frequency"].values, values[:, index, there], mine))
         shown = {panel: parts for panel, parts in panels.items() if parts}
-        models = [str(m) for m in comparison.deviations[members[0]]["model"].values]
+        models = [str(m) for m in comparison.residuals[members[0]]["model"].values]
         figure = _side_by_side(models, shown if len(shown) > 1 else {"": shown["level"]}, SIGMAS)
         figure.axes[-1].set_ylabel("standard deviations", fontsize=FONT)
         yield f"sigma-{file_name(name)}", figure

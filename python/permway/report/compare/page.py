@@ -16,11 +16,11 @@ from permway.report.compare.maps import LEVEL_DB, SIGMAS, UNSEEN_DB, groups
 from permway.report.compare.tables import (
     NOTABLE_DB,
     band_table,
+    calibration_rows,
     decibels,
     parameter_rows,
     sensor_rows,
     share,
-    smooth_rows,
 )
 from permway.report.compare.writing import NUMBERS, PICTURES, file_name
 from permway.report.readout import Drawn
@@ -63,9 +63,9 @@ def render(comparison: Comparison, drawn: Mapping[str, Drawn]) -> str:
         parameters=parameter_rows(comparison),
         left=summary.get("left_tolerance", []),
         silent=summary.get("not_informed", []),
-        smooth=smooth_rows(comparison),
+        smooth=calibration_rows(comparison),
         sensors=sensor_rows(comparison),
-        models=[NAME.get(str(m), str(m)) for m in comparison.deviations[0]["model"].values],
+        models=[NAME.get(str(m), str(m)) for m in comparison.residuals[0]["model"].values],
         clean=_clean_share(comparison),
         left_out=_reasons(comparison),
         level_dB=LEVEL_DB,
@@ -83,7 +83,7 @@ def _sentence(comparison: Comparison) -> str:
     words = []
     for fit in comparison.fits():
         raw = f"the nominal values miss the measured levels by {decibels(fit['raw_dB_rms'])} rms"
-        held = f"{share(fit['raw_within_2_sigma'])} of deviations lie within two sigma"
+        held = f"{share(fit['raw_within_2_sigma'])} of residuals lie within two sigma"
         text = f"{fit['kind'].capitalize()}: {raw}, and {held}"
         if comparison.fit is not None:
             best = f"{decibels(fit['recalibrated_dB_rms'])} and {share(fit['recalibrated_within_2_sigma'])}"
@@ -93,9 +93,9 @@ def _sentence(comparison: Comparison) -> str:
 
 
 def _clean_share(comparison: Comparison) -> list[tuple[str, str]]:
-    """By record, the share of deviations within two sigma with calibration errors taken out."""
+    """By record, the share of residuals within two sigma with calibration errors taken out."""
     found = []
-    for data in comparison.deviations:
+    for data in comparison.residuals:
         if CLEAN in data["model"].values:
             z = data["z"].sel(model=CLEAN).values
             z = z[z == z]

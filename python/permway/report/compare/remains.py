@@ -1,4 +1,4 @@
-"""Recalibrated parameters, and what is left of the deviations beside noise."""
+"""Recalibrated parameters, and what is left of the residuals beside noise."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def noise_pictures(comparison: Comparison) -> Iterator[tuple[str, Figure]]:
     for name, members in groups(comparison):
         if comparison.records[members[0]].attrs["statistic"] == "material":
             continue
-        kept = [comparison.deviations[i]["z"].sel(model=CLEAN) for i in members]
+        kept = [comparison.residuals[i]["z"].sel(model=CLEAN) for i in members]
         yield f"left-{file_name(name)}", _noise(kept)
 
 
@@ -76,7 +76,7 @@ def _noise(parts: list[xr.DataArray]) -> Figure:
         left, right = axes[row]
         bins = np.linspace(-REACH, REACH, 61 if mine.size > 2000 else 21)
         outside = int(np.count_nonzero(np.abs(mine) > REACH))
-        left.hist(mine, bins=bins, density=True, color="#9cc3de", label=f"{mine.size} deviations")
+        left.hist(mine, bins=bins, density=True, color="#9cc3de", label=f"{mine.size} residuals")
         left.plot(x, np.exp(-0.5 * x**2) / np.sqrt(2.0 * np.pi), color=INK, linewidth=1.0, label="normal law")
         rms = np.sqrt(np.mean(mine**2))
         title = f"{'phase' if row else 'level'}: rms {rms:.2f}, {outside} beyond ±{REACH:g}"

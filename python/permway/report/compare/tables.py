@@ -65,14 +65,14 @@ def band_table(bands: xr.Dataset, name: str, channels: Sequence[int]) -> BandTab
 
 
 def parameter_rows(comparison: Comparison) -> list[dict[str, Any]]:
-    """Owner's value, tolerance, found value, interval, z and what is to be stated about it."""
+    """Nominal value, tolerance, found value, interval, z and what is to be stated about it."""
     table, rows = comparison.parameters, []
     for i, name in enumerate(table["parameter"].values.astype(str)):
         one = table.isel(parameter=i)
         row: dict[str, Any] = {
             "name": name,
             "unit": str(one["unit"].values),
-            "owner": quantity(float(one["nominal"])),
+            "nominal": quantity(float(one["nominal"])),
             "tolerance": f"{quantity(float(one['low_2sigma']))} to {quantity(float(one['high_2sigma']))}",
         }
         if comparison.fit is not None:
@@ -91,12 +91,12 @@ def parameter_rows(comparison: Comparison) -> list[dict[str, Any]]:
     return rows
 
 
-def smooth_rows(comparison: Comparison) -> list[dict[str, Any]]:
-    """Sizes of calibration errors in words; origins of one kind and nearly one size are one row."""
-    sizes = comparison.smooth["size_dB"]
+def calibration_rows(comparison: Comparison) -> list[dict[str, Any]]:
+    """Sizes of calibration errors in words; sources of one kind and nearly one size are one row."""
+    sizes = comparison.calibration["size_dB"]
     kinds: dict[str, list[tuple[str, float]]] = {}
-    for origin, size in zip(sizes["origin"].values.astype(str), sizes.values, strict=True):
-        kind, _, name = origin.partition(" ")
+    for source, size in zip(sizes["source"].values.astype(str), sizes.values, strict=True):
+        kind, _, name = source.partition(" ")
         kinds.setdefault(kind, []).append((name or kind, float(size)))
     words = {
         "sensor": "sensors of hammer tests: gain, and phase as large",
@@ -128,9 +128,9 @@ def smooth_rows(comparison: Comparison) -> list[dict[str, Any]]:
 
 
 def sensor_rows(comparison: Comparison) -> list[dict[str, Any]]:
-    """By record and sensor: rms of standardised deviations, and correlation of neighbouring lines."""
+    """By record and sensor: rms of standardised residuals, and correlation of neighbouring lines."""
     rows = []
-    for data in comparison.deviations:
+    for data in comparison.residuals:
         rms = channel_rms(data)
         found = lag_correlation(data["z"].isel(model=-1), lags=1).isel(lag=0)
         for sensor in rms["sensor"].values.astype(str):

@@ -57,15 +57,15 @@ def write_comparison(comparison: Comparison, output: Path, *, dpi: int = 140) ->
 
 
 def netcdf(comparison: Comparison) -> bytes:
-    """All numbers as NetCDF: groups `parameters`, `smooth_errors`, and of each record `records/NAME/...`.
+    """All numbers as NetCDF: groups `parameters`, `calibration_errors`, and of each record `records/NAME/...`.
 
     Records' groups are `curves`, `third_octaves` and `standardised`.
     """
     groups: dict[str, xr.Dataset] = {
         "parameters": comparison.parameters,
-        "smooth_errors": comparison.smooth,
+        "calibration_errors": comparison.calibration,
     }
-    for record, bands, z in zip(comparison.records, comparison.bands, comparison.deviations, strict=True):
+    for record, bands, z in zip(comparison.records, comparison.bands, comparison.residuals, strict=True):
         base = f"records/{file_name(str(record.attrs['record']))}"
         groups |= {f"{base}/curves": record, f"{base}/third_octaves": bands, f"{base}/standardised": z}
     summary = json.dumps(comparison.summary(), allow_nan=False, ensure_ascii=False)

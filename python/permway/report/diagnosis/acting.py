@@ -17,7 +17,7 @@ MOST_RIVALS = 12
 """Sets that the page shows openly."""
 
 LEAST = 0.005
-"""Probability that is told of what acts at no place along the line."""
+"""Probability that is shown of what acts at no place along the line."""
 
 
 def facts_first(verdict: Verdict) -> Facts:
@@ -74,7 +74,7 @@ def _facts(effect: Effect) -> Facts:
 
 
 def _rivals(effect: Effect) -> int:
-    """How many names are told: none where there is one only, which the probability is said of."""
+    """How many names are shown: none where there is one only, which the probability is of."""
     return len(effect.class_) if len(effect.class_) > 1 else 0
 
 
@@ -83,12 +83,12 @@ def _parameters(effect: Effect) -> list[tuple[str, str, str]]:
 
 
 def _meaning(effect: Effect, parameter: str) -> str:
-    """A parameter with what the catalogue says of it, without its range."""
+    """A parameter with its meaning in the catalogue, without its range."""
     entry = entries().get(effect.name or (effect.class_[0].name if effect.class_ else ""))
-    said = "" if entry is None else entry.PARAMETERS.get(parameter, "").partition(": ")[2].partition(";")[0]
+    meaning = "" if entry is None else entry.PARAMETERS.get(parameter, "").partition(": ")[2].partition(";")[0]
     plain = parameter_of(parameter)
-    # A mere symbol says nothing.
-    return f"{plain}: {said}" if len(said) > 2 else plain
+    # A mere symbol explains nothing.
+    return f"{plain}: {meaning}" if len(meaning) > 2 else plain
 
 
 def next_steps(diagnosis: Diagnosis) -> list[str]:

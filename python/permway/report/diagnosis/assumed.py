@@ -11,7 +11,7 @@ from permway.campaign.rolls import how_trains_run
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.compare import KIND
 from permway.diagnosis.result import Diagnosis
-from permway.report.compare.tables import decibels, smooth_rows
+from permway.report.compare.tables import calibration_rows, decibels
 
 LIBRARIES = ("numpy", "scipy", "xarray")
 
@@ -34,7 +34,7 @@ def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
             (row["kind"], row["records"], row["channels"], decibels(row["noise_dB_rms"]))
             for row in comparison.fits()
         ],
-        "smooth": smooth_rows(comparison),
+        "smooth": calibration_rows(comparison),
         "noise": _noise(diagnosis),
         "left_out": list(comparison.left_out.items()),
         "ruled_out": list(diagnosis.verdict.ruled_out),

@@ -1,4 +1,4 @@
-"""The owner's parameters as stated, recalibrated and amended, with units that fit and digits that are known."""
+"""The nominal parameters as stated, recalibrated and amended, with units that fit and digits that are known."""
 
 from __future__ import annotations
 

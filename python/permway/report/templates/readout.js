@@ -34,9 +34,9 @@ for (const shot of document.querySelectorAll("figure.shot")) {
         `${panel.x.label}: ${words(x)}`, `${map.label || "value"}: ${value === null ? "none" : words(value)}`);
       return rows;
     }
-    const told = new Set();
+    const shown = new Set();
     for (const line of panel.lines) {
-      if (told.has(line.label)) continue;
+      if (shown.has(line.label)) continue;
       let best = -1, least = Infinity;
       line.x.forEach((at, i) => {
         const across = away(panel.x, at, x) * wide, up = line.alone ? away(panel.y, line.y[i], y) * high : 0;
@@ -48,7 +48,7 @@ for (const shot of document.querySelectorAll("figure.shot")) {
         if (line.alone && panel.y.names.length) rows.push(named(panel.y, line.y[best]));
         else rows.push(`${panel.x.label}: ${words(line.x[best])}`);
       }
-      told.add(line.label);
+      shown.add(line.label);
       rows.push(`${line.label}: ${words(line.alone && panel.y.names.length ? line.x[best] : line.y[best])}`);
     }
     return rows;

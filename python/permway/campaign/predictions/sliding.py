@@ -9,10 +9,10 @@ import numpy as np
 
 from permway.arrays import Complexes, Reals
 from permway.campaign.parts import Condition, IrregularityKnown
-from permway.campaign.predict import excitation
-from permway.campaign.predict.excitation import speed_of
-from permway.campaign.predict.grid import Grid, interpolating, weighed
-from permway.campaign.predict.motion import influence, pushed, wheels_of
+from permway.campaign.predictions import excitation
+from permway.campaign.predictions.excitation import speed_of
+from permway.campaign.predictions.grid import Grid, interpolating, weighed
+from permway.campaign.predictions.motion import influence, pushed, wheels_of
 from permway.errors import SolveError
 from permway.model.vehicle import Vehicle
 from permway.model.vehicle_additions import FlexibleMode

@@ -1,4 +1,4 @@
-"""What a verdict says of records that are wrong themselves: labels mixed up, channels that are spoilt."""
+"""Verdicts about records that are wrong themselves: labels mixed up, bad channels."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LABELS = "sensor_labels"
 
 
 def mixed_up(base: Fit, mixed: Mislabelled) -> Verdict:
-    """Of records whose labels are wrong: nothing else can be said of them."""
+    """Of records whose labels are wrong: nothing else can be concluded from them."""
     effect = Effect(
         domain="measurement",
         place=Place(channels=mixed.channels),
@@ -28,12 +28,12 @@ def mixed_up(base: Fit, mixed: Mislabelled) -> Verdict:
     )
 
 
-def with_spoilt(said: Verdict, spoilt: Sequence[BadChannel]) -> Verdict:
+def with_bad_channels(verdict: Verdict, bad: Sequence[BadChannel]) -> Verdict:
     """The verdict with channels whose samples are no measurement, which nothing was estimated from."""
-    if not spoilt:
-        return said
+    if not bad:
+        return verdict
     faults: dict[tuple[str, str], list[BadChannel]] = {}
-    for one in spoilt:
+    for one in bad:
         faults.setdefault((one.channel, one.kind), []).append(one)
     effects = tuple(
         Effect(
@@ -44,8 +44,8 @@ def with_spoilt(said: Verdict, spoilt: Sequence[BadChannel]) -> Verdict:
         )
         for (channel, kind), ones in faults.items()
     )
-    status: Status = "measurement" if said.status in RIGHT else said.status
+    status: Status = "measurement" if verdict.status in RIGHT else verdict.status
     # Through a check: a copy would not be.
     return Verdict.model_validate(
-        said.model_dump(by_alias=True) | {"status": status, "effects": [*said.effects, *effects]}
+        verdict.model_dump(by_alias=True) | {"status": status, "effects": [*verdict.effects, *effects]}
     )

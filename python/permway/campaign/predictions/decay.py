@@ -8,7 +8,7 @@ import xarray as xr
 from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.parts import Record
-from permway.campaign.predict.sweeps import Request
+from permway.campaign.predictions.sweeps import Request
 from permway.recordings.estimates.decay_rate import grid_positions, track_decay_rate
 
 LINES = 12

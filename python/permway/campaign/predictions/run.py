@@ -9,12 +9,12 @@ import numpy as np
 
 from permway.arrays import Complexes, Reals
 from permway.campaign.parts import Condition, IrregularityKnown
-from permway.campaign.predict import excitation
-from permway.campaign.predict.excitation import speed_of
-from permway.campaign.predict.grid import Grid, grid_of, solved_lines
-from permway.campaign.predict.motion import influence, pushed, wheels_of
-from permway.campaign.predict.rolling import passing
-from permway.campaign.predict.sliding import shares
+from permway.campaign.predictions import excitation
+from permway.campaign.predictions.excitation import speed_of
+from permway.campaign.predictions.grid import Grid, grid_of, solved_lines
+from permway.campaign.predictions.motion import influence, pushed, wheels_of
+from permway.campaign.predictions.rolling import passing
+from permway.campaign.predictions.sliding import shares
 from permway.errors import InputError
 from permway.problem.model import Model
 from permway.recordings.channel import Direction, Quantity, Sensor, there
@@ -54,7 +54,7 @@ def expected_csd(
     """Expectation of Welch's cross-spectral matrix with Hann's window, and the noise of the channels.
 
     All wheels meet one profile, so its part of the spectrum is of rank one; so is each wheel's own roughness and
-    each force on the vehicle, and they add. The window, which cannot tell what comes late by a good part of a
+    each force on the vehicle, and they add. The window, which cannot resolve what comes late by a good part of a
     segment, makes them less coherent.
 
     Parameters
@@ -69,7 +69,7 @@ def expected_csd(
     duration_s : float, optional
         Of the run, over which clocks run apart.
     left : sequence of Remainder
-        Forces of suspensions that slide, as :func:`permway.campaign.predict.sliding.worked` gives them.
+        Forces of suspensions that slide, as :func:`permway.campaign.predictions.sliding.worked` gives them.
     rolls : Rolled, optional
         Of a train that rolls, over the same lines; `per_profile` is then that of the standing train still, by
         which a wheel's own roughness and forces act.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from permway.arrays import Complexes, Reals
-from permway.campaign.predict.sweeps import Location, Request
+from permway.campaign.predictions.sweeps import Location, Request
 from permway.errors import InputError
 from permway.problem.model import Model
 

@@ -9,7 +9,7 @@ import numpy as np
 from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.parts import Condition
-from permway.campaign.predict.sweeps import Request
+from permway.campaign.predictions.sweeps import Request
 from permway.recordings.channel import Point, Sensor, transfers
 
 

@@ -1,4 +1,4 @@
-"""Smooth errors: the functions that span them, the columns of blocks, and taking them out."""
+"""Calibration errors: the functions that span them, the columns of blocks, and taking them out."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from permway.campaign.excitation import Dips
 from permway.diagnosis.blocks_spectra import LEVEL
-from permway.diagnosis.smooth import Origin, PairColumns, PlainColumns, Smooth
-from permway.diagnosis.wander import SHORTEST, Wander
+from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PairColumns, PlainColumns
+from permway.diagnosis.gaussian_process import SHORTEST, GaussianProcess
 from permway.diagnosis.whitener import AllColumns, Whitener
 
 Reals = np.ndarray
@@ -23,8 +23,8 @@ def correlation(x: Reals, length: float) -> Reals:
 def test_a_wander_has_the_correlation_that_it_says(length: float) -> None:
     """The covariance of the functions' sum is squared-exponential, but for a rough percent."""
     frequency = np.geomspace(2.0, 400.0, 90)
-    wander = Wander(2.0, 400.0)
-    moved = wander.values(frequency) @ wander.root(length)
+    process = GaussianProcess(2.0, 400.0)
+    moved = process.values(frequency) @ process.root(length)
     x = np.log2(frequency)
     expected = correlation(x, length)
     if length != SHORTEST:
@@ -36,7 +36,7 @@ def test_what_wanders_over_an_octave_is_held_to_a_thousandth() -> None:
     frequency = np.geomspace(2.0, 400.0, 400)
     covariance = correlation(np.log2(frequency), 1.0) + 1e-10 * np.eye(frequency.size)
     errors = np.linalg.cholesky(covariance) @ np.random.default_rng(4).standard_normal((frequency.size, 40))
-    values = Wander(2.0, 400.0).values(frequency)
+    values = GaussianProcess(2.0, 400.0).values(frequency)
     left = errors - values @ np.linalg.lstsq(values, errors, rcond=None)[0]
     assert left.std() < 1e-3
 
@@ -69,36 +69,36 @@ def test_columns_of_pairs_are_those_of_a_dense_matrix(
     columns = pair_columns(random, sensors, points, lines, count)
     matrix = dense(columns)
     values, coefficients = random.standard_normal((matrix.shape[0], 3)), random.standard_normal(matrix.shape[1])
-    np.testing.assert_allclose(columns.pull(values), matrix.T @ values, atol=1e-10)
-    np.testing.assert_allclose(columns.pull(values[:, 0]), matrix.T @ values[:, 0], atol=1e-10)
-    np.testing.assert_allclose(columns.push(coefficients), matrix @ coefficients, atol=1e-10)
+    np.testing.assert_allclose(columns.transposed_times(values), matrix.T @ values, atol=1e-10)
+    np.testing.assert_allclose(columns.transposed_times(values[:, 0]), matrix.T @ values[:, 0], atol=1e-10)
+    np.testing.assert_allclose(columns.times(coefficients), matrix @ coefficients, atol=1e-10)
     np.testing.assert_allclose(columns.gram(), matrix.T @ matrix, atol=1e-9)
 
 
 def test_a_whitener_is_the_inverse_of_the_covariance() -> None:
-    """Two blocks that share an origin, against the dense covariance."""
+    """Two blocks that share a source, against the dense covariance."""
     random = np.random.default_rng(3)
-    wander = Wander(1.0, 8.0)
-    one = pair_columns(random, 2, 1, 4, wander.count)
-    names = [Origin(name, wander, 2) for name in ("sensor a", "sensor b", "force c")]
-    other = PlainColumns(random.standard_normal((5, 2 * wander.count)))
+    process = GaussianProcess(1.0, 8.0)
+    one = pair_columns(random, 2, 1, 4, process.count)
+    names = [ErrorSource(name, process, 2) for name in ("sensor a", "sensor b", "force c")]
+    other = PlainColumns(random.standard_normal((5, 2 * process.count)))
     rows = [2 * 2 * 4, 5]
-    columns = AllColumns.of([Smooth(tuple(names), one), Smooth((names[1],), other)], rows)
+    columns = AllColumns.of([CalibrationErrors(tuple(names), one), CalibrationErrors((names[1],), other)], rows)
     sizes = {"sensor a": 0.3, "sensor b": 0.1, "force c": 0.7}
     whitener = Whitener.of(columns, sizes, 2.0)
     matrix = np.zeros((sum(rows), columns.gram.shape[0]))
     matrix[: rows[0]] = dense(one)
-    matrix[rows[0] :, 2 * wander.count : 4 * wander.count] = other.matrix
+    matrix[rows[0] :, 2 * process.count : 4 * process.count] = other.matrix
     covariance = np.eye(sum(rows))
-    for index, origin in enumerate(names):
-        root = np.kron(np.eye(2), sizes[origin.name] * wander.root(2.0))
-        mine = matrix[:, index * origin.count : (index + 1) * origin.count] @ root
+    for index, source in enumerate(names):
+        root = np.kron(np.eye(2), sizes[source.name] * process.root(2.0))
+        mine = matrix[:, index * source.count : (index + 1) * source.count] @ root
         covariance += mine @ mine.T
     values = random.standard_normal(sum(rows))
     assert whitener.square(values) == pytest.approx(values @ np.linalg.solve(covariance, values), rel=1e-9)
     assert whitener.log_determinant == pytest.approx(np.linalg.slogdet(covariance)[1], rel=1e-9)
     # What is explained, taken out, leaves the noise's share: V^-1 times the values.
-    left = values - whitener.smooth(whitener.explained(values), values.size)
+    left = values - whitener.calibration(whitener.explained(values), values.size)
     np.testing.assert_allclose(left, np.linalg.solve(covariance, values), atol=1e-9)
 
 

@@ -12,9 +12,9 @@ from permway.campaign.bad_channels import BadChannel, without_bad_channels
 from permway.campaign.campaign import Campaign
 from permway.campaign.importers.sheet import import_sheet
 from permway.diagnosis.gather import predictable
-from permway.diagnosis.speak_measurement import with_spoilt
 from permway.diagnosis.verdict import Verdict
 from permway.diagnosis.verdict_parts import ClassMember, Effect, Place
+from permway.diagnosis.verdict_records import with_bad_channels
 from permway.errors import InputError
 from sheets import make_folder
 
@@ -74,13 +74,13 @@ def test_a_run_with_no_channel_left_is_left_out(campaign: Campaign) -> None:
         without_bad_channels(campaign.with_records(runs[:1]))
 
 
-def test_a_verdict_says_what_was_spoilt() -> None:
-    plain = with_spoilt(Verdict(status="recalibrated"), [CLIPPED])
+def test_a_verdict_says_what_channels_were_bad() -> None:
+    plain = with_bad_channels(Verdict(status="recalibrated"), [CLIPPED])
     assert (plain.status, plain.effects[0].name) == ("measurement", "clipping")
     assert plain.effects[0].place.channels == ("axlebox2",)
     assert "at fault" in plain.sentence
     assert "4 samples flat at 3" in plain.sentence
-    unsure = with_spoilt(Verdict(status="insufficient"), [CLIPPED])
+    unsure = with_bad_channels(Verdict(status="insufficient"), [CLIPPED])
     assert unsure.status == "insufficient"
     assert "suspicion" not in unsure.sentence
     assert "at fault is clipping at axlebox2: run: 4 samples flat at 3; left out" in unsure.sentence
@@ -90,6 +90,6 @@ def test_a_verdict_says_what_was_spoilt() -> None:
         name="fastener_loss",
         class_=(ClassMember(name="fastener_loss", probability=0.95),),
     )
-    both = with_spoilt(Verdict(status="named", effects=(lost,)), [CLIPPED])
+    both = with_bad_channels(Verdict(status="named", effects=(lost,)), [CLIPPED])
     assert [effect.name for effect in both.effects] == ["fastener_loss", "clipping"]
-    assert with_spoilt(plain, []) is plain
+    assert with_bad_channels(plain, []) is plain

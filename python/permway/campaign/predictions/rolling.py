@@ -11,8 +11,8 @@ import numpy as np
 from permway.arrays import Complexes, Reals
 from permway.campaign.excitation import Rolling
 from permway.campaign.parts import Condition
-from permway.campaign.predict.excitation import speed_of
-from permway.campaign.predict.motion import wheels_of
+from permway.campaign.predictions.excitation import speed_of
+from permway.campaign.predictions.motion import wheels_of
 from permway.model.line import Line
 from permway.model.vehicle import Vehicle
 from permway.problem.model import Model

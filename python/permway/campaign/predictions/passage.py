@@ -14,7 +14,7 @@ from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.parts import Condition
 from permway.campaign.passage import offset_m, path_under, points_of, spectrum_of
-from permway.campaign.predict.sweeps import Location, Request
+from permway.campaign.predictions.sweeps import Location, Request
 from permway.errors import InputError
 from permway.model.bodies import Beam
 from permway.problem.model import Model

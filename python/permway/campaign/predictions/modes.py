@@ -10,7 +10,7 @@ from scipy.optimize import linear_sum_assignment
 
 from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
-from permway.campaign.predict.sweeps import Request
+from permway.campaign.predictions.sweeps import Request
 from permway.recordings.channel import Sensor
 from permway.response.poles import Poles, lines_for, poles_of
 

@@ -1,6 +1,6 @@
-"""Smooth errors over frequency: functions that span them, and what is expected of their coefficients.
+"""Calibration errors over frequency: functions that span them, and what is expected of their coefficients.
 
-The error of a measuring chain wanders with the logarithm of frequency, normal with a squared-exponential
+The error of a measuring chain varies with the logarithm of frequency, normal with a squared-exponential
 correlation. It is written in the eigenfunctions of that correlation (Karhunen and Loeve): for a length of an
 octave twenty of them hold it to a thousandth over eight octaves. As many splines leave a percent,
 and where hundreds of lines agree to a thousandth, a percent looks like a fault.
@@ -34,8 +34,8 @@ PER_LENGTH = 12
 """Points per length at which eigenfunctions are found."""
 
 
-class Wander:
-    """Functions of frequency that smooth errors are sums of.
+class GaussianProcess:
+    """Functions of frequency that calibration errors are sums of.
 
     Parameters
     ----------

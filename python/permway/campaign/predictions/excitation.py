@@ -12,7 +12,7 @@ from scipy.special import ndtr
 from permway.arrays import Reals
 from permway.campaign.excitation import Push, TrackLines, WheelLines
 from permway.campaign.parts import Condition, IrregularityKnown
-from permway.campaign.predict.grid import Grid
+from permway.campaign.predictions.grid import Grid
 from permway.errors import InputError
 from permway.model.irregularity import AnyIrregularity, Conversion
 from permway.model.irregularity_spectra import RangeWarning

@@ -1,4 +1,4 @@
-"""What smooth errors do to deviations: the columns of a block, kept as they are cheapest to multiply by."""
+"""What calibration errors do to residuals: the columns of a block, kept as they are cheapest to multiply by."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from permway.arrays import Complexes, Reals
 
 
 class Functions(Protocol):
-    """What smooth errors are sums of; :class:`permway.diagnosis.wander.Wander` of frequency."""
+    """What calibration errors are sums of, as :mod:`permway.diagnosis.gaussian_process` of frequency."""
 
     @property
     def count(self) -> int:
@@ -22,24 +22,24 @@ class Functions(Protocol):
 
 
 @dataclass(frozen=True)
-class Origin:
-    """One source of smooth errors.
+class ErrorSource:
+    """One source of calibration errors.
 
     Attributes
     ----------
     name : str
         As "sensor rail@16" or "irregularity".
-    wander : Functions
+    process : Functions
     parts : int
         2 for log gain and phase, each with coefficients of its own; 1 for a level.
     chain : bool
         Whether its length is that of measuring chains; else it is the shortest of its functions.
     fixed : bool
-        Whether its columns have the size of its errors already, so that none is learnt.
+        Whether its columns have the size of its errors already, so that none is estimated.
     """
 
     name: str
-    wander: Functions
+    process: Functions
     parts: int
     chain: bool = True
     fixed: bool = False
@@ -47,16 +47,16 @@ class Origin:
     @property
     def count(self) -> int:
         """Number of coefficients."""
-        return self.parts * self.wander.count
+        return self.parts * self.process.count
 
 
 class Columns(Protocol):
-    """Deviations per coefficient, of one block: each of unit size is an error of 1 neper or rad."""
+    """Residuals per coefficient, of one block: each of unit size is an error of 1 neper or rad."""
 
-    def pull(self, values: Reals) -> Reals:
+    def transposed_times(self, values: Reals) -> Reals:
         """Transposed times values, (n, k) to (c, k)."""
 
-    def push(self, coefficients: Reals) -> Reals:
+    def times(self, coefficients: Reals) -> Reals:
         """Times coefficients, (c,) to (n,)."""
 
     def gram(self) -> Reals:
@@ -64,17 +64,17 @@ class Columns(Protocol):
 
 
 @dataclass(frozen=True)
-class Smooth:
-    """Smooth errors of a block.
+class CalibrationErrors:
+    """Calibration errors of a block.
 
     Attributes
     ----------
-    origins : tuple of Origin
+    sources : tuple of ErrorSource
         In the order of the columns.
     columns : Columns
     """
 
-    origins: tuple[Origin, ...]
+    sources: tuple[ErrorSource, ...]
     columns: Columns
 
 
@@ -89,11 +89,11 @@ class PlainColumns:
 
     matrix: Reals
 
-    def pull(self, values: Reals) -> Reals:
+    def transposed_times(self, values: Reals) -> Reals:
         """See :class:`Columns`."""
         return np.asarray(self.matrix.T @ values)
 
-    def push(self, coefficients: Reals) -> Reals:
+    def times(self, coefficients: Reals) -> Reals:
         """See :class:`Columns`."""
         return np.asarray(self.matrix @ coefficients)
 
@@ -120,7 +120,7 @@ class PairColumns:
     gains: Reals
     phase: Complexes
 
-    def pull(self, values: Reals) -> Reals:
+    def transposed_times(self, values: Reals) -> Reals:
         """See :class:`Columns`."""
         half = values.shape[0] // 2
         turned = (values[:half] + 1j * values[half:]).reshape(*self.phase.shape, values[0].size)
@@ -131,7 +131,7 @@ class PairColumns:
         # No length is left to be guessed: there may be no columns at all.
         return np.asarray(both.reshape(2 * whole.shape[0] * whole.shape[1], *values.shape[1:]))
 
-    def push(self, coefficients: Reals) -> Reals:
+    def times(self, coefficients: Reals) -> Reals:
         """See :class:`Columns`."""
         sensors, points, _, count = self.gains.shape
         both = coefficients.reshape(sensors + points, 2, count)

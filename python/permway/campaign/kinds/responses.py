@@ -1,0 +1,222 @@
+"""Frequency responses from force points to sensors, with their coherence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from difflib import get_close_matches
+
+import numpy as np
+import xarray as xr
+
+from permway.arrays import Complexes, Reals
+from permway.campaign.campaign import Campaign
+from permway.campaign.dataset import SI_UNITS, Dataset, in_band
+from permway.campaign.kinds.kind import Interval, RecordKind, of_solved
+from permway.campaign.parts import Condition, Record
+from permway.campaign.predictions import hammer
+from permway.campaign.predictions.sweeps import Request
+from permway.errors import InputError
+from permway.recordings.estimates.intervals import frf_interval
+from permway.recordings.line_scatter import FREEDOM as SCATTER_FREEDOM
+from permway.recordings.line_scatter import scatter_variance
+from permway.recordings.readers import read_frf
+from permway.recordings.record import FrfRecord
+from permway.response.receptance import frequency_coordinate
+from permway.units import check_same
+
+DIMENSIONS = ("sensor", "force", "frequency")
+
+LEAST_COHERENCE = 1e-3
+"""Coherence below this counts as this: its line states nothing, but its variance stays a number."""
+
+MOST_COHERENCE = 1.0 - 1e-5
+"""Coherence above this counts as this: files print so many digits, and no measurement is exact."""
+
+
+class Responses(RecordKind):
+    """Of hammer and shaker tests."""
+
+    name = "frf"
+    statistics = ("frf",)
+    variable = "frf"
+    dimensions = DIMENSIONS
+
+    def load(self, campaign: Campaign, record: Record) -> xr.Dataset:
+        """See :class:`permway.campaign.kinds.kind.RecordKind`."""
+        return _loaded(campaign, record)
+
+    def request(self, campaign: Campaign, dataset: Dataset, condition: Condition) -> Request:
+        """See :class:`permway.campaign.kinds.kind.RecordKind`."""
+        sensors, points = dataset.names("sensor"), dataset.names("force")
+        return hammer.request(campaign, condition, sensors, points, dataset.frequency_Hz)
+
+    def predicted(
+        self, campaign: Campaign, dataset: Dataset, condition: Condition, solved: tuple[Request, Complexes] | None
+    ) -> xr.Dataset:
+        """See :class:`permway.campaign.kinds.kind.RecordKind`."""
+        _, values = of_solved(solved)
+        sensors = [campaign.sensor(name) for name in dataset.names("sensor")]
+        read = hammer.read(sensors, [campaign.point(n) for n in dataset.names("force")], dataset.frequency_Hz)
+        frf = np.ascontiguousarray(np.moveaxis(values * read, 0, -1))
+        noise = np.array([sensor.chain.noise_factor for sensor in sensors])
+        chain = np.moveaxis(read, 0, -1)
+        return dataset.template(self.blank).copy(data={"frf": frf, "noise_factor": noise, "chain": chain})
+
+    def blank(self, data: xr.Dataset) -> xr.Dataset:
+        """Responses, noise by sensor, and the chains of the pairs."""
+        found = data[["frf"]]
+        found["noise_factor"] = xr.Variable("sensor", np.ones(found.sizes["sensor"]), {"units": "1"})
+        named = {"long_name": "what is read over the receptance"}
+        found["chain"] = xr.Variable(found["frf"].dims, found["frf"].values, named)
+        return found
+
+    def channels(self, dataset: Dataset) -> tuple[list[str], list[str]]:
+        """Pairs of sensor and point."""
+        sensors, forces = dataset.names("sensor"), dataset.names("force")
+        return [s for s in sensors for _ in forces], [f for _ in sensors for f in forces]
+
+    def unit(self, campaign: Campaign, dataset: Dataset, channel: str) -> str:
+        """Of the sensor, over the force."""
+        return f"({SI_UNITS[campaign.sensor(channel).quantity]})/N"
+
+    def interval(self, dataset: Dataset, measured: Complexes | Reals, scatter_dB: Reals) -> Interval:
+        """By coherence or scatter; NaN where neither is known."""
+        data, shape = dataset.data, measured.shape
+        low, high, half = (np.full(shape, np.nan) for _ in range(3))
+        variance = data["log_variance"].values.reshape(shape)
+        scattered = dataset.record.noise == "scatter"
+        free = SCATTER_FREEDOM if scattered else 2.0 * (float(data.attrs.get("averages", np.nan)) - 1.0)
+        known = np.isfinite(variance) & np.isfinite(measured) & (free > 0.0)
+        if known.any():
+            found = frf_interval(measured[known], variance[known], free)
+            low[known], high[known] = found.magnitude
+            half[known] = 0.5 * (found.phase_rad.high - found.phase_rad.low)
+        return low, high, half
+
+
+def _loaded(campaign: Campaign, record: Record) -> xr.Dataset:
+    """What a file of frequency responses holds of a record's pairs and band, in SI."""
+    sensors, points = list(record.responses), list(record.references)
+    file = read_frf(
+        campaign.path(record),
+        responses=sensors,
+        references=points,
+        format=record.format,
+        part=record.part,
+        hints=record.hints,
+        keep_nonfinite=True,
+    )
+    frequency = np.asarray(file.frequency_Hz, dtype=np.float64)
+    used = in_band(frequency, record)
+    pairs = {pair: i for i, pair in enumerate(zip(file.responses, file.references, strict=True))}
+    at = np.full((len(sensors), len(points)), -1, dtype=np.int64)
+    for i, sensor in enumerate(sensors):
+        for j, point in enumerate(points):
+            at[i, j] = pairs.get((sensor, point), -1)
+    for names, key, missing in (
+        (sensors, "responses", (at < 0).all(axis=1)),
+        (points, "references", (at < 0).all(axis=0)),
+    ):
+        if missing.any():
+            label = names[int(np.flatnonzero(missing)[0])]
+            known = sorted(set(getattr(file, key)))
+            near = get_close_matches(label, known, 1)
+            remedy = f"it has {known[:12]}{', ...' if len(known) > 12 else ''}"
+            if near:
+                remedy = f"did you mean {near[0]!r}? {remedy}"
+            raise InputError("the file has no such label", where=f"{key}.{label}", remedy=remedy)
+    file.of(sensors, points).check_finite(used)
+    _check_units(campaign, record, file, at)
+    there = (at >= 0)[:, :, None]
+
+    def spread(values: np.ndarray) -> np.ndarray:
+        # A pair that was not measured stays empty, and is not made up.
+        return np.where(there, np.asarray(values)[at][:, :, used], np.nan)
+
+    names = [record.responses[label] for label in sensors]
+    forces = [record.references[label] for label in points]
+    scale = np.array([campaign.sensor(name).to_SI for name in names])[:, None] / np.array(
+        [1e3 if campaign.point(name).unit == "kN" else 1.0 for name in forces]
+    )
+    frf = spread(file.values) * scale[:, :, None]
+    coherence, variance, averages = _noise(record, file, frequency[used], frf, spread)
+    data = xr.Dataset(
+        {
+            "frf": (DIMENSIONS, frf),
+            "coherence": (DIMENSIONS, coherence),
+            "log_variance": (DIMENSIONS, variance),
+        },
+        coords={"frequency": frequency_coordinate(frequency[used]), "sensor": names, "force": forces},
+    )
+    data["frf"].attrs = {"long_name": "frequency response, read over read", "units": "SI/N"}
+    data["coherence"].attrs = {"long_name": "coherence", "units": "1"}
+    data["log_variance"].attrs = {"long_name": "variance of log magnitude and of phase", "units": "1"}
+    data.attrs |= {"noise": record.noise} | ({} if averages is None else {"averages": averages})
+    return data
+
+
+def _noise(
+    record: Record, file: FrfRecord, frequency_Hz: Reals, frf: Complexes, spread: Callable[[Reals], Reals]
+) -> tuple[Reals, Reals, float | None]:
+    """Coherence, variance of log magnitude and of phase, and averages, as the record states what states them.
+
+    Raises
+    ------
+    InputError
+        Without averages or coherence where those should state it; with a coherence that would be left aside.
+    """
+    if record.noise == "scatter":
+        if file.coherence is not None:
+            remedy = 'leave noise = "scatter" out'
+            raise InputError("has a coherence, which states more than scatter", where=record.file, remedy=remedy)
+        return np.full(frf.shape, np.nan), scatter_variance(frequency_Hz, frf, where="band_Hz"), None
+    averages = record.averages or file.averages
+    if averages is None:
+        remedy = "give the number of blows of each point, as in averages = 8"
+        raise InputError("missing, and the file does not say", where="averages", remedy=remedy)
+    if file.coherence is None:
+        remedy = (
+            "export it beside the responses, as an array or column named coherence, 0 to 1; without one, "
+            'noise = "scatter" takes the scatter of neighbouring lines for it'
+        )
+        raise InputError("has no coherence, which states how sure each line is", where=record.file, remedy=remedy)
+    coherence = spread(file.coherence)
+    return coherence, log_variance(coherence, averages), float(averages)
+
+
+def _check_units(campaign: Campaign, record: Record, file: FrfRecord, at: np.ndarray) -> None:
+    """Refuse a file whose unit is not that of the sensor over that of the force point.
+
+    Raises
+    ------
+    InputError
+        With the pair, both units, and the key that would settle it.
+    """
+    for i, (label, name) in enumerate(record.responses.items()):
+        for j, (struck, point) in enumerate(record.references.items()):
+            found = None if at[i, j] < 0 else file.unit_of(int(at[i, j]))
+            if found is None:
+                continue
+            stated = f"({campaign.sensor(name).unit})/{campaign.point(point).unit}"
+            where = f"{record.file}: {label} / {struck}"
+            try:
+                check_same(found, stated, where=where)
+            except InputError as error:
+                what = f"{error.what}: the sensor and the force point make it {stated!r}"
+                what = (
+                    what
+                    if record.unit is None
+                    else f"the record states {found!r}, sensor and force point {stated!r}"
+                )
+                remedy = f'correct the unit of the sensor or of the point; if the file is wrong, unit = "{stated}"'
+                raise InputError(what, where=where, value=found, remedy=remedy) from error
+
+
+def log_variance(coherence: Reals, averages: float) -> Reals:
+    """Variance of the log magnitude (nepers) and of the phase (rad) of an H1 estimate, shape of the coherence.
+
+    (1 - g2) / (2 K g2), Bendat and Piersol, Random Data (2010), section 9.2. The coherence is itself an estimate,
+    biased up by about (1 - g2)^2 / K.
+    """
+    squared = np.clip(coherence, LEAST_COHERENCE, MOST_COHERENCE)
+    return np.asarray((1.0 - squared) / (2.0 * averages * squared))

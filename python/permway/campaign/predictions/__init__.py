@@ -1,0 +1,1 @@
+"""What sensors should read, by the way in which a structure is made to move."""
