@@ -18,7 +18,7 @@ from permway.diagnosis.blocks_spectra import LEVEL, SpectraBlock
 from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.gather import first_size
 from permway.posterior.chains import Chains, Factor, chains_of
-from permway.posterior.hyper import IDEALISATION, Hyper
+from permway.posterior.hyper import IDEALISATION, LACKING, Hyper
 
 NEPER_PER_DB = float(np.log(10.0)) / 20.0
 
@@ -77,7 +77,7 @@ class Frame:
         return Frame(evidence, chains, columns[spanned], spanned, np.maximum(sigma, 1e-9), statistic)
 
     def about(self, solved: Solved, covariance: Covariance, residuals: Reals) -> Frame:
-        """The same records weighed by what a fit predicts and by the errors of chains that it leaves.
+        """The same records weighed by what a fit predicts and, if it lacks nothing, by the errors that it leaves.
 
         What noise hides is expected to be what the prediction is there, and spectra scatter as it has them.
 
@@ -90,7 +90,9 @@ class Frame:
         residuals : ndarray, shape (n,)
         """
         starts = np.cumsum([0, *(b.rows.channel.size for b in self.evidence.blocks)])
-        errors = covariance.errors(residuals)
+        # Of a model that lacks something, errors of chains take up what it lacks.
+        lacking = covariance.hyper.novel > LACKING
+        errors = np.zeros_like(residuals) if lacking else covariance.errors(residuals)
         blocks: list[Block] = []
         for index, (block, prediction) in enumerate(zip(self.evidence.blocks, solved.datasets, strict=True)):
             if isinstance(block, FrfBlock):

@@ -40,6 +40,10 @@ NOVEL = 0.05
 from :data:`EXACT` to :data:`COARSEST`."""
 
 
+LACKING = 0.5
+"""Probability that a fit lacks something, from which large changes are tried and its errors are not relied on."""
+
+
 @dataclass(frozen=True)
 class Hyper:
     """Hyperparameters by their logarithms.

@@ -36,6 +36,11 @@ SEEN = 0.01
 are asked, so that a tenth of a deviation is a change of a tenth of one line."""
 
 
+LINEAR = 1.0
+"""Standard deviations of its tolerance, by which a nominal parameter moves in a straight line in a look at small
+changes: of those 0.15, of large ones 5."""
+
+
 @dataclass(frozen=True)
 class Scores:
     """Of cells, in their order.
@@ -179,7 +184,15 @@ def _scored(
         own = {f"+{name}": value for name, value in cell.values.items()}
         return grown(fit, cell.hypothesis, "+").build({**fit.values(), **own})
 
+    names = [free.name for free in fit.model.free]
+
     def residuals(cell: Cell) -> Reals | None:
+        hypothesis = cell.hypothesis
+        if hypothesis.moves in names:
+            shift = hypothesis.free[0].value(float(cell.z[0]))
+            if abs(shift) < LINEAR:
+                # The parameter itself moves back along: what is left by a bent path would be all that shows.
+                return np.asarray(fit.state.residuals + shift * fit.jacobian[:, names.index(hypothesis.moves)])
         try:
             predicted = evidence.predicted(amended(cell), solved)
             found = evidence.residuals(predicted.datasets)

@@ -27,15 +27,13 @@ from permway.posterior.beam import (
 )
 from permway.posterior.cells import Cell, cells, resized, small
 from permway.posterior.fit import Fitter, Model
+from permway.posterior.hyper import LACKING
 from permway.posterior.ordering import LEFT, LEVELS, annealed, apart, ordered, weighed
 from permway.posterior.recalibrated import first_values
 from permway.posterior.screening import Scores, screened
 
 WIDTHS, PER_FORM = (96, 32, 12), (12, 3, 2)
 """Cells that are refined at each level, and at most so many of one form: sizes of the beam."""
-
-LACKING = 0.5
-"""Probability that a fit lacks something, from which large changes are tried."""
 
 NEGLECTED = 0.01
 """Posterior odds, against the set that they would extend, of amendments that are not fitted to the end."""
