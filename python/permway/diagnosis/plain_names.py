@@ -53,8 +53,8 @@ SUFFIXES = ("_N2_per_Hz", "_N_per_m", "_m_per_s", "_kg_per_m", "_dB_per_octave",
 UNITS = ("_m", "_s", "_kg", "_Hz", "_dB", "_N")
 
 MOST, MOST_OF_SHARE, SHARE = 3, 2, 0.5
-"""Significant digits, at most; of a ratio below a half fewer, for no model is right to a hundredth of what is left.
-A ratio near 1, as of a gain or a speed, needs all."""
+"""Significant digits, at most; of a ratio below a half fewer, for no model is right to a hundredth of what is
+left. A ratio near 1, as of a gain or a speed, needs all."""
 
 
 def name_of(identifier: str) -> str:
