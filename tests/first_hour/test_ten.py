@@ -157,12 +157,12 @@ def _standing(campaign: Campaign) -> Campaign:
 
 ESCAPED = pytest.mark.xfail(
     strict=True,
-    reason="The first look gives a wrong pad.k no gain: its change by 0.15 deviations of the tolerance is 5 of the "
-    "posterior, and no straight line there. So pad_frequency, with a rise of 0 %, moves the stiffness unpunished.",
+    reason="The first look gives a wrong pad.k no gain: its change by 0.15 deviations of the tolerance is 5 of "
+    "the posterior, no straight line there. So pad_frequency, with a rise of 0 %, has the stiffness free.",
 )
 APART = pytest.mark.xfail(
     strict=True,
-    reason="The words of owner_value are of its own deviations alone, 21.2 MN/m, the nominal parameter's left out.",
+    reason="The words of owner_value are of its own deviations alone, 21.2 MN/m, without the nominal parameter's.",
 )
 
 

@@ -107,10 +107,10 @@ def operating(
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
-    """Operating deflection shapes: how all bodies move at a frequency under 1 N.
+    """Operating deflection shapes, in motion on a page.
 
-    Of the line without its train; of a model with [roll] as if both rails moved alike. Bodies and joints are drawn
-    in motion, enlarged.
+    How all bodies move at a frequency while 1 N acts. Of the line without its train; of a model with [roll] as if
+    both rails moved alike. Bodies and joints are drawn, enlarged.
     """
     from permway.files import check_output
     from permway.formats.model_file import read_model
