@@ -138,7 +138,7 @@ def operating(
                 "frequency_Hz": float(one["frequency"]),
                 "force": str(one["force"].item()),
                 "moves_most": str(one["place"].values[size.argmax()]),
-                "m_per_N": float(size.max()),
+                "greatest_m_per_N": float(size.max()),
                 "after_force_deg": greatest_deg(one["shape"].values),
             }
         )
