@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from permway.response.decay import decay_rate
     from permway.response.dispersion import dispersion
     from permway.response.modes import modes
+    from permway.response.operating import at_phase, operating_shapes
     from permway.response.passby import Axles, MassOnSpring, SprungMass, couple, hslm_a, passby
     from permway.response.quantities import accelerance, mobility
     from permway.response.rails import both_rails
@@ -99,6 +100,7 @@ _HOMES = {
     "response.decay": ("decay_rate",),
     "response.dispersion": ("dispersion",),
     "response.modes": ("modes",),
+    "response.operating": ("at_phase", "operating_shapes"),
     "response.passby": ("Axles", "MassOnSpring", "SprungMass", "couple", "hslm_a", "passby"),
     "response.rails": ("both_rails",),
     "response.quantities": ("accelerance", "mobility"),
@@ -163,6 +165,7 @@ __all__ = [
     "Zener",
     "__version__",
     "accelerance",
+    "at_phase",
     "ballasted_b91_60e1",
     "both_rails",
     "by_joint",
@@ -184,6 +187,7 @@ __all__ = [
     "mobility",
     "model_from_dict",
     "modes",
+    "operating_shapes",
     "passby",
     "read_campaign",
     "read_model",

@@ -36,6 +36,11 @@ x_m = 6.0
 """
 FIRST_HZ = np.pi / (2.0 * 24.0**2) * np.sqrt(3.4e10 * 1.2 / 1.0e4) * (1.0 + 0.04**2) ** 0.25
 
+_N = np.arange(1, 60)
+ROOTS = (_N * np.pi / 24.0) ** 2 * np.sqrt(3.4e10 * 1.2 / 1.0e4)
+MODES = np.sin(_N * np.pi * 6.0 / 24.0) * np.sin(_N * np.pi * 12.0 / 24.0)
+"""Of the beam: circular natural frequencies, and the modes struck at 6 m and read at 12 m."""
+
 
 @pytest.fixture
 def model(tmp_path: Path) -> Path:
@@ -85,3 +90,32 @@ def test_it_writes_and_draws(model: Path, tmp_path: Path) -> None:
 def test_wrong_input(model: Path, arguments: list[str], says: str) -> None:
     with pytest.raises(InputError, match=says):
         run(model, *arguments)
+
+
+def test_operating_shapes_of_the_first_force(model: Path) -> None:
+    page = model.with_name("shapes.html")
+    words = ["operating-shapes", str(model), "--at", "30", "--at", f"{FIRST_HZ:.4f}", "-o", str(page), "--json"]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0, done.output
+    first, second = json.loads(done.output)["shapes"]
+    assert first["frequency_Hz"] == pytest.approx(FIRST_HZ, rel=1e-4)
+    assert (first["force"], first["moves_most"]) == ("deck@6", "deck@12")
+    # Of the middle: a quarter of a period, and 1.2 degrees by the higher modes, which follow at once.
+    modal = MODES / (ROOTS**2 * (1.0 + 0.04j) - (2.0 * np.pi * first["frequency_Hz"]) ** 2)
+    assert first["after_force_deg"] == pytest.approx(-np.rad2deg(np.angle(modal.sum())), abs=0.01)
+    assert first["greatest_m_per_N"] == pytest.approx(abs(modal.sum()) * 2.0 / (1.0e4 * 24.0), rel=1e-4)
+    assert second["frequency_Hz"] == 30.0
+    text = page.read_text("utf-8")
+    assert text.count('<figure class="shape">') == 2
+    assert "All motion is vertical" in text
+
+
+def test_operating_shapes_ask_for_a_force_that_is_there(model: Path) -> None:
+    words = ["operating-shapes", str(model), "--at", "30", "--force", "rail", "-o", str(model.with_name("a.nc"))]
+    error = CliRunner().invoke(app, words).exception
+    assert isinstance(error, InputError)
+    assert "deck@6" in str(error)
+    done = CliRunner().invoke(app, [*words[:4], *words[6:]])
+    assert done.exit_code == 0, done.output
+    with xr.open_dataset(model.with_name("a.nc"), engine="h5netcdf") as data:
+        assert data["shape"].dims == ("frequency", "force", "place")

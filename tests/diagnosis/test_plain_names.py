@@ -31,8 +31,8 @@ def test_no_effect_or_parameter_is_said_with_an_underscore() -> None:
 @pytest.mark.parametrize(
     ("value", "low", "high", "unit", "said", "interval"),
     [
-        (0.05, 0.0499, 0.0501, "1", "0.0500", "0.0499 to 0.0501"),
-        (0.05, 0.04999, 0.05001, "1", "0.0500", ""),
+        (0.05, 0.0499, 0.0501, "1", "0.050", ""),
+        (0.05, 0.0481, 0.0519, "1", "0.050", "0.048 to 0.052"),
         (0.05, 0.03, 0.08, "1", "0.05", "0.03 to 0.08"),
         (-1.019, -1.09, -0.94, "1", "−1.02", "−1.09 to −0.94"),
         (2.123e7, 1.9e7, 2.4e7, "N/m", "21 MN/m", "19 to 24 MN/m"),
@@ -50,9 +50,9 @@ def test_a_value_has_the_digits_that_its_interval_leaves(
     assert ends(one) == interval
 
 
-def test_without_an_interval_three_digits_are_said() -> None:
+def test_without_an_interval_three_digits_are_said_of_a_share_two() -> None:
     one = Estimate(value=0.123456, unit="1")
-    assert (estimate(one), ends(one)) == ("0.123", "")
+    assert (estimate(one), ends(one)) == ("0.12", "")
     assert measured(3.1e-6, "m") == "3.10 µm"
     assert measured(4.2e8, "N/m", 2) == "420 MN/m"
     assert stated(3.0e7, "N/m") == "30 MN/m"

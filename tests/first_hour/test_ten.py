@@ -6,8 +6,10 @@ Made by finite elements that share no code with the solver. What a user runs is 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -106,7 +108,9 @@ def checked(path: Path) -> Checked:
     return check(read_campaign(path), threads=1)
 
 
+@cache
 def diagnosed(path: Path) -> Verdict:
+    """What is stated of a campaign; two tests may ask, and it takes minutes."""
     campaign = read_campaign(path)
     return doubted(diagnose(campaign, threads=1), check(campaign, threads=1)).verdict
 
@@ -151,8 +155,19 @@ def _standing(campaign: Campaign) -> Campaign:
     return replace(campaign, stated=campaign.stated.model_copy(update={"irregularity": known}))
 
 
+ESCAPED = pytest.mark.xfail(
+    strict=True,
+    reason="The first look gives a wrong pad.k no gain: its change by 0.15 deviations of the tolerance is 5 of "
+    "the posterior, no straight line there. So pad_frequency, with a rise of 0 %, has the stiffness free.",
+)
+APART = pytest.mark.xfail(
+    strict=True,
+    reason="The words of owner_value are of its own deviations alone, 21.2 MN/m, without the nominal parameter's.",
+)
+
+
 @pytest.mark.injection
-@pytest.mark.parametrize("percent", [5, 10, 25])
+@pytest.mark.parametrize("percent", [5, pytest.param(10, marks=ESCAPED), 25])
 def test_pads_softer_than_stated(percent: int, path: Callable[[str], Path]) -> None:
     """With the value that fits, in the sentence, whatever tolerance was stated."""
     verdict = diagnosed(path(f"soft at {percent} %"))
@@ -164,7 +179,16 @@ def test_pads_softer_than_stated(percent: int, path: Callable[[str], Path]) -> N
     assert found.high is not None
     assert found.low < SOFTER * 3.0e7 < found.high
     assert "pad.k" in verdict.sentence.lower()
-    assert "2.1" in verdict.sentence or "21" in verdict.sentence
+    assert re.search(r"21\.\d MN/m", verdict.sentence)
+
+
+@pytest.mark.injection
+@pytest.mark.parametrize("percent", [pytest.param(5, marks=APART), 25])
+def test_the_sentence_says_the_value_that_the_table_says(percent: int, path: Callable[[str], Path]) -> None:
+    verdict = diagnosed(path(f"soft at {percent} %"))
+    (said,) = re.findall(r"(?:about|at) ([\d.]+) MN/m", verdict.sentence)
+    found = (verdict.recalibrated.after or verdict.recalibrated.before)["pad.k"]
+    assert float(said) == pytest.approx(found.value / 1e6, abs=0.06)
 
 
 @pytest.mark.injection

@@ -51,8 +51,8 @@ def answered(text: str) -> str:
         label = name if name in {s["name"] for s in CAMPAIGN["sensors"]} else f"hit {name}"
         block = f'name = "{label}"\n'
         before, _, after = text.partition(block)
-        after = re.sub(r'# body = "rail" .*', f'body = "{place["body"]}"', after, count=1)
-        after = re.sub(r"# x_m = 0.0 .*", f"x_m = {place['x_m']}", after, count=1)
+        after = re.sub(r"# body = .*", f'body = "{place["body"]}"', after, count=1)
+        after = re.sub(r"# x_m = .*", f"x_m = {place['x_m']}", after, count=1)
         text = before + block + after
     text = re.sub(r"# averages = 8 .*", f"averages = {BLOWS}", text)
     return re.sub(r"# temperature_C = 15.0 .*", "temperature_C = 12.0", text)
@@ -72,6 +72,10 @@ def test_a_campaign_is_begun_with_all_that_was_found(exports: Path) -> None:
     assert records["point 2"]["responses"] == ["rail@6", "deck@3"]
     assert records["point 2"]["references"] == {"hit far": "hit hit far"}
     assert (records["run"]["statistic"], records["run"]["channels"]) == ("csd", ["box", "bogie"])
+    text = (exports / "campaign.toml").read_text("utf-8")
+    # Places that labels seem to hold wait to be confirmed; "hit hit" holds none.
+    assert re.findall(r"^# (?:body|x_m) = (\S+)", text, re.MULTILINE)[:4] == ['"rail"', "6", '"deck"', "3"]
+    assert "\nx_m" not in text
     assert "512 Hz" in (exports / "campaign.toml").read_text("utf-8")
     assert (stated["sensors"], stated["points"], stated["records"]) == (4, 3, 4)
     assert [row["file"] for row in stated["files"] if row["format"] == "unknown"] == ["broken.tdms"]

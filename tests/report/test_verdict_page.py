@@ -88,7 +88,7 @@ def test_what_to_act_on_comes_first_and_what_it_rests_on_is_folded(pages: dict[s
     assert "Lost fasteners at pad from 5.4 to 6.6 m" in text
     assert "probability above 0.99" in text
     assert "Look at the pad from 5.4 to 6.6 m" in text
-    assert "of the stiffness is left (90 %: factor 0.3" in text or "(90 %: factor 0.29" in text
+    assert re.search(r"3 joints have lost (69|70|71) % of their stiffness", text)
 
 
 @pytest.mark.parametrize("name", ["lost", "loud", "nothing"])

@@ -35,7 +35,7 @@ def test_a_sweep_from_end_to_end(study_file, tmp_path):
     assert np.isfinite(open_study(folder)["receptance"].values).all()
     again = run(path, "-o", folder, "--threads", 1)
     assert (again.returncode, again.stderr) == (0, "")
-    assert re.search(r"computed +0\nalready_there +6\nfailed +none", again.stdout)
+    assert re.search(r"computed +0\nalready there +6\nfailed +none", again.stdout)
 
     path.write_text(path.read_text(encoding="utf-8").replace("[0.1, 0.2]", "[0.1, 0.3]"), encoding="utf-8")
     refused = run(path)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -103,7 +104,7 @@ def diagnose(
             result = run(described, ruled_out=ruled_out, threads=threads, progress=progress)
         written = write_diagnosis(doubted(result, checked), folder, page=not no_report)
         steps.close()
-    print_result(written, as_json)
+    print_result(written if as_json else _in_words(written), as_json)
 
 
 @campaigns.command(epilog=examples("permway separability campaign/campaign.toml --json"))
@@ -123,7 +124,7 @@ def separability(
     described = read_campaign(campaign, allow_outside=allow_outside)
     with stage_bar("separability", as_json) as progress:
         result = run(described, threads=threads, progress=progress)
-    print_result(result.summary(), as_json)
+    print_result(result.summary() if as_json else _in_words(result.summary()), as_json)
 
 
 @campaigns.command(
@@ -146,4 +147,21 @@ def demo(
 
     with stage_bar("demo", as_json) as progress:
         result = run(output, threads=threads, show=not (no_open or as_json), progress=progress)
-    print_result(result, as_json)
+    print_result(result if as_json else _in_words(result), as_json)
+
+
+def _in_words(written: Mapping[str, Any]) -> dict[str, Any]:
+    """The same for people: effects by what engineers call them, and one time for all stages."""
+    from permway.diagnosis.plain_names import name_of
+
+    found = dict(written)
+    for key, columns in (("effects", ("name", "effect")), ("not told apart", ("one", "other"))):
+        rows = found.get(key, [])
+        found[key] = [{k: _name(name_of, v) if k in columns else v for k, v in row.items()} for row in rows]
+    if isinstance(found.get("seconds"), Mapping):
+        found["seconds"] = round(sum(found["seconds"].values()))
+    return {key: value for key, value in found.items() if key in written}
+
+
+def _name(name_of: Callable[[str], str], identifiers: str) -> str:
+    return " or ".join(name_of(one) for one in identifiers.split(" or "))

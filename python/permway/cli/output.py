@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import sys
 import time
@@ -92,15 +93,29 @@ def stage_bar(title: str, quiet: bool) -> Iterator[Callable[[str, int, int], Non
             yield progress
 
 
+UNIT = re.compile(
+    r"(?<!_per)_((?:dB|m|km|kg|N)_per_(?:m|s|h|N|kg|K)|(?:Hz|dB|kg|mm|km|m|s|us|deg|N|GiB)(?:_rms)?)$"
+)
+"""At the end of a key."""
+
+
+def heading(key: str) -> str:
+    """A key as people read it: "noise, dB rms" of "noise_dB_rms"."""
+    found = UNIT.search(key)
+    name, unit = (key[: found.start()], found.group(1)) if found else (key, "")
+    words = name.replace("_", " ")
+    return f"{words}, {unit.replace('_per_', '/').replace('_', ' ')}" if unit else words
+
+
 def print_result(result: dict[str, Any], as_json: bool) -> None:
     """JSON on one line, or a line for each key; lists of records as columns."""
     if as_json:
         typer.echo(json.dumps(result, allow_nan=False))
         return
-    width = max(len(key) for key in result)
+    width = max(len(heading(key)) for key in result)
     for key, value in result.items():
         first, *others = _lines(value)
-        typer.echo(f"{key:<{width}}  {first}".rstrip())
+        typer.echo(f"{heading(key):<{width}}  {first}".rstrip())
         for line in others:
             typer.echo(f"{'':<{width}}  {line}")
 
@@ -112,12 +127,15 @@ def _lines(value: object) -> list[str]:
         return [_text(value)]
     if not value or not all(isinstance(item, dict) for item in value):
         return [_text(item) for item in value] or ["none"]
-    rows = [list(value[0]), *([_text(item.get(key, "")) for key in value[0]] for item in value)]
+    rows = [
+        [heading(key) for key in value[0]],
+        *([_text(item.get(key, "")) for key in value[0]] for item in value),
+    ]
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     return ["  ".join(f"{cell:<{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
 def _text(value: object) -> str:
     if isinstance(value, float):
-        return f"{value:.6g}"
+        return f"{value:.{4 if abs(value) < 1e4 else 6}g}"
     return ", ".join(_text(item) for item in value) if isinstance(value, list) else str(value)

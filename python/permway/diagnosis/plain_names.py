@@ -52,8 +52,9 @@ SUFFIXES = ("_N2_per_Hz", "_N_per_m", "_m_per_s", "_kg_per_m", "_dB_per_octave",
 
 UNITS = ("_m", "_s", "_kg", "_Hz", "_dB", "_N")
 
-MOST = 3
-"""Significant digits, at most."""
+MOST, MOST_OF_SHARE, SHARE = 3, 2, 0.5
+"""Significant digits, at most; of an effect's ratio below a half fewer, for no model is right to a hundredth of
+what is left. A ratio near 1, as of a gain or a speed, needs all."""
 
 
 def name_of(identifier: str) -> str:
@@ -123,11 +124,13 @@ def seen(one: Smallest) -> str:
 
 
 def _known(one: Estimate | Moved, factor: float) -> int:
-    """Decimals of a value in a unit: down to the first digit of half the interval, three digits at most."""
+    """Decimals of a value in a unit: down to the first digit of half the interval, two or three digits at most."""
+    share = isinstance(one, Estimate) and one.unit == "1" and abs(one.value) < SHARE
+    digits = MOST_OF_SHARE if share else MOST
     if one.low is None or one.high is None or not one.high > one.low:
-        return _decimals(one.value / factor, MOST)
+        return _decimals(one.value / factor, digits)
     half = 0.5 * (one.high - one.low) / factor
-    most = _decimals(max(abs(one.value / factor), half), MOST)
+    most = _decimals(max(abs(one.value / factor), half), digits)
     # Ends that share their digits with the value would say nothing.
     return min(most, -math.floor(math.log10(half)) + (half < 2.0 * 10.0 ** math.floor(math.log10(half))))
 

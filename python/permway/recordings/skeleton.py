@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -19,12 +20,16 @@ HAMMER = "hammer tests"
 
 NO_SAYING = "question: the file does not say it"
 
+NAMED = re.compile(r"(?:hit )?(rail|slab|base|deck|girder)[ @_-]*(\d+(?:\.\d+)?) ?m?")
+"""A label that seems to hold body and place: "rail@10.5", "hit deck 4.5 m"."""
+
 
 def write_skeleton(folder: Path) -> dict[str, Any]:
     """Write `campaign.toml` and `model.toml` into a folder of lab exports; nothing is written before all is read.
 
     What nobody but the user knows is left out, as a comment that begins with "question": where sensors stand,
-    speeds, numbers of blows. Until they are answered the campaign is refused, each time with what is missing.
+    speeds, numbers of blows. Until they are answered the campaign is refused, each time with what is missing. A
+    label that holds body and place ("rail@10.5") is proposed as the answer.
 
     Parameters
     ----------
@@ -86,7 +91,8 @@ class Begun:
     def text(self, title: str) -> str:
         """The campaign file."""
         lines = [
-            '# Started by `permway new`. Answer what begins with "question"; then: permway check campaign.toml',
+            '# Started by `permway new`. Answer what begins with "question": put the value right, and take away',
+            '# the first # of its line. What begins with "option" may stay. Then: permway check campaign.toml',
             "format = 1",
             f"title = {_quoted(title)}",
             f"model = {_quoted(MODEL)}",
@@ -94,7 +100,8 @@ class Begun:
         ]
         for key, found in (("sensors", self.sensors), ("forces", self.forces)):
             for name, one in found.items():
-                lines += [f"[[{key}]]", f"name = {_quoted(name)}", *_place(one.table, key), *_unit(one), ""]
+                place = _place(name, one.table, key)
+                lines += [f"[[{key}]]", f"name = {_quoted(name)}", *place, *_unit(one), ""]
         lines += [line for name in self._conditions() for line in (*_condition(*name), "")]
         for name, record, export in self.records:
             lines += [*_record(name, record, export), ""]
@@ -146,33 +153,42 @@ def _named(
     return names
 
 
-def _place(table: Mapping[str, Any], key: str) -> list[str]:
+def _place(name: str, table: Mapping[str, Any], key: str) -> list[str]:
+    """Body and place: what the file states, or a question, with what the label seems to say as its answer."""
     x = float(table.get("x_m", 0.0))
-    known = f"x_m = {x:.9g}" if x else "# x_m = 0.0                        # question: where on it, m?"
-    found = ['# body = "rail"                    # question: on which body of the model?', known]
+    told = NAMED.fullmatch(name)
+    body, at = (told.group(1), told.group(2)) if told else ("rail", "0.0")
+    on, where = "on which body of the model?", "where on it, m?"
+    if told:
+        on, where = f"{on} By its name this one", f"{where} By its name here"
     if key == "sensors":
-        found[0] += ' On the vehicle: degree = "car1.wheelset1" and no x_m'
-        found.append('# direction = "up"                 # question: is up positive? By default down')
-        return found
-    return [*found, '# direction = "up"                 # question: is a push up positive? By default down']
+        on += '. On the vehicle: degree = "car1.wheelset1" and no x_m'
+    up = "is up positive?" if key == "sensors" else "is a push up positive?"
+    return [
+        _asked(f"body = {_quoted(body)}", f"question: {on}"),
+        f"x_m = {x:.9g}" if x else _asked(f"x_m = {at}", f"question: {where}"),
+        _asked('direction = "up"', f"option: {up} By default down"),
+    ]
+
+
+def _asked(line: str, remark: str) -> str:
+    """A line that is no statement yet, and what it needs."""
+    return f"# {line:<33}# {remark}"
 
 
 def _unit(one: Found) -> list[str]:
     keys = [key for key in ("quantity", "unit") if key in one.table]
     lines = [f"{key} = {_quoted(one.table[key])}" for key in keys]
     if "unit" in one.unstated:
-        return [f"# {line:<33}# {NO_SAYING}" for line in lines]
+        return [_asked(line, NO_SAYING) for line in lines]
     return lines
 
 
 def _condition(name: str, kind: str) -> list[str]:
     lines = ["[[conditions]]", f"name = {_quoted(name)}", f"kind = {_quoted(kind)}"]
     if kind == "train":
-        lines.append("# speed_km_per_h = 100.0             # question: how fast?")
-    return [
-        *lines,
-        "# temperature_C = 15.0               # question: how warm? Asked for where a law depends on it",
-    ]
+        lines.append(_asked("speed_km_per_h = 100.0", "question: how fast?"))
+    return [*lines, _asked("temperature_C = 15.0", "option: how warm? Asked for where a law depends on it")]
 
 
 def _record(name: str, found: Found, export: Export) -> list[str]:
@@ -193,12 +209,12 @@ def _record(name: str, found: Found, export: Export) -> list[str]:
             continue
         if key in found.unstated or (key == "sampling_Hz" and not value):
             line = f"{key} = {json.dumps(value)}"
-            lines.append(f"# {line:<33}# {NO_SAYING}")
+            lines.append(_asked(line, NO_SAYING))
         elif isinstance(value, dict):
             lines.append(f"{key} = {_labels(value)}")
         else:
             lines.append(f"{key} = {json.dumps(value, ensure_ascii=False)}")
-    return [*lines, "# band_Hz = [5.0, 500.0]             # question: which band is to be trusted? By default all"]
+    return [*lines, _asked("band_Hz = [5.0, 500.0]", "option: which band is to be trusted? By default all")]
 
 
 def _labels(pairs: Mapping[str, Any]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 _TEXT = """\
 # Started by `permway new`: a rail on pads. Answer what begins with "question". What else a model can hold, and
-# presets of whole lines: docs/model-file.md
+# presets of whole lines: docs/model-file.md. [[forces]] and [[sensors]] are for `permway solve` alone
 format = 1
 
 [frequencies]
@@ -19,10 +19,10 @@ second_moment_m4 = 3.038e-5
 density_kg_per_m3 = 7850.0
 area_m2 = 7.67e-3
 loss_factor = 0.01
-# intervals_m = [[0.0, 36.0]]        # question: has it ends? By default it goes on for ever
+# intervals_m = [[0.0, 36.0]]        # option: has it ends? By default it goes on for ever
 
 [line.laws.pad]
-type = "hysteretic"
+type = "hysteretic"                  # with a dashpot: "kelvin_voigt", and damping in N s/m for loss_factor
 # stiffness = 30e6                   # question: of one pad, N/m?
 # loss_factor = 0.15                 # question: of one pad?
 
@@ -39,7 +39,7 @@ x_m = 18.0
 body = "rail"
 x_m = 18.0
 
-# question: does a train run? Then [train] with its vehicle, and [irregularity]: docs/model-file.md
+# option: does a train run? Then [train] with its vehicle, and [irregularity]: docs/model-file.md
 """
 
 

@@ -98,9 +98,21 @@ def _hypothesis(
         amend=amend,
         locate=locate,
         starts=starts,
-        law=lambda v: f"{v['factor']:.2g} of the stiffness is left",
+        law=lambda v: _words(x, span_of(x, v["centre_m"], v["length_m"], step), v["factor"]),
         size="factor",
         none=1.0,
+    )
+
+
+def _words(x: Reals, span: tuple[float, float], factor: float) -> str:
+    """As an engineer says it: how many joints, and how much of their stiffness is gone."""
+    count = int(((x >= span[0] - 1e-9) & (x <= span[1] + 1e-9)).sum())
+    lost = 100.0 * (1.0 - factor)
+    share = "more than 99 %" if lost > 99.0 else f"{lost:.2g} %"
+    return (
+        f"{count} joints have lost {share} of their stiffness"
+        if count > 1
+        else (f"one joint has lost {share} of its stiffness")
     )
 
 

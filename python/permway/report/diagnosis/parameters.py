@@ -7,7 +7,7 @@ from typing import Any
 from permway.diagnosis.compare_tables import LEFT
 from permway.diagnosis.plain_names import ends, estimate, stated
 from permway.diagnosis.result import Diagnosis
-from permway.diagnosis.verdict_parts import Estimate, Moved
+from permway.diagnosis.verdict_parts import Moved
 from permway.report.compare.tables import signed
 
 WENT_BACK = 0.5
@@ -28,7 +28,9 @@ def stated_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
             {
                 "name": known.name,
                 "stated": stated(known.nominal, unit),
-                "tolerance": ends(Estimate(value=known.nominal, low=low, high=high, unit=unit)),
+                "tolerance": ends(
+                    Moved(value=known.nominal, prior=known.nominal, z=0.0, low=low, high=high, unit=unit)
+                ),
                 "before": _told(before),
                 "after": _told(after),
                 "left": before is not None and abs(before.z) > LEFT,

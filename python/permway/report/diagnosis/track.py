@@ -59,7 +59,12 @@ class Drawing:
 
 def drawing(campaign: Campaign) -> Drawing:
     """Lay a campaign's line out: every body on its level, those that hang lower below."""
-    line = campaign.model.line
+    level, names = levels(campaign.model.line)
+    return Drawing(_reach(campaign), level, names)
+
+
+def levels(line: Line) -> tuple[dict[str, float], dict[float, str]]:
+    """Height of each body above the ground, which is 0, and names by height, the highest first."""
     depth = _depths(line)
     # Single masses of one kind (sleeper0, sleeper1, ...) share a level.
     kind = {n: re.sub(r"[\d_-]+$", "", n) or n if isinstance(b, Mass) else n for n, b in line.bodies.items()}
@@ -68,7 +73,7 @@ def drawing(campaign: Campaign) -> Drawing:
         kinds[one] = min(depth[name], kinds.get(one, depth[name]))
     ordered = sorted(kinds, key=lambda one: kinds[one])
     height = {one: float(len(ordered) - i) for i, one in enumerate(ordered)}
-    return Drawing(_reach(campaign), {n: height[kind[n]] for n in kind}, {height[one]: one for one in ordered})
+    return {n: height[kind[n]] for n in kind}, {height[one]: one for one in ordered}
 
 
 def _depths(line: Line) -> dict[str, int]:
