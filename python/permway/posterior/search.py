@@ -86,21 +86,35 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
     # About the stated values, for what the nominal parameters took up shows there only.
     far = Member((), fitter.begin(nominal, z, coarse), ())
     members, seen = [Member((), first, ())], (list[Cell](), Scores.none(0))
-    while len(members[0].amendments) < MOST:
-        best = members[0]
+    root: Member | None = members[0]
+    while root is not None and len(root.amendments) < MOST:
+        best = root
         count = len(best.amendments) + 1
         what = f"{count} amendment{'s' if count > 1 else ''}"
         found = []
         if best.fit.hyper.novel <= LACKING:
             seen = _small_changes(best, ruled_out, progress, what)
             found += _near(fitter, best, *seen, progress, what)
-        else:
+        if best.fit.hyper.novel > LACKING or best.fit.hyper.strained:
+            # What is missing may have been taken for errors of chains, about which no small change gains.
             found += _far(fitter, far if count == 1 else best, ruled_out, progress, what)
         fitter, members = ordered(fitter, best, [*members, *found], nominal)
-        # A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it.
-        if len(members[0].amendments) < count:
-            break
+        root = _next_root(members, count)
     return Explored(apart(members), seen)
+
+
+def _next_root(members: Sequence[Member], count: int) -> Member | None:
+    """The set of so many amendments that larger ones extend; None if they would stay behind a smaller one.
+
+    A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it. But if that one
+    strains its errors of chains, several changes at once may be what they hide.
+    """
+    best = members[0]
+    if len(best.amendments) >= count:
+        return best
+    if not best.fit.hyper.strained:
+        return None
+    return next((m for m in members if len(m.amendments) == count and not m.fit.hyper.strained), None)
 
 
 def _small_changes(
