@@ -26,7 +26,7 @@ from permway.posterior.beam import (
     tempered,
 )
 from permway.posterior.cells import Cell, cells, resized, small
-from permway.posterior.fit import Fitter, Model
+from permway.posterior.fit import Fit, Fitter, Model
 from permway.posterior.ordering import LEFT, LEVELS, annealed, apart, ordered, weighed
 from permway.posterior.recalibrated import first_values
 from permway.posterior.screening import Scores, screened
@@ -121,9 +121,15 @@ def _small_changes(
     root: Member, ruled_out: Collection[str], progress: Progress, what: str
 ) -> tuple[list[Cell], Scores]:
     """A look at all small changes about a set that fits."""
-    starts = small(cells(root.fit, ruled_out))
+    starts = small(_offered(root, root.fit, ruled_out))
     say = _saying(progress, f"small changes, {what}", len(starts))
     return starts, screened(root.fit, starts, say, root.fit.hyper.smaller())
+
+
+def _offered(root: Member, about: Fit, ruled_out: Collection[str]) -> list[Cell]:
+    """Starts beside a set: a value that it has as wrongly stated is not wrong twice, at half the price each."""
+    moved = {amendment.moves for amendment in root.amendments} - {""}
+    return [cell for cell in cells(about, ruled_out) if cell.hypothesis.moves not in moved]
 
 
 def _near(
@@ -162,7 +168,7 @@ def _far(
     """Sets with one amendment more, whose change is large: begun far off, the discrepancy falling."""
     level = LEVELS[0] if not root.amendments else LEVELS[1]
     about = replace(root.fit, hyper=root.fit.hyper.with_discrepancy(level))
-    starts = cells(about, ruled_out)
+    starts = _offered(root, about, ruled_out)
     scores = screened(about, starts, _saying(progress, f"first look, {what}", len(starts)))
     ranked = scores.objective - 2.0 * np.array([cell.log_prior for cell in starts])
     first = [(ranked[i], starts[i].hypothesis, starts[i]) for i in range(len(starts))]
