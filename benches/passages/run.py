@@ -12,6 +12,7 @@ import argparse
 import json
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 from cases import drawn
@@ -20,7 +21,9 @@ from permway.diagnosis.gather import gather
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.posterior.recalibrated import recalibrated
 
-Z90 = 1.6449
+Z90, LACKING = 1.6449, 0.5
+"""Half the width of a 90 % interval; probability that something is missing from which a fit says so."""
+
 KINDS = ("constant force", "mass on a spring")
 SPRUNG_EACH = 6
 """Of so many seeds one is of masses on springs."""
@@ -42,10 +45,11 @@ def fitted(seed: int) -> dict[str, object]:
         missed[name] = value - true if name == "t0" else value / true - 1.0
         z = campaign.parameters.known[name].z(true)
         deviations[name] = float((fit.z[index] - z) / sigma[index])
-    return {"seed": seed, "kind": KINDS[sprung], "missed": missed, "deviations": deviations}
+    lacking = fit.hyper.novel > LACKING
+    return {"seed": seed, "kind": KINDS[sprung], "missed": missed, "deviations": deviations, "lacking": lacking}
 
 
-def summary(cases: list[dict[str, dict[str, float]]]) -> dict[str, object]:
+def summary(cases: list[dict[str, Any]]) -> dict[str, object]:
     """Of all cases of a kind."""
     loads = [abs(v) for c in cases for name, v in c["missed"].items() if name.startswith("P")]
     speeds = [abs(c["missed"]["V"]) for c in cases]
@@ -56,6 +60,7 @@ def summary(cases: list[dict[str, dict[str, float]]]) -> dict[str, object]:
     }
     return {
         "cases": len(cases),
+        "said_to_lack_something": float(np.mean([c["lacking"] for c in cases])),
         "loads_missed_median": float(np.median(loads)),
         "loads_missed_90": float(np.quantile(loads, 0.9)),
         "loads_within_3_percent": float(np.mean(np.array(loads) < 0.03)),
