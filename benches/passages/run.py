@@ -45,7 +45,7 @@ def fitted(seed: int) -> dict[str, object]:
         missed[name] = value - true if name == "t0" else value / true - 1.0
         z = campaign.parameters.known[name].z(true)
         deviations[name] = float((fit.z[index] - z) / sigma[index])
-    lacking = fit.hyper.novel > LACKING
+    lacking = bool(fit.hyper.novel > LACKING)
     return {"seed": seed, "kind": KINDS[sprung], "missed": missed, "deviations": deviations, "lacking": lacking}
 
 
