@@ -59,7 +59,7 @@ def main() -> None:
         moved = verdict.recalibrated.after or verdict.recalibrated.before
         found = moved["damper"].value * law["damping"], moved["spring"].value * law["stiffness"]
         ratios = [a / b for a, b in zip(found, true[target], strict=True)]
-        classes = [{m.name for m in e.class_} | {e.place.body} for e in verdict.effects]
+        classes = [{m.name for m in e.class_} | {str(e.place.body)} for e in verdict.effects]
         held = {
             "damper": any({"damper"} <= c or c & set(DAMPERS) for c in classes),
             "spring": any({"spring"} <= c for c in classes),
