@@ -60,8 +60,8 @@ deviations), chains err by 2 %.
 """
 
 PASSAGES_NOTES = """
-Asked: loads within 3 %, speeds within 0.3 %, intervals 85 to 95 %. Entries come out 0.4 ms early, for the model's
-constant loss lags at rest. Masses on springs are physics that the prediction lacks; its intervals do not allow for
+Asked: loads within 3 %, speeds within 0.3 %, intervals 85 to 95 %. Entries come out 0.4 ms early, perhaps for the
+model's constant loss, which lags at rest. Masses on springs are physics that the prediction lacks; its intervals do not allow for
 that.
 """
 
@@ -80,7 +80,9 @@ def passages() -> str:
             ", ".join(f"{100 * one['held_each'][name]:.0f}" for name in ("P", "V", "E", "t0"))
             for one in found.values()
         ],
-        "said to lack something, %": [f"{100 * one['said_to_lack_something']:.0f}" for one in found.values()],
+        "said to lack something, %": [
+            f"{100 * one['said_to_lack_something']:.0f} of {one['of_cases']}" for one in found.values()
+        ],
     }
     lines = [_line(["", *found]), _line(["---"] * (1 + len(found)))]
     lines += [_line([name, *values]) for name, values in rows.items()]
