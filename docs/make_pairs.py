@@ -38,9 +38,9 @@ NOTES = """
 With `benches/pairs/run.py`, carts counted by `carts_found.py`; empty rows are not run. Two cases as one would tell
 a colleague: [a cart](case-cart.md), [a bridge](case-truss.md). After a first trial the tolerance of the cart's
 damper was widened to 50 %, and the band of the bridge cut to 0.4 Hz. "Right" counts a cart's damper recalibrated
-within 8 %; in a class, or recalibrated so, is the cause in 28 of 30 (asked: 27; in a class alone 21); no false name
-has 0.9. The ten pairs with file 7 were run again once several changes at once were tried beside large errors of
-chains: 5 to 7 was "insufficient" before, the other nine said the same.
+within 8 %; in a class, or recalibrated so, is the cause in 28 of 30 (asked: 27; in a class alone 21); no false
+name has 0.9. The ten pairs with file 7 were run again once several changes at once were tried beside large errors
+of chains: 5 to 7 was "insufficient" before, the other nine said the same.
 
 Causes of misses, by kind. *Prior*: a constant 1 dB passes for an error of the chain (the gain; the spring of two
 damped carts), and a spring 26 % off its 3 % is taken for improbable. *Likelihood*: 0.16 dB left on all lines count
@@ -63,8 +63,8 @@ deviations), chains err by 2 %.
 
 PASSAGES_NOTES = """
 Asked: loads within 3 %, speeds within 0.3 %, intervals 85 to 95 %. Five fits of constant forces rest at another
-optimum, stiffness 12 to 30 % off, and say nothing of it. Entries come out 0.4 ms early, perhaps for the model's
-constant loss, which lags at rest. Masses on springs are physics that the prediction lacks; its intervals do not
+optimum, stiffness 12 to 30 % off; each says that something is missing. Entries come out 0.4 ms early,
+perhaps for the model's constant loss, which lags at rest. Masses on springs are physics that the prediction lacks; its intervals do not
 allow for that.
 """
 
