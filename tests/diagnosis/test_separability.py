@@ -5,15 +5,20 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import passages
 import pytest
+import tables_of_modes
+from permway.campaign.campaign import Campaign, read_campaign
 from permway.diagnosis.advise import MOST, advise, separation
+from permway.diagnosis.catalogue._change import with_fields
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.gather import gather
 from permway.diagnosis.menu import menu
 from permway.diagnosis.recalibrate import recalibrate
-from permway.diagnosis.separability import Separability, separability
+from permway.diagnosis.separability import CLASS_DEVIANCE, Separability, separability
 from permway.diagnosis.verdict import Verdict
 from permway.diagnosis.verdict_words import _advice as _advised
+from permway.model.bodies import BeamChange
 from simulated import Simulated, simulate
 
 
@@ -75,3 +80,34 @@ def test_of_a_suspicion_it_is_said_what_would_make_sure(case: Simulated) -> None
     assert all((one.separation_after or 0.0) > (one.separation_before or 0.0) for one in advised)
     words = _advised(Verdict(status="insufficient", next=advised))
     assert words == f"to be sure of lost fasteners, measure: {advised[0].measurement}"
+
+
+@pytest.fixture(params=["passage", "modes"])
+def bridge(request: pytest.FixtureRequest, tmp_path: Path) -> Campaign:
+    """A beam held at its ends alone, by a passage or by a table of its modes."""
+    if request.param == "modes":
+        return read_campaign(tables_of_modes.write(tmp_path, tables_of_modes.rows_of(tables_of_modes.changed())))
+    random, time = np.random.default_rng(4), passages.time_s()
+    columns = {}
+    for name in "wa":
+        values = passages.history(name, time, 0.01)
+        columns[name] = values + 1e-3 * np.abs(values).max() * random.standard_normal(time.size)
+    table = passages.campaign("wa", high_Hz=10.0)
+    return read_campaign(passages.write(tmp_path, columns, table=table, loss_factor=0.02))
+
+
+def test_passages_and_modes_have_a_menu_that_separates(bridge: Campaign) -> None:
+    base = recalibrate(gather(bridge, threads=1))
+    cracked = BeamChange(from_m=8.0, to_m=10.0, bending_factor=0.85)
+    right = type(base)(**{**vars(base), "campaign": with_fields(base.campaign, "deck", changes=(cracked,))})
+    items = list(menu(bridge, base.evidence.datasets))
+    assert {item.kind for item in items} in ({"speed", "repeat", "sensor"}, {"repeat"})
+    assert all(separation(item, right, base) > 10.0 for item in items)
+    assert all(separation(item, type(base)(**vars(base)), base) < 1e-6 for item in items)
+
+
+def test_a_beam_on_its_ends_has_places(bridge: Campaign) -> None:
+    found = separability(bridge, threads=1)
+    seen = {row["effect"]: row["deviance"] for row in found.summary()["effects"]}
+    assert seen["girder_crack"] > CLASS_DEVIANCE
+    assert seen["deck_attachment"] > CLASS_DEVIANCE

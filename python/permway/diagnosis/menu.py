@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -11,8 +11,8 @@ import xarray as xr
 
 from permway.campaign.campaign import Campaign
 from permway.campaign.load import Dataset
+from permway.diagnosis.stretches import stretches
 from permway.errors import InputError
-from permway.model.segments import Segment
 from permway.recordings.channel import Point, Sensor
 
 Kind = Literal["repeat", "sensor", "blows", "speed", "temperature"]
@@ -80,6 +80,12 @@ def menu(campaign: Campaign, datasets: list[Dataset]) -> Iterator[Item]:
     if train is not None and train.condition.speed_m_per_s is not None:
         speed = FASTER * train.condition.speed_m_per_s
         yield _other_condition(train, f"a run at {3.6 * speed:.0f} km/h", "speed", speed_m_per_s=speed)
+    passage = next((d for d in datasets if d.record.statistic == "passage"), None)
+    if passage is not None:
+        yield from _of_passage(campaign, passage)
+    table = next((d for d in datasets if d.record.statistic == "modes"), None)
+    if table is not None:
+        yield from _of_modes(table)
 
 
 def item_of(campaign: Campaign, datasets: list[Dataset], words: str) -> Item:
@@ -97,38 +103,80 @@ def item_of(campaign: Campaign, datasets: list[Dataset], words: str) -> Item:
     return items[words]
 
 
-def _stretches(campaign: Campaign) -> Iterator[tuple[str, Segment, float, float]]:
-    table = campaign.model.line.joint_table()
-    for beam, segment in campaign.model.line.beams():
-        low, high = max(segment.start, float(table.x.min())), min(segment.stop, float(table.x.max()))
-        if beam is not None and high > low:
-            yield segment.name, segment, low, high
-
-
 def _sensors(campaign: Campaign, hammer: Dataset) -> Iterator[Item]:
     standing = [campaign.sensor(str(s)) for s in hammer.data["sensor"].values]
-    for body, _, low, high in _stretches(campaign):
+    for body, x in _free_places(campaign, standing):
+        sensor = standing[0].model_copy(update={"name": f"planned {body}@{x:g}", "body": body, "x_m": x})
+        data = hammer.data.isel(sensor=[0]).assign_coords(sensor=[sensor.name])
+        yield Item(
+            f"a sensor on {body} at {x:g} m in the hammer test",
+            "sensor",
+            COST["sensor"],
+            _with_sensor(sensor),
+            replace(hammer, data=_typical(data, hammer.data)),
+            body,
+            x,
+        )
+
+
+def _free_places(campaign: Campaign, standing: Sequence[Sensor]) -> Iterator[tuple[str, float]]:
+    """Where along the beams no such sensor stands yet."""
+    for segment, low, high in stretches(campaign.model.line):
         for share in SHARES:
             x = float(np.round(low + share * (high - low), 2))
-            if any(s.body == body and abs(float(s.x_m or 0.0) - x) < 1.0 for s in standing):
+            if not any(s.body == segment.name and abs(float(s.x_m or 0.0) - x) < 1.0 for s in standing):
+                yield segment.name, x
+
+
+def _of_passage(campaign: Campaign, passage: Dataset) -> Iterator[Item]:
+    """The same train at another speed, once more, and past one sensor more of each quantity."""
+    name, speed = passage.record.name, passage.condition.speed_m_per_s
+    assert speed is not None
+    faster = FASTER * speed
+    yield _other_condition(passage, f"a passage at {3.6 * faster:.0f} km/h", "speed", speed_m_per_s=faster)
+    yield Item(f"{name} again", "repeat", COST["repeat"], lambda c: c, passage)
+    channels = [str(c) for c in passage.data["channel"].values]
+    of_quantity: dict[str, list[Sensor]] = {}
+    for sensor in map(campaign.sensor, channels):
+        of_quantity.setdefault(sensor.quantity, []).append(sensor)
+    for quantity, standing in of_quantity.items():
+        first = standing[0]
+        words = quantity.replace("_", " ")
+        for body, x in _free_places(campaign, standing):
+            # How far below the axis a strain is read is of its own beam.
+            if first.bends and body != first.body:
                 continue
-            sensor = standing[0].model_copy(update={"name": f"planned {body}@{x:g}", "body": body, "x_m": x})
-            data = hammer.data.isel(sensor=[0]).assign_coords(sensor=[sensor.name])
+            planned = f"planned {words} {body}@{x:g}"
+            sensor = first.model_copy(update={"name": planned, "body": body, "x_m": x})
+            data = passage.data.isel(channel=[channels.index(first.name)]).assign_coords(channel=[planned])
             yield Item(
-                f"a sensor on {body} at {x:g} m in the hammer test",
+                f"a sensor of {words} on {body} at {x:g} m while the train passes",
                 "sensor",
                 COST["sensor"],
                 _with_sensor(sensor),
-                replace(hammer, data=_typical(data, hammer.data)),
+                replace(passage, data=data),
                 body,
                 x,
             )
 
 
+def _of_modes(table: Dataset) -> Iterator[Item]:
+    """A longer recording, whose modes scatter less; the same at another temperature."""
+    data = table.data.copy()
+    data["relative_sd"] = data["relative_sd"] / np.sqrt(REPEATS)
+    words = f"{table.record.name} again, from {REPEATS:.0f} times as long a recording"
+    yield Item(words, "repeat", COST["repeat"] * REPEATS, lambda c: c, replace(table, data=data), value=REPEATS)
+    temperature = table.condition.temperature_C
+    if temperature is not None:
+        colder = temperature - COLDER_K
+        words = f"{table.record.name} again, at {colder:g} degC"
+        yield _other_condition(table, words, "temperature", temperature_C=colder)
+
+
 def _blows(campaign: Campaign, hammer: Dataset) -> Iterator[Item]:
     struck = [campaign.point(str(p)) for p in hammer.data["force"].values]
-    for body, _, low, high in _stretches(campaign):
-        x = float(np.round(low + 0.4 * (high - low), 2))
+    for segment, low, high in stretches(campaign.model.line):
+        body, x = segment.name, float(np.round(low + 0.4 * (high - low), 2))
         if any(p.body == body and abs(p.x_m - x) < 1.0 for p in struck):
             continue
         point = struck[0].model_copy(update={"name": f"planned {body}@{x:g}", "body": body, "x_m": x})
@@ -161,9 +209,12 @@ def _quieter(hammer: Dataset) -> Dataset:
 
 
 def _other_condition(dataset: Dataset, words: str, kind: Kind, **changed: float) -> Item:
-    condition = dataset.condition.model_copy(update={"name": f"planned {dataset.condition.name}", **changed})
+    changes = {"name": f"planned {dataset.condition.name}", **changed}
+    condition = dataset.condition.model_copy(update=changes)
 
     def planned(campaign: Campaign) -> Campaign:
+        # Axle loads and times are parameters, and those of the same train.
+        condition = campaign.condition(dataset.condition.name).model_copy(update=changes)
         stated = campaign.stated.model_copy(update={"conditions": (*campaign.stated.conditions, condition)})
         return replace(campaign, stated=stated)
 

@@ -25,6 +25,7 @@ from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.spot import Found, Spot
 from permway.diagnosis.stacking import stacked
+from permway.diagnosis.stretches import stretches
 from permway.diagnosis.tangent import Problem
 from permway.errors import InputError, SolveError
 from permway.model.line import Line
@@ -164,10 +165,12 @@ def places(fit: Fit) -> Iterator[Found]:
     line, rows = fit.campaign.model.line, fit.evidence.rows
     frequency = np.geomspace(float(rows.frequency_Hz.min()), float(rows.frequency_Hz.max()), BANDS)
     nothing, flat = np.zeros(BANDS, dtype=np.complex128), np.ones(BANDS)
+    # Resonators are begun where most is to be seen: where nobody looked yet, in the middle of the band.
+    shown = np.where(np.arange(BANDS) == BANDS // 2, 2.0, 1.0)
     for share in SHARES:
         for spots in _spots(line):
             spot = spots[round(share * (len(spots) - 1))]
-            yield Found(spot, 0.0, 0, frequency, nothing, flat, flat, 1.0)
+            yield Found(spot, 0.0, 0, frequency, nothing, flat, shown, 1.0)
 
 
 def _spots(line: Line) -> Iterator[list[Spot]]:
@@ -178,13 +181,9 @@ def _spots(line: Line) -> Iterator[list[Spot]]:
         mine = [int(j) for j in order if table.law[j] == index]
         if mine:
             yield [Spot("joint", law, (float(table.x[j]), float(table.x[j])), (j,)) for j in mine]
-    if not table.x.size:
-        return
-    for _, segment in line.beams():
-        low, high = max(segment.start, float(table.x.min())), min(segment.stop, float(table.x.max()))
-        if high > low:
-            inside = np.linspace(low, high, max(2, round(high - low) + 1))
-            yield [Spot("body", segment.name, (float(x), float(x))) for x in inside]
+    for segment, low, high in stretches(line):
+        inside = np.linspace(low, high, max(2, round(high - low) + 1))
+        yield [Spot("body", segment.name, (float(x), float(x))) for x in inside]
 
 
 class _Base:

@@ -104,6 +104,13 @@ def _effect(masses: Masses, index: int) -> Effect:
         estimates[f.name] = Estimate(value=values[f.name], unit=f.unit, low=low, high=high)
         for end in (low, high):
             ends.extend(hypothesis.locate({**values, f.name: end}).x_m or ())
+    at = best.moved(index)
+    if at is not None:
+        first = hypothesis.free[0]
+        both = np.array([1.0, first.value(1.0)])
+        half = WIDTH * float(np.sqrt(both @ best.fit.spread[np.ix_([at, own.start], [at, own.start])] @ both))
+        value = values[first.name]
+        estimates[first.name] = Estimate(value=value, unit=first.unit, low=value - half, high=value + half)
     where = hypothesis.locate(values)
     members = _class(masses.names(index))
     named = members[0].name != NOVEL and members[0].probability >= NAMED

@@ -83,9 +83,20 @@ class Member:
         return slice(start, start + counts[index])
 
     def values(self, index: int) -> dict[str, float]:
-        """Of one amendment's parameters, by their own names."""
+        """Of one amendment's parameters, by name; where it moves a nominal parameter, the whole move."""
         free, z = self.amendments[index].free, self.fit.z[self.own(index)]
-        return {f.name: f.value(float(v)) for f, v in zip(free, z, strict=True)}
+        found = {f.name: f.value(float(v)) for f, v in zip(free, z, strict=True)}
+        at = self.moved(index)
+        if at is not None:
+            found[free[0].name] += float(self.fit.z[at])
+        return found
+
+    def moved(self, index: int) -> int | None:
+        """Where the nominal parameter that an amendment moves stands among all; None if it moves none."""
+        name = self.amendments[index].moves
+        if not name:
+            return None
+        return [f.name for f in self.fit.model.free].index(name)
 
 
 @dataclass(frozen=True)

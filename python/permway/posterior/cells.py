@@ -18,6 +18,7 @@ from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
 from permway.diagnosis.spot import Found, Spot
 from permway.diagnosis.stacking import weaker
+from permway.diagnosis.stretches import stretches
 from permway.posterior import generic, stated
 from permway.posterior.fit import Fit
 from permway.posterior.spans import BEYOND, begun, spread_out, tuned, widened
@@ -219,11 +220,7 @@ def _situations(base: Fit) -> Iterator[Situation]:
     table, laws = line.joint_table(), list(line.laws)
     for index in range(table.x.size):
         yield Situation(fit, (_place("joint", laws[table.law[index]], float(table.x[index]), (index,)),))
-    if not table.x.size:
-        return
-    low, high = float(table.x.min()), float(table.x.max())
-    for _, segment in line.beams():
-        first, last = max(low, segment.start), min(high, segment.stop)
+    for segment, first, last in stretches(line):
         for x in np.arange(first + 0.5 * SPACING_M, last, SPACING_M):
             yield Situation(fit, (_place("body", segment.name, float(x), ()),))
 

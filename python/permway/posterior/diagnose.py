@@ -137,13 +137,12 @@ def _advice(masses: Masses, verdict: Verdict, progress: Progress) -> tuple[NextM
 def with_moved(after: Mapping[str, Moved], member: Member) -> dict[str, Moved]:
     """Nominal parameters, those that an amendment moves with its shift in them."""
     found = dict(after)
-    known, names = member.fit.frame.evidence.campaign.parameters.known, [f.name for f in member.fit.model.free]
+    known = member.fit.frame.evidence.campaign.parameters.known
     for index, amendment in enumerate(member.amendments):
-        name = amendment.moves
-        if name not in found:
+        name, at = amendment.moves, member.moved(index)
+        if name not in found or at is None:
             continue
-        per_z = amendment.free[0].value(1.0)
-        at, own = names.index(name), member.own(index).start
+        per_z, own = amendment.free[0].value(1.0), member.own(index).start
         z = float(member.fit.z[at] + per_z * member.fit.z[own])
         both = np.array([1.0, per_z])
         half = WIDTH * float(np.sqrt(both @ member.fit.spread[np.ix_([at, own], [at, own])] @ both))

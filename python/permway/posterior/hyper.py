@@ -16,6 +16,10 @@ from permway.arrays import Reals
 SIZE, SIZE_FACTOR = 0.04, 3.0
 """Calibration errors, neper or rad: median (0.35 dB) and the factor of one standard deviation (0.12 to 1 dB)."""
 
+STRAINED = SIZE * SIZE_FACTOR**1.5
+"""Neper (1.8 dB): larger than errors of chains that were measured; what is missing may hide in such. Twice as much
+leaves dampers hidden in errors of 2 to 4 dB; half as much looks farther in campaigns whose chains err by 1 dB."""
+
 LENGTH, LENGTH_FACTOR = 0.8, 2.5
 """Their correlation length, octaves: median, and the factor of one standard deviation (0.32 to 2 octaves)."""
 
@@ -103,6 +107,16 @@ class Hyper:
         """With other logarithms, kept within the bounds."""
         low, high = self.bounds()
         return Hyper(self.names, np.clip(log, low, high))
+
+    @property
+    def strained(self) -> bool:
+        """Whether errors of some kind of chain are larger than what is known of such."""
+        return any(self[name] > STRAINED for name in self._kinds)
+
+    @property
+    def _kinds(self) -> list[str]:
+        """Of chains."""
+        return [n for n in self.names if n not in ("length", IDEALISATION) and not n.startswith("discrepancy")]
 
     def bounds(self) -> tuple[Reals, Reals]:
         """Of the logarithms."""

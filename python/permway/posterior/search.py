@@ -26,7 +26,7 @@ from permway.posterior.beam import (
     tempered,
 )
 from permway.posterior.cells import Cell, cells, resized, small
-from permway.posterior.fit import Fitter, Model
+from permway.posterior.fit import Fit, Fitter, Model
 from permway.posterior.hyper import LACKING
 from permway.posterior.ordering import LEFT, LEVELS, annealed, apart, ordered, weighed
 from permway.posterior.recalibrated import first_values
@@ -87,8 +87,9 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
     # About the stated values, for what the nominal parameters took up shows there only.
     far = Member((), fitter.begin(nominal, z, coarse), ())
     members, seen = [Member((), first, ())], (list[Cell](), Scores.none(0))
-    while len(members[0].amendments) < MOST:
-        best = members[0]
+    root: Member | None = members[0]
+    while root is not None and len(root.amendments) < MOST:
+        best = root
         count = len(best.amendments) + 1
         what = f"{count} amendment{'s' if count > 1 else ''}"
         found = []
@@ -96,24 +97,44 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
         if lacks < LEVELS[1]:
             seen = _small_changes(best, ruled_out, progress, what)
             found += _near(fitter, best, *seen, progress, what)
-        if min((best, *found), key=lambda m: -m.log_mass).fit.hyper.novel > LACKING:
-            # What lacks little is not to be looked for where nothing shows.
-            far_off = count == 1 and lacks > LEVELS[1]
+        leader = min((best, *found), key=lambda m: -m.log_mass).fit.hyper
+        if leader.novel > LACKING or leader.strained:
+            # What lacks little is not to be looked for where nothing shows. What is missing may also have been taken
+            # for errors of chains, about which no small change gains.
+            far_off = count == 1 and (lacks > LEVELS[1] or leader.strained)
             found += _far(fitter, far if far_off else best, far_off, ruled_out, progress, what)
         fitter, members = ordered(fitter, best, [*members, *found], nominal)
-        # A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it.
-        if len(members[0].amendments) < count:
-            break
+        root = _next_root(members, count)
     return Explored(apart(members), seen)
+
+
+def _next_root(members: Sequence[Member], count: int) -> Member | None:
+    """The set of so many amendments that larger ones extend; None if they would stay behind a smaller one.
+
+    A set grows about its own fit; where a smaller one stays ahead, larger ones stay behind it. But if that one
+    strains its errors of chains, several changes at once may be what they hide.
+    """
+    best = members[0]
+    if len(best.amendments) >= count:
+        return best
+    if not best.fit.hyper.strained:
+        return None
+    return next((m for m in members if len(m.amendments) == count and not m.fit.hyper.strained), None)
 
 
 def _small_changes(
     root: Member, ruled_out: Collection[str], progress: Progress, what: str
 ) -> tuple[list[Cell], Scores]:
     """A look at all small changes about a set that fits."""
-    starts = small(cells(root.fit, ruled_out))
+    starts = small(_offered(root, root.fit, ruled_out))
     say = _saying(progress, f"small changes, {what}", len(starts))
     return starts, screened(root.fit, starts, say, root.fit.hyper.smaller())
+
+
+def _offered(root: Member, about: Fit, ruled_out: Collection[str]) -> list[Cell]:
+    """Starts beside a set: a value that it has as wrongly stated is not wrong twice, at half the price each."""
+    moved = {amendment.moves for amendment in root.amendments} - {""}
+    return [cell for cell in cells(about, ruled_out) if cell.hypothesis.moves not in moved]
 
 
 def _near(
@@ -153,7 +174,7 @@ def _far(
     """Sets with one amendment more, whose change is large: begun far off, the discrepancy falling."""
     level = LEVELS[0] if far_off else LEVELS[1]
     about = replace(root.fit, hyper=root.fit.hyper.with_discrepancy(level))
-    starts = cells(about, ruled_out)
+    starts = _offered(root, about, ruled_out)
     scores = screened(about, starts, _saying(progress, f"first look, {what}", len(starts)))
     ranked = scores.objective - 2.0 * np.array([cell.log_prior for cell in starts])
     first = [(ranked[i], starts[i].hypothesis, starts[i]) for i in range(len(starts))]

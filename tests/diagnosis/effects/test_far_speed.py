@@ -1,4 +1,4 @@
-"""Speeds that are further off than any note: the base stops at turns of phases, and is left for the search."""
+"""Speeds that are further off than any note: phases have turned many times, and the search begins far off."""
 
 from __future__ import annotations
 
@@ -50,14 +50,8 @@ def measured(owner: Campaign, factor: float) -> Evidence:
     return evidence_of(owner, 5, amend=amend)
 
 
-@pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="speeds 6 % off are found, and told to 3e-4 instead of 2e-4"
-)
 def test_a_speed_far_off_is_found_and_measured(owner: Campaign) -> None:
     evidence = measured(owner, 0.94)
-    base = recalibrate(evidence)
-    own = {name: base.z[[f.name for f in base.free].index(f"speed.{name}")] for name in RUNS}
-    assert max(abs(z) for z in own.values()) > speed_error.FAR
     best = searched(evidence, "speed_error").best()
     assert best is not None
     assert best.fit.hyper.novel < 0.5
@@ -69,7 +63,8 @@ def test_a_speed_far_off_is_found_and_measured(owner: Campaign) -> None:
     assert values["1.factor"] == pytest.approx(0.94 * common, rel=1e-3)
 
 
-def test_speeds_within_what_was_noted_are_begun_near_it(owner: Campaign) -> None:
+def test_one_run_is_begun_near_its_note_and_all_runs_also_far_from_it(owner: Campaign) -> None:
     situation = Situation(recalibrate(measured(owner, 1.0)), ())
     for hypothesis in speed_error.hypotheses(situation):
-        assert hypothesis.starts == speed_error.STARTS
+        alone = hypothesis.locate({"factor": 1.0}).what != "speed"
+        assert hypothesis.starts == (speed_error.STARTS if alone else speed_error.WIDE)
