@@ -99,8 +99,8 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
             found += _near(fitter, best, *seen, progress, what)
         leader = min((best, *found), key=lambda m: -m.log_mass).fit.hyper
         if leader.novel > LACKING or leader.strained:
-            # What lacks little is not to be looked for where nothing shows. What is missing may also have been taken
-            # for errors of chains, about which no small change gains.
+            # What lacks little is not to be looked for where nothing shows. What is missing may have been taken
+            # for errors of chains, too, about which no small change gains.
             far_off = count == 1 and (lacks > LEVELS[1] or leader.strained)
             found += _far(fitter, far if far_off else best, far_off, ruled_out, progress, what)
         fitter, members = ordered(fitter, best, [*members, *found], nominal)
