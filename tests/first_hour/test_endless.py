@@ -8,10 +8,6 @@ from permway.diagnosis.fit import Free
 from permway.posterior.cells import coordinate
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="Halving begins between minus and plus infinity, whose middle is no number, with a warning.",
-)
 @pytest.mark.parametrize("value", [-7.0, 12.0])
 def test_the_coordinate_of_a_place_without_limits(value: float) -> None:
     free = Free("x_m", "m", lambda z: 10.0 + 0.5 * z, (-np.inf, np.inf))

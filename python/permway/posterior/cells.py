@@ -29,6 +29,9 @@ SPACING_M = 1.0
 BAND_HZ, BANDS = (8.0, 200.0), 24
 """What a place that was not scanned is handed on with: frequencies where nothing stands out."""
 
+FARTHEST = 40.0
+"""Standard deviations, beyond which no value is looked for: places on a rail without ends have no limits."""
+
 SMALL = 0.03
 """Share of a start's size at which a small effect's direction is taken: resonances then move in proportion."""
 
@@ -160,7 +163,7 @@ def _positive(cell: Cell) -> bool:
 
 def coordinate(free: Free, value: float) -> float | None:
     """Z of a value, by halving; None outside the parameter's limits."""
-    low, high = free.limits
+    low, high = max(free.limits[0], -FARTHEST), min(free.limits[1], FARTHEST)
     ends = free.value(low), free.value(high)
     if not min(ends) <= value <= max(ends):
         return None
