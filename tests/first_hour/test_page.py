@@ -62,8 +62,6 @@ def test_check_says_what_the_page_says(begun: str) -> None:
     assert command("check", "exports/campaign.toml") == SHOWN["check"]
 
 
-# The fault of test_endless.py: the rail of this model has no ends.
-@pytest.mark.filterwarnings("ignore:invalid value encountered in scalar add")
 @pytest.mark.injection
 def test_diagnose_says_what_the_page_says(begun: str) -> None:
     """Half a minute of processor: the fastener that carries nothing."""

@@ -155,19 +155,8 @@ def _standing(campaign: Campaign) -> Campaign:
     return replace(campaign, stated=campaign.stated.model_copy(update={"irregularity": known}))
 
 
-ESCAPED = pytest.mark.xfail(
-    strict=True,
-    reason="The first look gives a wrong pad.k no gain: its change by 0.15 deviations of the tolerance is 5 of "
-    "the posterior, no straight line there. So pad_frequency, with a rise of 0 %, has the stiffness free.",
-)
-APART = pytest.mark.xfail(
-    strict=True,
-    reason="The words of owner_value are of its own deviations alone, 21.2 MN/m, without the nominal parameter's.",
-)
-
-
 @pytest.mark.injection
-@pytest.mark.parametrize("percent", [5, pytest.param(10, marks=ESCAPED), 25])
+@pytest.mark.parametrize("percent", [5, 10, 25])
 def test_pads_softer_than_stated(percent: int, path: Callable[[str], Path]) -> None:
     """With the value that fits, in the sentence, whatever tolerance was stated."""
     verdict = diagnosed(path(f"soft at {percent} %"))
@@ -183,7 +172,7 @@ def test_pads_softer_than_stated(percent: int, path: Callable[[str], Path]) -> N
 
 
 @pytest.mark.injection
-@pytest.mark.parametrize("percent", [pytest.param(5, marks=APART), 25])
+@pytest.mark.parametrize("percent", [5, 25])
 def test_the_sentence_says_the_value_that_the_table_says(percent: int, path: Callable[[str], Path]) -> None:
     verdict = diagnosed(path(f"soft at {percent} %"))
     (said,) = re.findall(r"(?:about|at) ([\d.]+) MN/m", verdict.sentence)

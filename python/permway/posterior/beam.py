@@ -128,6 +128,15 @@ class Trial:
         """Where the first look has it."""
         return Trial(cell, np.concatenate([root.fit.z, cell.z]), hyper, root.fit.bend)
 
+    @staticmethod
+    def beside(root: Member, cell: Cell, hyper: Hyper) -> Trial:
+        """Where a look at small changes has it: a nominal parameter that it moves moves back by as much."""
+        trial = Trial.of(root, cell, hyper)
+        names = [f.name for f in root.fit.model.free]
+        if cell.hypothesis.moves in names:
+            trial.z[names.index(cell.hypothesis.moves)] -= cell.hypothesis.free[0].value(float(cell.z[0]))
+        return trial
+
     def with_discrepancy(self, value: float) -> Trial:
         """The same with another discrepancy."""
         return replace(self, hyper=self.hyper.with_discrepancy(value))

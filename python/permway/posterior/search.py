@@ -148,7 +148,7 @@ def _near(
     worth = []
     for i in np.flatnonzero(predicted > np.log(PREDICTED)).tolist():
         cell = resized(starts[i], float(scores.measure[i]))
-        worth.append((-predicted[i], cell.hypothesis, Trial.of(root, cell, views[scores.view[i]])))
+        worth.append((-predicted[i], cell.hypothesis, Trial.beside(root, cell, views[scores.view[i]])))
     # Hyperparameters are the smaller set's still: what is behind with them hardly comes first with its own.
     least = -tempered(root.fit.log_evidence, count) - float(np.log(NEGLECTED))
     trials = chosen(worth, WIDTHS[1], PER_FORM[1])
