@@ -77,11 +77,11 @@ def _words(known: Known, deviations: float) -> str:
 
 
 def _size(value: float, unit: str) -> str:
-    """Three digits and the unit: 21.2 MN/m."""
+    """Three digits and the unit: 21.0 MN/m."""
     if unit.startswith(PREFIXED):
         for prefix, factor in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
             if abs(value) >= factor:
-                return f"{value / factor:.3g} {prefix}{unit}"
+                return f"{value / factor:#.3g}".rstrip(".") + f" {prefix}{unit}"
     return f"{value:.3g}" + ("" if unit == "1" else f" {unit}")
 
 
