@@ -184,7 +184,8 @@ def _far(
             continue
         say = _saying(progress, f"{what}, discrepancy {value:g}", len(trials))
         lower = [trial.with_discrepancy(value) for trial in trials]
-        trials = advanced(fitter, root, lower, steps=STEPS[stage], moves=stage > 0, progress=say)
+        # Of the many that are begun most are let go of: only what is left is worth slopes of its own.
+        trials = advanced(fitter, root, lower, steps=STEPS[stage], moves=value < level, progress=say)
         rows = distinct([(t.objective - 2.0 * t.cell.log_prior, t.cell.hypothesis, t) for t in trials])
         # Differences between fits grow while the discrepancy falls.
         rows = leading(rows, BEHIND if stage + 1 < len(LEVELS) else 4.0 * LEFT)
