@@ -66,7 +66,7 @@ def test_the_command_prints_a_table_and_json(
     assert {"vectors", "threads", "bench", "score"} <= set(stated)
     app(["doctor", "--bench"], prog_name="permway", standalone_mode=False)
     shown = capsys.readouterr().out
-    assert "one_thread_us" in shown
+    assert "one thread, us" in shown
     assert all(name in shown for name in FREQUENCIES)
 
 

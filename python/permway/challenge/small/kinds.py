@@ -90,10 +90,19 @@ def conceal(
         if effect is None or effect.family in families:
             continue
         sized = _sized(random, maker, scale, effect, noise)
-        if sized is not None:
+        if sized is not None and _together(maker, [*((e, share) for e, share, _ in found), (effect, sized[0])]):
             found.append((effect, *sized))
             families.add(effect.family)
     return found
+
+
+def _together(maker: Maker, effects: Sequence[tuple[Concealed, float]]) -> bool:
+    """Whether effects can act at once: a law that one replaces may be one that another has factors for."""
+    try:
+        maker.responses(effects)
+    except (InputError, SolveError):
+        return len(effects) < 2
+    return True
 
 
 def _drawn(random: np.random.Generator, maker: Maker, kind: str, names: Sequence[str]) -> Concealed | None:
