@@ -15,39 +15,39 @@ from permway.challenge.tiers import HASHED, NUMBERS, number_of
 
 SEED_7: dict[Any, tuple[str, str]] = {
     "null": (
-        "e69b3355d3d53d16029de96eec0a79616a6fa5a95206335fa0c92beb10af1a5e",
+        "680995530e2076bc924bbd9e3f9dec5e3e60e7e4c1526986722ddb3192664269",
         "2dcb807d5f728766c8161629b7572640ae21136a8d1a68849f12d7e77c60e0e3",
     ),
     "single": (
-        "8c111087ec85dc2a2095a27474ff190cf920beec28b61478c75ea90694d4ceaa",
+        "056e09e468ab7c1db436d39dd49ccf929d2974a13c57bc84f9b2fe9bc2a6d67e",
         "b921ab7af365a951ed28d86d7cbd5efc71cf91c7b05460b96b9826de5e589c6b",
     ),
     "twin": (
-        "7ed752d8bb664fbdd6d95884f796644a8b037fe1e079f9060076636936dbc35b",
+        "0301371a5ab1a600a6cb2f665aae046f2f57b0603b1f18969346b444fd044c98",
         "86d01eb7b96918e70bb5733ef3320e68966e2d728060e44ab03f63666d4eb89e",
     ),
     "multiple": (
-        "0dc8de56a87063b8befa3ae0c0d8d53d51a2805160747e3e96b9a70f42ecf605",
+        "ada0e473d7b56c9bb62046ee60a5433e8b0d331ad584c4ce18dc99040d2268bd",
         "aa46dab6010a4b294d5856cf88ecf28e1a57b189f0d9988f044e90f334a6f810",
     ),
     "outside": (
-        "d4b00eaaccc0084df46c630df3b5b163f48a96c0dd603b47f8267c05ff378565",
+        "e7521d41c584ccc11b3c02ded7281521d823b422bdf536c9ec360e50fa4abda9",
         "80ab62cddb32cc9c644d3acda730b04d2f149760f30d5a641fe17e9375eb2016",
     ),
     "nonlinear": (
-        "6c6174bfbbbdfef5d4e21b2e08cdd11e1b18da811bf07d0822bb85cb5e582fcc",
+        "eb5d2919fe59f7494defd2212e142c281bd4210f11a4d884a92b2fac88e3abad",
         "2233d3ab83b6688fdeb5d313efe121d4f8e603e14cf55835378f28a5fcd74bb7",
     ),
     "graded": (
-        "307afbcbcae930004c664f6f91e8893d35f0783aaf803d97c41f4c11f9cba32d",
+        "284c39455b0df9c5f2e3e9cda58e7d759bf215b613746bc714fef906d40e8652",
         "228541c6c4137a6df24b6a9701e9222c6b58e0b6714b5e508436585d059c0ce2",
     ),
     "sparse": (
-        "78ccb124ec1f14af1026072609b0a9b70fc5a1c1e2ae3578deadddb44ab62301",
+        "375b2f3d23d73aa0a2bd109c80bf163d514066e726b42677f4d28bd8492c65b0",
         "f50de3eb655923e891a35d9a8aa1c5f2d54ba6133b776dbb8aac068e9e66a4b3",
     ),
     "running": (
-        "654226bbd1af8f06971c933305e67e9bda5e0df5abd37c91900805511d098cbb",
+        "e013e9858e8fd1142be20e83fcadceec19bc66d3585a3e24365958f35bab6f40",
         "4b2494df5680ae0c6f6830657328c766f26564b54251524499ea3a599ce5fc4a",
     ),
 }

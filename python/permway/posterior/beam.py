@@ -19,10 +19,10 @@ from permway.diagnosis.side_by_side import each
 from permway.errors import InputError, SolveError
 from permway.posterior.cells import SOMETHING, Cell
 from permway.posterior.estimate import estimated
-from permway.posterior.fit import Fit, Fitter, Model, grown
+from permway.posterior.fit import STRETCH, Fit, Fitter, Model, grown
 from permway.posterior.hyper import Hyper
 from permway.posterior.journal import kept_trials
-from permway.posterior.neighbours import STRETCH, rested
+from permway.posterior.neighbours import rested
 
 STEPS = (4, 8, 8, 20)
 """Of the fit at each discrepancy, and at the end."""

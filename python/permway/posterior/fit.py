@@ -6,6 +6,7 @@ correction; Kass and Raftery (1995), Bayes factors, section 4.1, for Laplace's a
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -15,6 +16,7 @@ from scipy import linalg
 from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.bounded import bounded_step
+from permway.diagnosis.catalogue._interval import spacing_of
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.stacking import stacked
@@ -28,6 +30,12 @@ ENOUGH = 0.1
 
 TRUSTED = 0.9
 """Ratio of a step's gain to the predicted gain from which slopes serve once more."""
+
+STRETCH = ("centre_m", "length_m")
+"""Parameters of what acts over a stretch."""
+
+STEP = 1e-4
+"""Of differences, in standard deviations of a prior."""
 
 CURVED = 0.5
 """The same, below which the step is taken again with the curvature that it met."""
@@ -43,10 +51,13 @@ class Model:
         From values to a campaign.
     free : tuple of Free
         Nominal parameters first.
+    stretches : tuple of (int, int, float)
+        Of each stretch of joints where its centre and its length stand among these, and the joints' spacing, m.
     """
 
     build: Build
     free: tuple[Free, ...]
+    stretches: tuple[tuple[int, int, float], ...] = ()
 
     @property
     def limits(self) -> tuple[Reals, Reals]:
@@ -120,14 +131,33 @@ class Fit:
         return self.roots.times(self.roots) + np.eye(self.z.size)
 
     @cached_property
+    def curvature(self) -> Reals:
+        """The same for Laplace's approximation: a stretch has its joints, and its ends are no freer than these.
+
+        While an end stays between two joints nothing changes (half of their spacing, see
+        :func:`permway.diagnosis.catalogue._interval.weakened`), so that its slope there says nothing of how far it
+        may go.
+        """
+        found = self.normal.copy()
+        for centre, length, spacing_m in self.model.stretches:
+            # Of an end that is evenly likely over half a spacing; the centre is the mean of two, the length their
+            # difference.
+            end = 12.0 / (0.5 * spacing_m) ** 2
+            for index, precision in ((centre, 2.0 * end), (length, 0.5 * end)):
+                free, z = self.model.free[index], float(self.z[index])
+                slope = (free.value(z + STEP) - free.value(z - STEP)) / (2.0 * STEP)
+                found[index, index] = max(found[index, index], 1.0 + precision * slope**2)
+        return found
+
+    @cached_property
     def spread(self) -> Reals:
         """Covariance of z (Laplace)."""
-        return np.asarray(linalg.inv(self.normal)) if self.z.size else np.zeros((0, 0))
+        return np.asarray(linalg.inv(self.curvature)) if self.z.size else np.zeros((0, 0))
 
     @property
     def log_evidence(self) -> float:
         """Laplace's approximation of the marginal likelihood over z, at the most probable hyperparameters."""
-        curvature = float(np.linalg.slogdet(self.normal)[1]) if self.z.size else 0.0
+        curvature = float(np.linalg.slogdet(self.curvature)[1]) if self.z.size else 0.0
         return -0.5 * (self.objective + curvature)
 
     def values(self) -> dict[str, float]:
@@ -160,7 +190,17 @@ def grown(fit: Fit, hypothesis: Hypothesis, prefix: str) -> Model:
 def extended(model: Model, hypothesis: Hypothesis, prefix: str, campaign: Campaign) -> Model:
     """A model with an amendment more; the campaign is that of the nominal parameters."""
     build, free = stacked(model.build, hypothesis, prefix, campaign)
-    return Model(build, (*model.free, *free))
+    return Model(build, (*model.free, *free), (*model.stretches, *_stretch(hypothesis, campaign, len(model.free))))
+
+
+def _stretch(hypothesis: Hypothesis, campaign: Campaign, before: int) -> Iterator[tuple[int, int, float]]:
+    """Of an amendment of a stretch of joints: where centre and length stand among all, and the spacing."""
+    names = [free.name for free in hypothesis.free]
+    if all(name in names for name in STRETCH):
+        what = hypothesis.locate({free.name: free.value(0.0) for free in hypothesis.free}).what
+        if what in campaign.model.line.laws:
+            centre, length = (before + names.index(name) for name in STRETCH)
+            yield centre, length, spacing_of(campaign.model.line, what)
 
 
 class Fitter:
