@@ -8,6 +8,7 @@ from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_factors
 from permway.diagnosis.catalogue._roles import spacing
+from permway.errors import InputError
 from permway.model.line import Line
 
 WHOLE, OUTSIDE = 0.25, 0.75
@@ -17,7 +18,11 @@ WHOLE, OUTSIDE = 0.25, 0.75
 def stations_of(line: Line, law: str) -> Reals:
     """Where the joints of a law are, ascending, m."""
     table = line.joint_table()
-    return np.unique(table.x[table.law == list(line.laws).index(law)])
+    laws = list(line.laws)
+    if law not in laws:
+        # It came with another amendment, which is not there.
+        raise InputError("there is no such law", where="line.laws", value=law, remedy=f"one of {laws}")
+    return np.unique(table.x[table.law == laws.index(law)])
 
 
 def spacing_of(line: Line, law: str) -> float:
