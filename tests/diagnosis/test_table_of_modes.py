@@ -77,7 +77,7 @@ def test_the_posterior_of_one_table_has_no_chains(tmp_path: Path) -> None:
     frame = Frame.of(gather(campaign))
     hyper = frame.first()
     assert frame.chains == ()
-    assert hyper.names == ("discrepancy modes",)
+    assert hyper.names == ("discrepancy modes", "idealisation")
     free = free_parameters(campaign)
     fitter = Fitter(frame)
     fit = fitter.fit(fitter.begin(Model(campaign.with_values, free), np.zeros(3), hyper), steps=20)

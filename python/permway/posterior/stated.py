@@ -71,17 +71,17 @@ def _words(known: Known, deviations: float) -> str:
     share = f"{100.0 * abs(value / known.nominal - 1.0):.0f} % {'below' if value < known.nominal else 'above'} "
     far = share if known.nominal > 0.0 else ""
     return (
-        f"about {_size(value, unit)}, {far}the stated {_size(known.nominal, unit)}, "
+        f"about {_size(value, unit, '#.3g')}, {far}the stated {_size(known.nominal, unit, '.3g')}, "
         f"{abs(deviations):.1f} standard deviations of its tolerance"
     )
 
 
-def _size(value: float, unit: str) -> str:
-    """Three digits and the unit: 21.0 MN/m."""
+def _size(value: float, unit: str, digits: str) -> str:
+    """With the unit: 21.0 MN/m to three digits, and 30 MN/m as it may have been stated."""
     if unit.startswith(PREFIXED):
         for prefix, factor in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
             if abs(value) >= factor:
-                return f"{value / factor:#.3g}".rstrip(".") + f" {prefix}{unit}"
+                return f"{value / factor:{digits}}".rstrip(".") + f" {prefix}{unit}"
     return f"{value:.3g}" + ("" if unit == "1" else f" {unit}")
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from permway.diagnosis.catalogue._relaxing import FORMS, relaxations
 from permway.diagnosis.catalogue._relaxing import PARAMETERS as PARAMETERS
-from permway.diagnosis.catalogue._roles import beds, laws_of, sleepers
+from permway.diagnosis.catalogue._roles import beds, laws_of, rubbers, sleepers
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation
 from permway.laws import Hysteretic
 
@@ -34,8 +34,8 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
 
 
 def everywhere(situation: Situation) -> Iterator[Hypothesis]:
-    """Two for each hysteretic law of any bed: mats below a slab relax, too."""
+    """Two for each hysteretic law of any bed but rubber: mats below a slab relax, too."""
     line = situation.campaign.model.line
     for name in laws_of(beds(line)):
-        if isinstance(line.laws[name], Hysteretic):
+        if name not in rubbers(line) and isinstance(line.laws[name], Hysteretic):
             yield from relaxations(ID, FAMILY, name)
