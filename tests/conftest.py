@@ -77,3 +77,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         mark = next((marks[path] for path in (item.path, *item.path.parents) if path in marks), "quick")
         if item.get_closest_marker("injection") is None:
             item.add_marker(mark)
+    # What takes longest is begun first, so that no worker is left with it at the end.
+    order = ["campaigns", "fits", "long", "programs", "quick"]
+    items.sort(
+        key=lambda item: min((order.index(m.name) for m in item.iter_markers() if m.name in order), default=9)
+    )
