@@ -52,9 +52,9 @@ frequency. Of 80 others (seed 9500001) an older version had 33 of 35 right in a 
 false names, and 31 of 37 names of 0.9 true. A sign that is turned was called a delay, a springpot a damper, and
 scattered pads lost fasteners; such mistakes remain possible. The fixture's seeds were seen while developing.
 
-Of whole campaigns only a few were diagnosed by the second method: `practice-1` to `-4`, one with a wheel polygon
-and one with nothing missing, all rightly and with no other name, in 80 to 320 s of processor. One with two
-near-degenerate effects was stopped after 500 s.
+Of whole campaigns only a few were diagnosed, by older versions of the second method: `practice-1` to `-4`, one
+with a wheel polygon and one with nothing missing, all rightly and with no other name, in 80 to 320 s of processor.
+One with near-degenerate effects was stopped after 500 s.
 """
 
 

@@ -9,6 +9,7 @@ import passages
 import pytest
 import tables_of_modes
 from permway.campaign.campaign import Campaign, read_campaign
+from permway.cli.campaign import _in_words
 from permway.diagnosis.advise import MOST, advise, separation
 from permway.diagnosis.catalogue._change import with_fields
 from permway.diagnosis.catalogue._interval import weakened
@@ -47,6 +48,22 @@ def test_a_lost_fastener_and_a_sensors_gain_are_no_twins(found: Separability) ->
     assert frozenset(("fastener_loss", "sensor_gain")) not in pairs
     said = found.summary()
     assert {row["effect"] for row in said["effects"]} >= {"fastener_loss", "sensor_gain", "deck_attachment"}
+
+
+def test_people_read_effects_by_what_engineers_call_them() -> None:
+    """Of what is seen and of what cannot be separated, as `permway separability` prints both."""
+    alike = np.array([[0.0, 2.0], [2.0, 0.0]])
+    found = Separability(
+        names=("fastener_loss pad", "mortar_void mortar"),
+        entries=("fastener_loss", "mortar_void"),
+        families=("stiffness", "stiffness"),
+        size=("a half", "a half"),
+        seen=np.array([90.0, 80.0]),
+        apart=alike,
+    )
+    summary = _in_words(found.summary())
+    assert summary["inseparable"] == [{"one": "lost fasteners", "other": "void below the slab", "deviance": 2.0}]
+    assert {row["effect"] for row in summary["effects"]} == {"lost fasteners", "void below the slab"}
 
 
 def test_measured_values_play_no_part(case: Simulated, found: Separability, tmp_path: Path) -> None:

@@ -155,7 +155,7 @@ def _in_words(written: Mapping[str, Any]) -> dict[str, Any]:
     from permway.diagnosis.plain_names import name_of
 
     found = dict(written)
-    for key, columns in (("effects", ("name", "effect")), ("not told apart", ("one", "other"))):
+    for key, columns in (("effects", ("name", "effect")), ("inseparable", ("one", "other"))):
         rows = found.get(key, [])
         found[key] = [{k: _name(name_of, v) if k in columns else v for k, v in row.items()} for row in rows]
     if isinstance(found.get("seconds"), Mapping):

@@ -162,7 +162,7 @@ def advanced(
     steps : int
         Of the fit.
     moves : bool
-        Whether each is moved to better neighbours.
+        Whether each is moved to better neighbours, with slopes of its own: for the few that are left.
     progress : callable
         Called with how many are begun.
     """

@@ -90,11 +90,8 @@ class Hyper:
         Where errors of chains took up what is missing, they are smaller once that is modelled; so is the
         idealisation, which then is what it mostly is.
         """
-        kinds = [n for n in self.names if n not in ("length", IDEALISATION) and not n.startswith("discrepancy")]
-        step = np.log(SIZE_FACTOR)
-        found = [
-            self.moved(np.where([n == kind for n in self.names], self.log - step, self.log)) for kind in kinds
-        ]
+        less = self.log - np.log(SIZE_FACTOR)
+        found = [self.moved(np.where([n == kind for n in self.names], less, self.log)) for kind in self._kinds]
         if self[IDEALISATION] > IDEAL:
             found.append(self.moved(np.where([n == IDEALISATION for n in self.names], np.log(IDEAL), self.log)))
         return found

@@ -156,10 +156,10 @@ def _named(
 def _place(name: str, table: Mapping[str, Any], key: str) -> list[str]:
     """Body and place: what the file states, or a question, with what the label seems to say as its answer."""
     x = float(table.get("x_m", 0.0))
-    told = NAMED.fullmatch(name)
-    body, at = (told.group(1), told.group(2)) if told else ("rail", "0.0")
+    match = NAMED.fullmatch(name)
+    body, at = (match.group(1), match.group(2)) if match else ("rail", "0.0")
     on, where = "on which body of the model?", "where on it, m?"
-    if told:
+    if match:
         on, where = f"{on} By its name this one", f"{where} By its name here"
     if key == "sensors":
         on += '. On the vehicle: degree = "car1.wheelset1" and no x_m'

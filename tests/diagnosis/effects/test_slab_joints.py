@@ -77,3 +77,27 @@ def test_joints_that_go_on_from_slab_to_slab_are_no_pattern_of_each(tmp_path: Pa
     assert best.values(0)["length_m"] == pytest.approx(4.8, abs=0.05)
     others = [m for m in found.members if m.amendments and m.amendments[0].variant != "through"]
     assert all(found.gain(best) > found.gain(other) + 10.0 for other in others)
+
+
+def test_a_cut_is_beside_the_sensor_that_it_meets(tmp_path: Path) -> None:
+    """A beam has no place that belongs to two of its pieces: cuts are tried to either side of a sensor there."""
+    model = viaduct(1)
+    table = campaign(model)
+    (sensor,) = [one for one in table["sensors"] if one["body"].startswith("slab")][:1]
+    owner = written(tmp_path / "c", table, model)
+    fit = recalibrate(evidence_of(owner))
+    (slab,) = [s for _, s in owner.model.line.beams() if s.body == "slab"]
+    (cut, *_) = [h for h in entries()["slab_joints"].hypotheses(Situation(fit, ())) if len(h.free) == 2]
+    x = float(sensor["x_m"])
+    ends = []
+    for off in (-1e-4, 1e-4):
+        values = {"length_m": 8.0, "offset": ((x + off - slab.start + 4.0) % 8.0 - 4.0) / 8.0}
+        pieces = cut.amend(owner, values).model.line.bodies["slab"].intervals_m
+        near = [end for end, _ in pieces if abs(end - x) < 0.01]
+        assert len(near) == 1
+        ends += near
+    assert ends == pytest.approx([x - slab_joints.ASIDE_M, x + slab_joints.ASIDE_M], abs=1e-9)
+    # The evidence can be predicted with either.
+    for off in (-1e-4, 1e-4):
+        values = {"length_m": 8.0, "offset": ((x + off - slab.start + 4.0) % 8.0 - 4.0) / 8.0}
+        fit.evidence.predicted(cut.amend(owner, values))
