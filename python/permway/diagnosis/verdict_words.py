@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from html import escape
 
+import numpy as np
+
 from permway.diagnosis.plain_names import chance, ends, estimate, name_of, parameter_of, seen, stated, stretch
 from permway.diagnosis.tolerances import outside
 from permway.diagnosis.verdict import NOVEL, Effect, Estimate, HeldOutGain, Moved, Smallest, Verdict
@@ -192,13 +194,18 @@ def _disbelieved(effect: Effect) -> bool:
 
 
 def _better(verdict: Verdict) -> str:
+    """How much better all records are predicted that were left out, one after the other: root mean squares."""
+    known = [(g.db_before, g.db_after) for g in verdict.held_out.values()]
+    decibels = np.array([(b, a) for b, a in known if b is not None and a is not None]).reshape(-1, 2)
     found = strongest(verdict)
     if found is None:
         return ""
-    before, after = found[1].db_before or 0.0, found[1].db_after or 0.0
+    before, after = np.sqrt(np.mean(decibels**2, axis=0)).tolist()
     if found[1].gain_nats > 0.0 and f"{before:.1f}" == f"{after:.1f}":
         nats = quantity(found[1].gain_nats)
-        return f"held-out records become more probable by {nats} nats, their levels stay within {after:.1f} dB"
+        return (
+            f"held-out records become more probable by up to {nats} nats, their levels stay within {after:.1f} dB"
+        )
     moves = "improves" if after < before else "does not improve:"
     return f"the prediction of held-out records {moves} from {before:.1f} to {after:.1f} dB"
 
