@@ -40,15 +40,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("campaign", type=Path)
     campaign = read_campaign(parser.parse_args().campaign)
-    evidence = gather(campaign, predictable(campaign).kept, threads=1)
+    observations = gather(campaign, predictable(campaign).kept, threads=1)
     free = free_parameters(campaign)
-    problem = Problem(evidence, campaign.with_values, free)
+    problem = Problem(observations, campaign.with_values, free)
     state = problem.at(np.zeros(len(free)))
     assert state is not None
     parts: dict[str, Callable[[], object]] = {
-        "all records predicted": lambda: evidence.predicted(campaign),
-        "calibration errors taken out": lambda: evidence.whitener.reduce(state.residuals),
-        "their factors": lambda: Whitener.of(evidence.columns, evidence.sizes, evidence.length),
+        "all records predicted": lambda: observations.predicted(campaign),
+        "calibration errors taken out": lambda: observations.whitener.reduce(state.residuals),
+        "their factors": lambda: Whitener.of(observations.columns, observations.sizes, observations.length),
         f"slopes by {len(free)} parameters": lambda: problem.jacobian(state),
     }
     for name, work in parts.items():

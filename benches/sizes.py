@@ -106,8 +106,8 @@ def prediction(size: Size) -> Callable[[], object]:
     """All records predicted."""
     with tempfile.TemporaryDirectory() as folder:
         read = campaign(size, Path(folder))
-        evidence = gather(read, threads=1)
-    return lambda: evidence.predicted(read)
+        observations = gather(read, threads=1)
+    return lambda: observations.predicted(read)
 
 
 WORK: dict[str, Callable[[Size], Callable[[], object]]] = {"receptance": sweep, "prediction": prediction}

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue import entries
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
+from permway.diagnosis.observations import Observations
 from permway.posterior.beam import Member
 from permway.posterior.cells import BESIDE
 from permway.posterior.covariance import Frame
@@ -44,20 +44,20 @@ class Searched:
         return 0.0 if member is None else member.fit.log_evidence - self.empty.fit.log_evidence
 
 
-def searched(evidence: Evidence, *names: str) -> Searched:
+def searched(observations: Observations, *names: str) -> Searched:
     """Search for some entries of the catalogue, each at all its places."""
     others = [name for name in (*entries(), *BESIDE) if name not in names]
-    return Searched(explored(Fitter(Frame.of(evidence)), ruled_out=others).members)
+    return Searched(explored(Fitter(Frame.of(observations)), ruled_out=others).members)
 
 
-def recalibrated_base(evidence: Evidence) -> Fit:
+def recalibrated_base(observations: Observations) -> Fit:
     """The empty set's fit in the form that reports draw."""
-    return as_base(recalibrated(evidence))
+    return as_base(recalibrated(observations))
 
 
-def weighed_by(evidence: Evidence, campaign: Campaign) -> Evidence:
+def weighed_by(observations: Observations, campaign: Campaign) -> Observations:
     """Records weighed by what a campaign predicts of them."""
-    frame = Frame.of(evidence)
-    solved = frame.evidence.predicted(campaign)
-    residuals = frame.evidence.residuals(solved.datasets)
-    return frame.about(solved, frame.covariance(frame.first()), residuals).evidence
+    frame = Frame.of(observations)
+    solved = frame.observations.predicted(campaign)
+    residuals = frame.observations.residuals(solved.datasets)
+    return frame.about(solved, frame.covariance(frame.first()), residuals).observations

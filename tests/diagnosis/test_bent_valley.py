@@ -23,7 +23,7 @@ DENSITY = log_free("density", "kg/m3", 2500.0, 1.05)
 
 def _foretold(fit: Fit) -> float:
     """What one step by the slopes at the end would lower the objective by."""
-    whitener = fit.evidence.whitener
+    whitener = fit.observations.whitener
     inner = whitener.reduce(fit.jacobian).T @ whitener.reduce(fit.residuals)
     slope = (fit.jacobian.T @ fit.residuals - inner) / fit.inflation + fit.z
     return float(slope @ fit.covariance @ slope)
@@ -32,7 +32,7 @@ def _foretold(fit: Fit) -> float:
 @pytest.mark.parametrize("noise", [0.01, 0.001])
 def test_all_starts_lead_to_the_same_place(tmp_path: Path, noise: float) -> None:
     campaign = simulate(tmp_path / "c", 8, noise=noise, smooth=0.0).campaign
-    evidence = gather(campaign, threads=1)
+    observations = gather(campaign, threads=1)
     free = (*free_parameters(campaign), MORE, DENSITY)
 
     def build(values: Mapping[str, float]) -> Campaign:
@@ -43,9 +43,9 @@ def test_all_starts_lead_to_the_same_place(tmp_path: Path, noise: float) -> None
         dense = values["density"] + values["more"] / deck.area_m2
         return with_fields(made, "deck", density_kg_per_m3=dense)
 
-    begun = recalibrate(evidence).z
+    begun = recalibrate(observations).z
     fits = [
-        recalibrate(evidence, build=build, free=free, start=np.array([*begun, *z]))
+        recalibrate(observations, build=build, free=free, start=np.array([*begun, *z]))
         for z in ((-6.0, -0.1), (-4.0, 0.0), (0.0, -1.6), (2.0, -1.0))
     ]
     for fit in fits:

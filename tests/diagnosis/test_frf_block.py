@@ -36,9 +36,9 @@ def lines(tmp_path_factory: pytest.TempPathFactory) -> Lines:
 
 def _noisy(folder: Path, seed: int) -> Lines:
     made = simulate(folder, seed, noise=NOISE, smooth=0.0)
-    evidence = gather(made.campaign.with_values(made.truth), threads=1)
-    solved = evidence.predicted(evidence.campaign)
-    block = evidence.blocks[0]
+    observations = gather(made.campaign.with_values(made.truth), threads=1)
+    solved = observations.predicted(observations.campaign)
+    block = observations.blocks[0]
     assert isinstance(block, FrfBlock)
     block = block.with_reference(solved.datasets[0], np.zeros(block.measured.shape, dtype=np.complex128))
     block = block.with_pair(NO_ERROR).with_floor(NO_ERROR)
@@ -75,9 +75,9 @@ def test_a_large_error_of_a_chain_is_the_same_where_noise_hides_the_response(tmp
     pulls = []
     for seed in range(40):
         made = simulate(tmp_path / str(seed), seed, noise=3.0, smooth=0.0, amend=weak)
-        evidence = gather(made.campaign.with_values(made.truth), threads=1)
-        solved = evidence.predicted(evidence.campaign)
-        plain = evidence.blocks[0]
+        observations = gather(made.campaign.with_values(made.truth), threads=1)
+        solved = observations.predicted(observations.campaign)
+        plain = observations.blocks[0]
         assert isinstance(plain, FrfBlock)
         model = solved.datasets[0]["frf"].values[1]
         hidden = plain.sigma[1] > 0.4 * np.abs(model)
@@ -100,10 +100,10 @@ def test_what_smooth_errors_undo_leaves_nothing_where_noise_hides_the_response(
 ) -> None:
     """A delay, or a gain, that errors of a chain take back, beside an error of a chain of 2.4 dB and 0.1 rad."""
     made = simulate(tmp_path, 3, noise=3.0, smooth=0.0)
-    evidence = gather(made.campaign.with_values(made.truth), threads=1)
-    solved = evidence.predicted(evidence.campaign).datasets[0]
+    observations = gather(made.campaign.with_values(made.truth), threads=1)
+    solved = observations.predicted(observations.campaign).datasets[0]
     errors = np.full((2, 3, 1), 0.276 + 0.1j)
-    block = evidence.blocks[0].with_reference(solved, errors)
+    block = observations.blocks[0].with_reference(solved, errors)
     assert isinstance(block, FrfBlock)
     hidden = block._hidden
     assert hidden.mean() > 0.3

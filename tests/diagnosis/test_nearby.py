@@ -11,18 +11,18 @@ from permway.campaign.campaign import Campaign
 from permway.campaign.parameters import Parameter
 from permway.campaign.values import ParameterSet
 from permway.diagnosis.blocks import Basis
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather
 from permway.diagnosis.nearby import Nearby
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.tangent import STEP, Problem
 from simulated import simulate
 
 
-def _problem(evidence: Evidence) -> Problem:
-    campaign = evidence.campaign
-    return Problem(evidence, campaign.with_values, free_parameters(campaign))
+def _problem(observations: Observations) -> Problem:
+    campaign = observations.campaign
+    return Problem(observations, campaign.with_values, free_parameters(campaign))
 
 
 @pytest.mark.parametrize("kind", ["hammer", "train"])
@@ -30,15 +30,15 @@ def test_slopes_are_those_of_solves(tmp_path: Path, kind: str) -> None:
     """Every parameter of laws and bodies, at random values: to what a forward difference leaves."""
     if kind == "hammer":
         campaign = simulate(tmp_path / "c", 5).campaign
-        evidence = gather(campaign, threads=1)
+        observations = gather(campaign, threads=1)
     else:
         campaign = campaign_in(tmp_path)
-        evidence = gather(campaign, drawn(campaign, 3), threads=1)
-    problem = _problem(evidence)
+        observations = gather(campaign, drawn(campaign, 3), threads=1)
+    problem = _problem(observations)
     z = np.random.default_rng(8).uniform(-0.5, 0.5, len(problem.free))
     state = problem.at(z)
     assert state is not None
-    nearby, spared = Nearby(evidence, state.solved), 0
+    nearby, spared = Nearby(observations, state.solved), 0
     for index, free in enumerate(problem.free):
         moved = z.copy()
         moved[index] += STEP
@@ -47,7 +47,7 @@ def test_slopes_are_those_of_solves(tmp_path: Path, kind: str) -> None:
         if found is None:
             continue
         spared += 1
-        slope = (evidence.residuals(found.datasets) - state.residuals) / STEP
+        slope = (observations.residuals(found.datasets) - state.residuals) / STEP
         solved = (problem.residuals(moved)[0] - state.residuals) / STEP
         assert np.linalg.norm(slope - solved) < 5e-3 * np.linalg.norm(solved), free.name
     assert spared >= len(problem.free) // 2
@@ -55,12 +55,12 @@ def test_slopes_are_those_of_solves(tmp_path: Path, kind: str) -> None:
 
 def test_a_line_of_another_shape_is_solved(tmp_path: Path) -> None:
     campaign: Campaign = simulate(tmp_path / "c", 1).campaign
-    evidence = gather(campaign, threads=1)
-    solved = evidence.predicted(campaign)
+    observations = gather(campaign, threads=1)
+    solved = observations.predicted(campaign)
     model = campaign.model
     joints = (*model.line.joints, model.line.joints[-1].model_copy(update={"scale": 0.5}))
     other = model.model_copy(update={"line": model.line.model_copy(update={"joints": joints})})
-    assert Nearby(evidence, solved).predicted(campaign.with_model(other)) is None
+    assert Nearby(observations, solved).predicted(campaign.with_model(other)) is None
 
 
 @pytest.mark.parametrize("per_octave", [1.0, 2.0, 3.0])
@@ -87,8 +87,8 @@ def test_a_speed_noted_wrongly_is_found(tmp_path: Path) -> None:
     owner = Campaign(said, owner.model, owner.folder, parameters)
     noted = owner.condition("fast").speed_m_per_s
     assert noted is not None
-    evidence = gather(owner, drawn(owner.with_values({"speed.fast": 0.996 * noted}), 6), threads=1)
-    fit = recalibrate(evidence)
+    observations = gather(owner, drawn(owner.with_values({"speed.fast": 0.996 * noted}), 6), threads=1)
+    fit = recalibrate(observations)
     low, high = fit.intervals()["speed.fast"]
     assert fit.values()["speed.fast"] == pytest.approx(0.996 * noted, rel=5e-4)
     assert 0.5 * (high - low) < 5e-4 * noted
@@ -96,12 +96,12 @@ def test_a_speed_noted_wrongly_is_found(tmp_path: Path) -> None:
 
 def test_a_share_at_all_frequencies_is_a_parameter_moved(tmp_path: Path) -> None:
     campaign: Campaign = simulate(tmp_path / "c", 3).campaign
-    evidence = gather(campaign, threads=1)
-    plain = evidence.predicted(campaign)
-    nearby, values = Nearby(evidence, plain), campaign.parameters.nominal()
+    observations = gather(campaign, threads=1)
+    plain = observations.predicted(campaign)
+    nearby, values = Nearby(observations, plain), campaign.parameters.nominal()
     for name, part, index in (("pad.k", "law", 0), ("bearing.k", "law", 1), ("deck.E", "bending", 1)):
         bent = nearby.perturbed(part, [index], lambda frequency: np.full(frequency.size, 1e-5))  # type: ignore[arg-type]
         assert bent is not None
-        solved = evidence.predicted(campaign.with_values({**values, name: values[name] * (1.0 + 1e-5)}))
+        solved = observations.predicted(campaign.with_values({**values, name: values[name] * (1.0 + 1e-5)}))
         found, right = (s.datasets[0]["frf"].values - plain.datasets[0]["frf"].values for s in (bent, solved))
         assert np.linalg.norm(found - right) < 1e-3 * np.linalg.norm(right), name

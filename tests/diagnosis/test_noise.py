@@ -12,8 +12,8 @@ from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.predict import predict
 from permway.challenge.errors_of_measurement import struck
 from permway.diagnosis.blocks_noise import FEWEST, NoiseBlock
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.recalibrate import recalibrate
 from permway.laws.toml import to_toml
 from scipy import stats
@@ -49,16 +49,16 @@ def campaign(folder: Path, seed: int, ratio: float) -> Campaign:
     return read_campaign(folder / "campaign.toml")
 
 
-def blocks_of(evidence: Evidence) -> list[NoiseBlock]:
-    return [block for block in evidence.blocks if isinstance(block, NoiseBlock)]
+def blocks_of(observations: Observations) -> list[NoiseBlock]:
+    return [block for block in observations.blocks if isinstance(block, NoiseBlock)]
 
 
 @pytest.fixture(scope="module", params=[1, 2, 3])
 def noisy(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[NoiseBlock, Searched]:
     """One sensor has 200 times the others' noise: its block, and what a search for such sensors comes to."""
-    evidence = gather(campaign(tmp_path_factory.mktemp("noisy"), request.param, 200.0))
-    (block,) = blocks_of(evidence)
-    return block, searched(evidence, "noise_floor")
+    observations = gather(campaign(tmp_path_factory.mktemp("noisy"), request.param, 200.0))
+    (block,) = blocks_of(observations)
+    return block, searched(observations, "noise_floor")
 
 
 def test_a_noisy_sensor_is_named_and_by_how_much(noisy: tuple[NoiseBlock, Searched]) -> None:
@@ -93,14 +93,14 @@ def test_sensors_that_differ_as_sensors_do_are_not_called_noisy(tmp_path: Path, 
 
 
 def test_noise_moves_no_response_and_is_no_record_of_its_own(tmp_path: Path) -> None:
-    evidence = gather(campaign(tmp_path, 4, 1.0))
-    assert [evidence.blocks[i].dataset.record.statistic for i in evidence.records] == ["frf"]
-    (block,) = blocks_of(evidence)
-    fit = recalibrate(evidence)
+    observations = gather(campaign(tmp_path, 4, 1.0))
+    assert [observations.blocks[i].dataset.record.statistic for i in observations.records] == ["frf"]
+    (block,) = blocks_of(observations)
+    fit = recalibrate(observations)
     # The columns of noise are of a known size: nothing is estimated of them.
     fixed = {o.name for o in block.calibration.sources}
-    assert {fit.evidence.sizes[name] for name in fixed} == {1.0}
-    mine = fit.evidence.block_of == fit.evidence.blocks.index(fit.evidence.blocks[-1])
+    assert {fit.observations.sizes[name] for name in fixed} == {1.0}
+    mine = fit.observations.block_of == fit.observations.blocks.index(fit.observations.blocks[-1])
     assert not fit.jacobian[mine].any()
 
 

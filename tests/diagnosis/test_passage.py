@@ -46,7 +46,7 @@ def fitted(campaign: Campaign, datasets: list[Dataset]) -> Fit:
     """The nominal model alone, as the posterior's search begins."""
     free = free_parameters(campaign)
     frame = Frame.of(gather(campaign, datasets, threads=1))
-    z = begin(frame.evidence, Problem(frame.evidence, campaign.with_values, free))
+    z = begin(frame.observations, Problem(frame.observations, campaign.with_values, free))
     fitter = Fitter(frame)
     fit = fitter.begin(Model(campaign.with_values, free), z, frame.first())
     for level in (1.0, 0.2, 0.04):

@@ -13,9 +13,9 @@ from permway.campaign.campaign import Campaign
 from permway.campaign.importers.sheet import import_sheet
 from permway.campaign.load import Dataset
 from permway.diagnosis.compare import CLEAN, RAW, RECALIBRATED, Comparison, assemble
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.gather import gather
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.residuals import channel_rms, lag_correlation
 from permway.laws import FractionalKelvinVoigt
 from scipy import stats
@@ -31,17 +31,17 @@ needs_shared = pytest.mark.skipif(
 
 
 @pytest.fixture(scope="module")
-def cases(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[Simulated, Evidence, Fit]]:
+def cases(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[Simulated, Observations, Fit]]:
     folder = tmp_path_factory.mktemp("simulated")
     found = []
     for seed in range(CASES):
         made = simulate(folder / str(seed), seed)
-        evidence = gather(made.campaign, threads=1)
-        found.append((made, evidence, recalibrated_base(evidence)))
+        observations = gather(made.campaign, threads=1)
+        found.append((made, observations, recalibrated_base(observations)))
     return found
 
 
-def test_intervals_hold_the_truth(cases: list[tuple[Simulated, Evidence, Fit]]) -> None:
+def test_intervals_hold_the_truth(cases: list[tuple[Simulated, Observations, Fit]]) -> None:
     """Truths are drawn from the priors, so 90 % intervals hold 90 % of them, parameters and cases alike."""
     held = []
     for made, _, fit in cases:
@@ -53,23 +53,25 @@ def test_intervals_hold_the_truth(cases: list[tuple[Simulated, Evidence, Fit]]) 
     assert np.mean(held) >= fewest
 
 
-def test_the_records_say_much_more_than_the_priors(cases: list[tuple[Simulated, Evidence, Fit]]) -> None:
+def test_the_records_say_much_more_than_the_priors(cases: list[tuple[Simulated, Observations, Fit]]) -> None:
     for _, _, fit in cases:
         assert (np.sqrt(np.diag(fit.covariance)) < 0.25).all()
 
 
-def test_the_owners_values_deviate_and_the_found_ones_do_not(cases: list[tuple[Simulated, Evidence, Fit]]) -> None:
-    for _, evidence, fit in cases:
-        (row,) = assemble(evidence, fit).fits()
+def test_the_owners_values_deviate_and_the_found_ones_do_not(
+    cases: list[tuple[Simulated, Observations, Fit]],
+) -> None:
+    for _, observations, fit in cases:
+        (row,) = assemble(observations, fit).fits()
         assert row["raw_dB_rms"] > 2.0 * row["recalibrated_dB_rms"]
         assert row["raw_within_2_sigma"] < 0.6
         # Gains of 0.02 neper, of sensor and of point, are 0.25 dB.
         assert row["recalibrated_dB_rms"] < np.hypot(0.25, row["noise_dB_rms"]) * 1.5
 
 
-def test_what_is_left_is_as_large_as_the_noise(cases: list[tuple[Simulated, Evidence, Fit]]) -> None:
+def test_what_is_left_is_as_large_as_the_noise(cases: list[tuple[Simulated, Observations, Fit]]) -> None:
     for made, _, fit in cases:
-        (block,) = fit.evidence.blocks
+        (block,) = fit.observations.blocks
         rows = block.rows
         modulus = np.abs(block.measured)
         sigma = rows.scale_dB[: modulus.size].reshape(modulus.shape) / 8.686 * modulus
@@ -84,13 +86,13 @@ def test_what_is_left_is_as_large_as_the_noise(cases: list[tuple[Simulated, Evid
 
 
 def assemble_one(fit: Fit) -> Any:
-    (residuals,) = assemble(fit.evidence, fit).residuals
+    (residuals,) = assemble(fit.observations, fit).residuals
     return residuals
 
 
-def test_what_is_left_knows_nothing_of_its_neighbours(cases: list[tuple[Simulated, Evidence, Fit]]) -> None:
-    for _, evidence, fit in cases:
-        z = assemble(evidence, fit).residuals[0]["z"]
+def test_what_is_left_knows_nothing_of_its_neighbours(cases: list[tuple[Simulated, Observations, Fit]]) -> None:
+    for _, observations, fit in cases:
+        z = assemble(observations, fit).residuals[0]["z"]
         left = lag_correlation(z.sel(model=CLEAN), lags=4)
         # Of 160 correlations one in ten thousand would be beyond 4 standard deviations; splines that are taken out
         # (a part in seven) leave neighbours alike in the opposite sense by as much.
@@ -105,8 +107,8 @@ def test_what_is_left_knows_nothing_of_its_neighbours(cases: list[tuple[Simulate
 def test_nothing_is_learnt_of_what_no_record_sees(tmp_path: Path) -> None:
     """With noise far above every resonance the priors stay as they were, and are said not to be informed."""
     made = simulate(tmp_path / "loud", 3, noise=5000.0)
-    evidence = gather(made.campaign, threads=1)
-    found = assemble(evidence, recalibrated_base(evidence))
+    observations = gather(made.campaign, threads=1)
+    found = assemble(observations, recalibrated_base(observations))
     assert (found.parameters["sigma_over_prior"].values <= 1.0 + 1e-9).all()
     assert found.parameters["not_informed"].values.all()
     assert not found.parameters["left"].values.any()
@@ -169,8 +171,8 @@ def check_practice(found: Comparison) -> None:
 @needs_shared
 def test_practice_2_after_recalibration(tmp_path: Path) -> None:
     campaign, datasets, _ = practice("practice-2", tmp_path)
-    evidence = gather(campaign, datasets, threads=1)
-    found = assemble(evidence, recalibrated_base(evidence))
+    observations = gather(campaign, datasets, threads=1)
+    found = assemble(observations, recalibrated_base(observations))
     check_practice(found)
     assert not found.parameters["left"].values.any()
 
@@ -179,5 +181,5 @@ def test_practice_2_after_recalibration(tmp_path: Path) -> None:
 def test_practice_1_with_its_true_amendment(tmp_path: Path) -> None:
     campaign, datasets, truth = practice("practice-1", tmp_path)
     told = amended(campaign, truth)
-    evidence = gather(told, datasets, threads=1)
-    check_practice(assemble(evidence, recalibrated_base(evidence)))
+    observations = gather(told, datasets, threads=1)
+    check_practice(assemble(observations, recalibrated_base(observations)))

@@ -76,7 +76,7 @@ def test_measured_values_play_no_part(case: Simulated, found: Separability, tmp_
 def test_more_blows_and_more_sensors_separate_more(case: Simulated) -> None:
     base = recalibrate(gather(case.campaign, threads=1))
     right = type(base)(**{**vars(base), "campaign": weakened(base.campaign, "pad", 7.5, 0.6, 0.3)})
-    items = {item.words: separation(item, right, base) for item in menu(case.campaign, base.evidence.datasets)}
+    items = {item.words: separation(item, right, base) for item in menu(case.campaign, base.observations.datasets)}
     assert all(value >= 0.0 for value in items.values())
     again = next(value for words, value in items.items() if words.endswith("4 times the blows"))
     one = max(value for words, value in items.items() if words.startswith("a sensor"))
@@ -84,7 +84,7 @@ def test_more_blows_and_more_sensors_separate_more(case: Simulated) -> None:
     # All sensors and points again say more than one sensor more.
     assert again > one
     same = type(base)(**vars(base))
-    assert all(separation(item, same, base) < 1e-6 for item in menu(case.campaign, base.evidence.datasets))
+    assert all(separation(item, same, base) < 1e-6 for item in menu(case.campaign, base.observations.datasets))
 
 
 def test_of_a_suspicion_it_is_said_what_would_make_sure(case: Simulated) -> None:
@@ -117,7 +117,7 @@ def test_passages_and_modes_have_a_menu_that_separates(bridge: Campaign) -> None
     base = recalibrate(gather(bridge, threads=1))
     cracked = BeamChange(from_m=8.0, to_m=10.0, bending_factor=0.85)
     right = type(base)(**{**vars(base), "campaign": with_fields(base.campaign, "deck", changes=(cracked,))})
-    items = list(menu(bridge, base.evidence.datasets))
+    items = list(menu(bridge, base.observations.datasets))
     assert {item.kind for item in items} in ({"speed", "repeat", "sensor"}, {"repeat"})
     assert all(separation(item, right, base) > 10.0 for item in items)
     assert all(separation(item, type(base)(**vars(base)), base) < 1e-6 for item in items)

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._relaxing import relaxing
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.side_by_side import each, one_thread_of_blas
 from permway.diagnosis.tangent import Problem
 from permway.errors import InputError, SolveError
@@ -142,9 +142,9 @@ def _softer(campaign: Campaign) -> Campaign:
     return relaxing(campaign, "pad", stiffness_factor=1.0, order=0.3, share=0.5, rest=1.0)
 
 
-def _slopes(evidence: Evidence) -> np.ndarray:
-    campaign = evidence.campaign
-    problem = Problem(evidence, campaign.with_values, free_parameters(campaign))
+def _slopes(observations: Observations) -> np.ndarray:
+    campaign = observations.campaign
+    problem = Problem(observations, campaign.with_values, free_parameters(campaign))
     state = problem.at(np.zeros(len(problem.free)))
     assert state is not None
     return problem.jacobian(state)

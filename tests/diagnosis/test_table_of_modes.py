@@ -32,10 +32,10 @@ def with_absorber(model: dict) -> None:
 
 def test_residuals_are_logarithms_over_their_standard_deviations(tmp_path: Path) -> None:
     campaign = read_campaign(tables.write(tmp_path, tables.rows_of(tables.changed(stiffer))))
-    evidence = gather(campaign)
-    (block,) = evidence.blocks
+    observations = gather(campaign)
+    (block,) = observations.blocks
     measured = block.dataset.data["modes"].values
-    (predicted,) = evidence.predicted(campaign).datasets
+    (predicted,) = observations.predicted(campaign).datasets
     expected = np.log(measured / predicted["modes"].values) / [[tables.SD], [tables.SD_DAMPING]]
     assert block.residuals(predicted) == pytest.approx(expected.reshape(-1), rel=1e-6)
     assert block.levels_dB(predicted) == pytest.approx(block.residuals(predicted) * block.rows.scale_dB)
@@ -57,8 +57,8 @@ def test_recalibration_finds_the_parameters(tmp_path: Path) -> None:
 def test_both_methods_have_the_same_slopes_of_modes(tmp_path: Path) -> None:
     """Derivatives of receptances would give double poles; what is used agrees with solves far apart."""
     campaign = read_campaign(tables.write(tmp_path, tables.rows_of(tables.changed(stiffer))))
-    evidence = gather(campaign)
-    problem = Problem(evidence, campaign.with_values, free_parameters(campaign))
+    observations = gather(campaign)
+    problem = Problem(observations, campaign.with_values, free_parameters(campaign))
     state = problem.at(np.zeros(3))
     assert state is not None
     found = problem.jacobian(state)
@@ -92,9 +92,9 @@ def test_a_missed_mode_is_said_and_costs(tmp_path: Path) -> None:
     result = compare(campaign, raw_only=True)
     (missed,) = result.summary()["missed"]
     assert "no mode within a factor of 1.5 of 6.24515" in missed
-    evidence = gather(campaign)
-    solved = evidence.predicted(campaign)
-    off = evidence.residuals(solved.datasets)
+    observations = gather(campaign)
+    solved = observations.predicted(campaign)
+    off = observations.residuals(solved.datasets)
     assert np.isfinite(off).all()
     assert off.max() == pytest.approx(np.log(1.5) / tables.SD, rel=1e-6)
 
@@ -115,8 +115,8 @@ def test_damping_needs_a_damped_model(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="has no damping"):
         gather(read_campaign(path))
     bare = [",".join(row.split(",")[:2]) for row in rows]
-    evidence = gather(
+    observations = gather(
         read_campaign(tables.write(tmp_path / "b", bare, model=tables.changed(undamped), free=False))
     )
-    (block,) = evidence.blocks
+    (block,) = observations.blocks
     assert block.rows.channel.tolist() == ["natural frequency"] * (len(rows) - 1)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from permway.diagnosis.fit import free_parameters
-from permway.diagnosis.gather import evidence_of, gather
+from permway.diagnosis.gather import gather, observations_of
 from permway.posterior.covariance import Frame
 from permway.posterior.fit import Fitter, Model
 from permway.posterior.held_out import gains
@@ -26,7 +26,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Frame:
     campaign = written(tmp_path_factory.mktemp("t"), *tables(cold=False))
     datasets = measured(campaign, 5)
     like = gather(campaign, datasets, threads=1)
-    return Frame.of(evidence_of(campaign, datasets, like))
+    return Frame.of(observations_of(campaign, datasets, like))
 
 
 def dense(frame: Frame, hyper: Hyper) -> np.ndarray:
@@ -109,5 +109,5 @@ def test_what_a_fit_gains_of_held_out_rows_is_a_ratio_of_gaussian_densities(tmp_
             left @ np.linalg.solve(inner, left) + np.linalg.slogdet(inner)[1] + out.sum() * np.log(2.0 * np.pi)
         )
 
-    out = fitter.frame.evidence.rows.sensor == "deck@3"
+    out = fitter.frame.observations.rows.sensor == "deck@3"
     assert found["sensor deck@3"] == pytest.approx(conditional(fit, out) - conditional(start, out), rel=1e-4)

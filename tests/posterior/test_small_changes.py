@@ -26,7 +26,7 @@ def fitted(folder: Path, seed: int, index: int) -> Fit:
 def norm(fit: Fit, cell: Cell) -> float:
     """Of what a cell changes in the residuals."""
     model = grown(fit, cell.hypothesis, "1.")
-    state = Problem(fit.frame.evidence, model.build, model.free).at(np.concatenate([fit.z, cell.z]))
+    state = Problem(fit.frame.observations, model.build, model.free).at(np.concatenate([fit.z, cell.z]))
     assert state is not None
     return float(np.sqrt(fit.covariance.square(state.residuals - fit.state.residuals)))
 

@@ -80,7 +80,7 @@ def test_two_wrong_values_are_not_errors_of_a_chain(tmp_path: Path) -> None:
     assert model.damping == pytest.approx(TRUE["damping"], rel=0.1)
     for index, amendment in enumerate(best.amendments):
         # Words, verdict and amended model state one number.
-        known = best.fit.frame.evidence.campaign.parameters.known[amendment.moves]
+        known = best.fit.frame.observations.campaign.parameters.known[amendment.moves]
         whole = known.value(best.values(index)["deviations"])
         assert whole == pytest.approx(getattr(model, amendment.moves), rel=1e-9)
     # The gain of the force counts as an error of its chain, and the stiffness bears a part of it.

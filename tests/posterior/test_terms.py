@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from permway.diagnosis.blocks_spectra import SpectraBlock
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import free_parameters
-from permway.diagnosis.gather import evidence_of, gather
+from permway.diagnosis.gather import gather, observations_of
+from permway.diagnosis.observations import Observations
 from permway.posterior.covariance import UNSHARED, Frame
 from permway.posterior.fit import Fitter, Model
 from permway.posterior.hyper import IDEALISATION
@@ -26,12 +26,12 @@ def test_idealisation_is_a_stiffness_that_is_off_at_each_frequency(tmp_path: Pat
     fitter = Fitter(Frame.of(gather(campaign, threads=1)))
     model = Model(campaign.with_values, free_parameters(campaign))
     fit = fitter.begin(model, np.zeros(len(model.free)), fitter.frame.first())
-    evidence = fitter.frame.evidence
-    octaves = np.log2(evidence.rows.frequency_Hz)
+    observations = fitter.frame.observations
+    octaves = np.log2(observations.rows.frequency_Hz)
     x = (2.0 * octaves - octaves.min() - octaves.max()) / (octaves.max() - octaves.min())
     values = {f.name: f.value(0.0) for f in model.free}
     moved = campaign.with_values(values | {name: values[name] * (1.0 + 0.01 * LARGEST)})
-    change = 100.0 * (evidence.residuals(evidence.predicted(moved).datasets) - fit.state.residuals)
+    change = 100.0 * (observations.residuals(observations.predicted(moved).datasets) - fit.state.residuals)
     expected = np.where(fitter.frame.statistic == "frf", change * x**power, 0.0)
     columns = LARGEST * idealised(fit)
     roots = fit.covariance.roots(columns)
@@ -65,8 +65,8 @@ def test_what_channels_do_not_share_is_one_error_of_a_run(tmp_path: Path) -> Non
     """The column is what incoherent power that is 5 % larger does to the residuals, and nothing else."""
     campaign = written(tmp_path, *tables(cold=False))
     datasets = measured(campaign, 5)
-    evidence: Evidence = evidence_of(campaign, datasets, gather(campaign, datasets, threads=1))
-    block = next(b for b in evidence.blocks if isinstance(b, SpectraBlock))
+    observations: Observations = observations_of(campaign, datasets, gather(campaign, datasets, threads=1))
+    block = next(b for b in observations.blocks if isinstance(b, SpectraBlock))
     rest = np.array([" rest " in label for label in block.rows.channel])
     column = UNSHARED * block.unshared
     assert rest.any()

@@ -11,7 +11,7 @@ from campaigns import tables, write
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.factors import campaign_under
 from permway.campaign.predict import plan, predict, request_of
-from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.observations import Observations
 from permway.errors import InputError
 from test_campaign_predict import FREQUENCY, blows, run
 
@@ -63,9 +63,9 @@ def test_what_was_solved_is_used_again_where_nothing_changed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     plain = with_factors(tmp_path / "a")
-    evidence = Evidence(plain, tuple(Datasets(d) for d in (blows(plain), run(plain))), {}, 1)  # type: ignore[misc]
-    solved = evidence.predicted(plain)
-    from permway.diagnosis import evidence as module
+    observations = Observations(plain, tuple(Datasets(d) for d in (blows(plain), run(plain))), {}, 1)  # type: ignore[misc]
+    solved = observations.predicted(plain)
+    from permway.diagnosis import observations as module
 
     calls = []
     original = module.solve
@@ -76,9 +76,9 @@ def test_what_was_solved_is_used_again_where_nothing_changed(
 
     monkeypatch.setattr(module, "solve", counted)
     changed = with_factors(tmp_path / "b", fast={PAD: 1.5})
-    again = evidence.predicted(replace(plain, stated=changed.stated), solved)
+    again = observations.predicted(replace(plain, stated=changed.stated), solved)
     assert len(calls) == 1
-    fresh = evidence.predicted(changed)
+    fresh = observations.predicted(changed)
     for mine, other in zip(again.datasets, fresh.datasets, strict=True):
         for name in mine:
             assert mine[name].values == pytest.approx(other[name].values, rel=1e-9, abs=1e-30)

@@ -63,9 +63,9 @@ def lost(campaign: Campaign) -> Campaign:
 def diagnosis(tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
     """Two fasteners lost, found and put into the model."""
     campaign = simulate(tmp_path_factory.mktemp("page") / "c", 3, amend=lost).campaign
-    evidence = gather(campaign, threads=1)
-    base = recalibrate(evidence)
-    amended = recalibrate(evidence, build=lambda values: lost(campaign.with_values(values)))
+    observations = gather(campaign, threads=1)
+    base = recalibrate(observations)
+    amended = recalibrate(observations, build=lambda values: lost(campaign.with_values(values)))
     place = Where("pad", (7.2, 7.8))
     effect = Effect(
         domain="path",
@@ -108,8 +108,8 @@ def diagnosis(tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
         verdict=verdict,
         base=base,
         amended=amended,
-        comparison=assemble(evidence, base, left_out={"run 7": "the speed is not known"}),
-        after=assemble(evidence, amended),
+        comparison=assemble(observations, base, left_out={"run 7": "the speed is not known"}),
+        after=assemble(observations, amended),
         seconds={"recalibrate": 1.5},
         weighed=weighed,
     )

@@ -11,7 +11,7 @@ from permway.arrays import Reals
 from permway.campaign.predict import predict
 from permway.diagnosis.clock import Progress
 from permway.diagnosis.fit import Fit
-from permway.diagnosis.gather import evidence_of
+from permway.diagnosis.gather import observations_of
 from permway.diagnosis.menu import Item, menu
 from permway.diagnosis.side_by_side import each
 from permway.diagnosis.tangent import STEP
@@ -36,8 +36,8 @@ def advise(
     """
     before = abs(other.objective - right.objective)
     found: list[tuple[float, NextMeasurement]] = []
-    measured = right.evidence.selected(right.evidence.records).datasets
-    items = list(menu(right.evidence.campaign, measured))
+    measured = right.observations.selected(right.observations.records).datasets
+    items = list(menu(right.observations.campaign, measured))
 
     def started(index: int) -> None:
         if progress is not None:
@@ -50,7 +50,7 @@ def advise(
             # What the model cannot predict cannot be advised.
             return None
 
-    expectations = each(expected, items, threads=right.evidence.threads, progress=started)
+    expectations = each(expected, items, threads=right.observations.threads, progress=started)
     for item, more in zip(items, expectations, strict=True):
         if more is None:
             continue
@@ -68,17 +68,17 @@ def advise(
 def separation(item: Item, right: Fit, other: Fit) -> float:
     """Deviance that a measurement is expected to add between two rivals."""
     truth = item.planned(right.campaign)
-    (values,) = predict(truth, [item.dataset], threads=right.evidence.threads)
+    (values,) = predict(truth, [item.dataset], threads=right.observations.threads)
     dataset = item.dataset
     measured = dataset.data.assign({name: values[name] for name in values.data_vars if name in dataset.data})
-    evidence = evidence_of(truth, [replace(dataset, data=measured)], right.evidence)
+    observations = observations_of(truth, [replace(dataset, data=measured)], right.observations)
 
     # Residuals are held against what noise does to them on the mean, and here is none.
-    nothing = evidence.residuals(evidence.predicted(truth).datasets)
+    nothing = observations.residuals(observations.predicted(truth).datasets)
 
     def residuals(z: Reals) -> Reals:
         rival = item.planned(other.build({f.name: f.value(float(v)) for f, v in zip(other.free, z, strict=True)}))
-        return evidence.residuals(evidence.predicted(rival).datasets) - nothing
+        return observations.residuals(observations.predicted(rival).datasets) - nothing
 
     plain = residuals(other.z)
     jacobian = np.zeros((plain.size, other.z.size))
@@ -87,7 +87,7 @@ def separation(item: Item, right: Fit, other: Fit) -> float:
         step = STEP if moved[i] + STEP <= f.limits[1] else -STEP
         moved[i] += step
         jacobian[:, i] = (residuals(moved) - plain) / step
-    whitener = evidence.whitener
+    whitener = observations.whitener
     reduced, left = whitener.reduce(jacobian), whitener.reduce(plain)
     curvature = jacobian.T @ jacobian - reduced.T @ reduced
     slope = jacobian.T @ plain - reduced.T @ left

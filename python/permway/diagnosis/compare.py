@@ -15,8 +15,8 @@ from permway.campaign.compare import NEPER_DB, POWER_DB, curves, flat, third_oct
 from permway.campaign.kinds import kind_of
 from permway.diagnosis.blocks_modes import missed_modes
 from permway.diagnosis.compare_tables import calibration_of, parameters_of
-from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.fit import Fit, Free, free_parameters
+from permway.diagnosis.observations import Observations, Solved
 from permway.diagnosis.residuals import standardised
 from permway.diagnosis.tangent import STEP
 
@@ -122,7 +122,7 @@ class Comparison:
 
 
 def assemble(
-    evidence: Evidence,
+    observations: Observations,
     fit: Fit | None,
     *,
     left_out: Mapping[str, str] | None = None,
@@ -131,8 +131,8 @@ def assemble(
 
     Residuals are counted in the noise and the calibration errors of pairs of the fit, for both models.
     """
-    campaign = evidence.campaign
-    whole = evidence if fit is None else fit.evidence
+    campaign = observations.campaign
+    whole = observations if fit is None else fit.observations
     measure = whole.selected(whole.records)
     mine = np.isin(whole.block_of, whole.records)
     free = free_parameters(campaign)
@@ -176,22 +176,24 @@ def assemble(
     )
 
 
-def _spread(evidence: Evidence, free: Sequence[Free], z: Reals, covariance: Reals, solved: Solved) -> list[Reals]:
+def _spread(
+    observations: Observations, free: Sequence[Free], z: Reals, covariance: Reals, solved: Solved
+) -> list[Reals]:
     """Standard deviation of predicted levels by that of the parameters, dB; by block, (channel, frequency)."""
-    slopes: list[list[Reals]] = [[] for _ in evidence.blocks]
+    slopes: list[list[Reals]] = [[] for _ in observations.blocks]
     for place, parameter in enumerate(free):
         step = STEP if z[place] + STEP <= parameter.limits[1] else -STEP
         moved = z.copy()
         moved[place] += step
         values = {f.name: f.value(float(v)) for f, v in zip(free, moved, strict=True)}
-        near = evidence.predicted(evidence.campaign.with_values(values), solved)
+        near = observations.predicted(observations.campaign.with_values(values), solved)
         for slope, dataset, one, other in zip(
-            slopes, evidence.datasets, near.datasets, solved.datasets, strict=True
+            slopes, observations.datasets, near.datasets, solved.datasets, strict=True
         ):
             change = np.abs(flat(dataset, one)) / np.abs(flat(dataset, other))
             slope.append(np.asarray(np.log(change) / step))
     found = []
-    for slope, dataset in zip(slopes, evidence.datasets, strict=True):
+    for slope, dataset in zip(slopes, observations.datasets, strict=True):
         scale = POWER_DB if kind_of(dataset.record).power else NEPER_DB
         if not slope:
             found.append(np.zeros(flat(dataset, dataset.data).shape))

@@ -11,8 +11,8 @@ from permway.campaign.campaign import Campaign
 from permway.campaign.compare import NEPER_DB, POWER_DB
 from permway.campaign.kinds import kind_of
 from permway.diagnosis.blocks_frf import FrfBlock
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import WIDTH, Fit
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.recalibrated_values import recalibrated_of
 
 SAYS_NOTHING = 0.9
@@ -55,15 +55,15 @@ def parameters_of(campaign: Campaign, fit: Fit | None) -> xr.Dataset:
     )
 
 
-def calibration_of(evidence: Evidence) -> xr.Dataset:
+def calibration_of(observations: Observations) -> xr.Dataset:
     """Sizes of the calibration errors that were allowed, dB of the level they act on."""
-    decay = {f"record {d.record.name}" for d in evidence.datasets if kind_of(d.record).power}
+    decay = {f"record {d.record.name}" for d in observations.datasets if kind_of(d.record).power}
     sizes = {
         source: size * (POWER_DB if source.startswith(("irregularity", "decay")) or source in decay else NEPER_DB)
-        for source, size in evidence.sizes.items()
-        if source in {o.name for o in evidence.columns.sources}
+        for source, size in observations.sizes.items()
+        if source in {o.name for o in observations.columns.sources}
     }
-    for block in evidence.blocks:
+    for block in observations.blocks:
         if isinstance(block, FrfBlock):
             sizes[f"pairs of {block.dataset.record.name}"] = block.pair * NEPER_DB
     return xr.Dataset(

@@ -9,7 +9,7 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
-from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.observations import Observations
 
 Z_LIMIT = 8.0
 """Beyond which no parameter is sought, in standard deviations of the prior."""
@@ -59,7 +59,7 @@ class Fit:
         Of z (Laplace).
     campaign : Campaign
         With these values.
-    evidence : Evidence
+    observations : Observations
         With the sizes of calibration errors.
     residuals : ndarray, shape (n,)
         Standardised, calibration errors not taken out.
@@ -84,7 +84,7 @@ class Fit:
     z: Reals
     covariance: Reals
     campaign: Campaign
-    evidence: Evidence
+    observations: Observations
     residuals: Reals
     clean: Reals
     chi2: float

@@ -15,7 +15,7 @@ from permway.campaign.predict import predict, why_not
 from permway.diagnosis.block_of import block_of
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
-from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.thinning import LINES_PER_FREQUENCY, thinned
 from permway.errors import InputError
 
@@ -69,7 +69,7 @@ def gather(
     *,
     threads: int | None = None,
     lines: float = LINES_PER_FREQUENCY,
-) -> Evidence:
+) -> Observations:
     """Read a campaign's records and make them ready to be held against models.
 
     Parameters
@@ -87,24 +87,24 @@ def gather(
     InputError
         From reading, or for a record that cannot be predicted.
     """
-    evidence = _blocked(campaign, campaign.load() if datasets is None else datasets, threads, lines)
-    sources = evidence.columns.sources
-    return evidence.with_sizes({o.name: 1.0 if o.fixed else first_size(campaign, o.name) for o in sources})
+    observations = _blocked(campaign, campaign.load() if datasets is None else datasets, threads, lines)
+    sources = observations.columns.sources
+    return observations.with_sizes({o.name: 1.0 if o.fixed else first_size(campaign, o.name) for o in sources})
 
 
-def evidence_of(campaign: Campaign, datasets: Sequence[Dataset], like: Evidence) -> Evidence:
+def observations_of(campaign: Campaign, datasets: Sequence[Dataset], like: Observations) -> Observations:
     """Datasets that need not be of the campaign's files, with the sizes of calibration errors that another has."""
-    evidence = _blocked(campaign, datasets, like.threads)
+    observations = _blocked(campaign, datasets, like.threads)
     estimated = [like.sizes[o.name] for o in like.columns.sources if not o.fixed]
     usual = float(np.median(estimated)) if estimated else first_size(campaign, "")
-    sizes = {o.name: 1.0 if o.fixed else like.sizes.get(o.name, usual) for o in evidence.columns.sources}
-    return evidence.with_sizes(sizes, like.length)
+    sizes = {o.name: 1.0 if o.fixed else like.sizes.get(o.name, usual) for o in observations.columns.sources}
+    return observations.with_sizes(sizes, like.length)
 
 
 def _blocked(
     campaign: Campaign, datasets: Sequence[Dataset], threads: int | None, lines: float = LINES_PER_FREQUENCY
-) -> Evidence:
-    """Evidence whose calibration errors have no sizes yet."""
+) -> Observations:
+    """Records whose calibration errors have no sizes yet."""
     loaded = [thinned(dataset, lines) for dataset in datasets]
     predicted = predict(campaign, loaded, threads=threads)
     spans = _spans(loaded)
@@ -122,7 +122,7 @@ def _blocked(
     # Of several tests by the same sensors each has the same noise.
     tests = {tuple(d.names("sensor")): d for d in reversed(loaded) if NoiseBlock.is_constrained(d)}
     blocks += [NoiseBlock(dataset) for dataset in tests.values()]
-    return Evidence(campaign, tuple(blocks), {}, threads=threads)
+    return Observations(campaign, tuple(blocks), {}, threads=threads)
 
 
 def _spans(datasets: Sequence[Dataset]) -> dict[str, tuple[float, float]]:

@@ -56,8 +56,8 @@ def mislabelled(fit: Fit) -> Mislabelled | None:
     fit : Fit
         With the nominal values: a recalibration would bend them towards wrong labels.
     """
-    predicted = fit.evidence.predicted(fit.evidence.campaign).datasets
-    for block, prediction in zip(fit.evidence.blocks, predicted, strict=True):
+    predicted = fit.observations.predicted(fit.observations.campaign).datasets
+    for block, prediction in zip(fit.observations.blocks, predicted, strict=True):
         if isinstance(block, FrfBlock):
             found = _exchanged(block, prediction["frf"].values) or _reversed(block, prediction["frf"].values)
             if found is not None:

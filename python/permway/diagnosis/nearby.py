@@ -19,7 +19,7 @@ from permway.campaign.campaign import Campaign
 from permway.campaign.factors import model_under
 from permway.campaign.predict import Request, Result, Sweep, plan, predict_one, request_of, solve
 from permway.campaign.predictions.sweeps import places_of
-from permway.diagnosis.evidence import Evidence, Solved
+from permway.diagnosis.observations import Observations, Solved
 from permway.diagnosis.side_by_side import threads_of_solver
 from permway.model.line import Line
 from permway.response.sensitivity import sensitivity
@@ -72,18 +72,18 @@ class Nearby:
 
     Parameters
     ----------
-    evidence : Evidence
+    observations : Observations
     solved : Solved
         Of the campaign that they are near to.
     """
 
-    def __init__(self, evidence: Evidence, solved: Solved) -> None:
-        self.evidence, self.solved = evidence, solved
+    def __init__(self, observations: Observations, solved: Solved) -> None:
+        self.observations, self.solved = observations, solved
         self._known: dict[int, _Derivatives] = {}
         # What is linear in the change has double poles: no modes.
         self._exact = {
             id(need)
-            for dataset, need in zip(evidence.datasets, solved.needs, strict=True)
+            for dataset, need in zip(observations.datasets, solved.needs, strict=True)
             if dataset.record.statistic == "modes"
         }
 
@@ -101,7 +101,7 @@ class Nearby:
         one, other = near.campaign.model.line, campaign.model.line
         if one == other or not self._few(one) or campaign.model.formulation != "chain" or not _alike(one, other):
             return None
-        needs = [request_of(campaign, dataset) for dataset in self.evidence.datasets]
+        needs = [request_of(campaign, dataset) for dataset in self.observations.datasets]
         if not all(_same_places(new, old) for new, old in zip(needs, near.needs, strict=True)):
             return None
         return self._read(campaign, {id(n): self._moved(n, campaign) for n in near.needs if n is not None})
@@ -140,12 +140,14 @@ class Nearby:
     def _read(self, campaign: Campaign, answers: Mapping[int, Result]) -> Solved:
         """All datasets, from what their needs were answered."""
         made: dict[int, xr.Dataset] = {}
-        for dataset, need in zip(self.evidence.datasets, self.solved.needs, strict=True):
+        for dataset, need in zip(self.observations.datasets, self.solved.needs, strict=True):
             if id(dataset) not in made:
                 made[id(dataset)] = predict_one(
                     campaign, dataset, need, None if need is None else answers[id(need)]
                 )
-        return Solved(campaign, self.solved.needs, {}, [made[id(dataset)] for dataset in self.evidence.datasets])
+        return Solved(
+            campaign, self.solved.needs, {}, [made[id(dataset)] for dataset in self.observations.datasets]
+        )
 
     def _answer(self, need: Request, moved: Complexes) -> Result:
         """The receptances of a need, moved."""
@@ -156,7 +158,7 @@ class Nearby:
     def _moved(self, need: Request, campaign: Campaign) -> Result:
         if id(need) in self._exact:
             (sweep,) = plan([need])
-            return solve(sweep, campaign.model, threads=threads_of_solver(self.evidence.threads))
+            return solve(sweep, campaign.model, threads=threads_of_solver(self.observations.threads))
         known = self._derivatives(need, model_under(self.solved.campaign.model, need.factors).line)
         before, after = known.at, _Numbers.of(model_under(campaign.model, need.factors).line, need)
         values = np.zeros((need.frequency_Hz.size, len(need.rows), len(need.columns)), dtype=np.complex128)
@@ -183,7 +185,7 @@ class Nearby:
                     forces=places_of(like.columns),
                     sensors=places_of(like.rows),
                     temperature_C=like.temperature_C,
-                    threads=threads_of_solver(self.evidence.threads),
+                    threads=threads_of_solver(self.observations.threads),
                 )
                 slopes = (data[name].values for name in ("by_law", "by_beam", "by_mass"))
                 self._known[id(like)] = _Derivatives(_Numbers.of(line, like), *slopes)

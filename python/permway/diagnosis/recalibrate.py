@@ -11,8 +11,8 @@ from scipy import linalg
 
 from permway.arrays import Reals
 from permway.diagnosis.bounded import bounded_step
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import Build, Fit, Free, free_parameters, limits_of
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.speeds import begin
 from permway.diagnosis.tangent import Problem, State, Tangent
 from permway.errors import InputError
@@ -32,7 +32,7 @@ AT_REST = 0.1
 
 
 def recalibrate(
-    evidence: Evidence,
+    observations: Observations,
     *,
     build: Build | None = None,
     free: tuple[Free, ...] | None = None,
@@ -43,7 +43,7 @@ def recalibrate(
 
     Parameters
     ----------
-    evidence : Evidence
+    observations : Observations
     build : callable, optional
         From values to a campaign; by default the campaign's own parameters.
     free : tuple of Free, optional
@@ -58,13 +58,13 @@ def recalibrate(
     InputError
         If the model cannot be predicted at the start.
     """
-    build = evidence.campaign.with_values if build is None else build
-    free = free_parameters(evidence.campaign) if free is None else free
-    problem = Problem(evidence, build, free)
+    build = observations.campaign.with_values if build is None else build
+    free = free_parameters(observations.campaign) if free is None else free
+    problem = Problem(observations, build, free)
     if start is not None:
         z = start.copy()
     else:
-        z = begin(evidence, problem) if build == evidence.campaign.with_values else np.zeros(len(free))
+        z = begin(observations, problem) if build == observations.campaign.with_values else np.zeros(len(free))
     state, tangent = _descended(problem, z, most_steps)
     chi2 = tangent.chi2(state)
     inflation = max(1.0, chi2 / max(1, state.residuals.size))
@@ -75,7 +75,7 @@ def recalibrate(
         z=state.z,
         covariance=np.asarray(linalg.inv(tangent.normal(inflation))),
         campaign=state.solved.campaign,
-        evidence=evidence,
+        observations=observations,
         residuals=state.residuals,
         clean=state.residuals - explained,
         chi2=chi2,

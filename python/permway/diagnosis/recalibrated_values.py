@@ -8,7 +8,7 @@ from permway.diagnosis.verdict_parts import Moved
 
 def recalibrated_of(fit: Fit) -> dict[str, Moved]:
     """Value, z and 90 % interval by name, of those parameters of a fit that the campaign file has."""
-    known = fit.evidence.campaign.parameters.known
+    known = fit.observations.campaign.parameters.known
     values, ends = fit.values(), {name: sorted(pair) for name, pair in fit.intervals().items()}
     return {
         f.name: Moved(

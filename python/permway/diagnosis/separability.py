@@ -117,9 +117,9 @@ def separability(
         replace(dataset, data=dataset.data.assign({name: right[name] for name in right.data_vars}))
         for dataset, right in zip(datasets, predict(campaign, datasets, threads=threads), strict=True)
     ]
-    evidence = gather(campaign, datasets, threads=threads)
+    observations = gather(campaign, datasets, threads=threads)
     stated = np.zeros(len(free_parameters(campaign)))
-    fit = _untouched(recalibrate(evidence, start=stated, most_steps=0))
+    fit = _untouched(recalibrate(observations, start=stated, most_steps=0))
     base = _Base(fit)
     offered = list(hypotheses(Situation(fit, tuple(places(fit)))))
     kept: list[tuple[Hypothesis, Reals, Reals, Reals]] = []
@@ -162,7 +162,7 @@ def _untouched(fit: Fit) -> Fit:
 
 def places(fit: Fit) -> Iterator[Found]:
     """A quarter, the middle and three quarters of each layer and body, as places of which nothing is known yet."""
-    line, rows = fit.campaign.model.line, fit.evidence.rows
+    line, rows = fit.campaign.model.line, fit.observations.rows
     frequency = np.geomspace(float(rows.frequency_Hz.min()), float(rows.frequency_Hz.max()), BANDS)
     nothing, flat = np.zeros(BANDS, dtype=np.complex128), np.ones(BANDS)
     # Resonators are begun where most is to be seen: where nobody looked yet, in the middle of the band.
@@ -190,9 +190,9 @@ class _Base:
     """The nominal model, and what its moves and calibration errors take out of a change of the residuals."""
 
     def __init__(self, fit: Fit) -> None:
-        self.fit, self.whitener = fit, fit.evidence.whitener
-        self._solved = fit.evidence.predicted(fit.campaign)
-        self._plain = fit.evidence.residuals(self._solved.datasets)
+        self.fit, self.whitener = fit, fit.observations.whitener
+        self._solved = fit.observations.predicted(fit.campaign)
+        self._plain = fit.observations.residuals(self._solved.datasets)
         self._reduced = self.whitener.reduce(fit.jacobian)
         normal = fit.jacobian.T @ fit.jacobian - self._reduced.T @ self._reduced
         self._factor = linalg.cho_factor(normal + np.eye(fit.z.size))
@@ -200,8 +200,8 @@ class _Base:
     def effect(self, hypothesis: Hypothesis) -> tuple[Reals, Reals, Reals] | None:
         """The first start that can be solved: its coordinates, its change of the residuals, the slopes there."""
         fit, own = self.fit, self.fit.z.size
-        build, free = stacked(fit.build, hypothesis, "effect.", fit.evidence.campaign)
-        problem = Problem(fit.evidence, build, (*fit.free, *free))
+        build, free = stacked(fit.build, hypothesis, "effect.", fit.observations.campaign)
+        problem = Problem(fit.observations, build, (*fit.free, *free))
         low, high = limits_of(hypothesis.free)
         for start in hypothesis.starts:
             z = np.clip(np.array(start, dtype=np.float64), low, high)

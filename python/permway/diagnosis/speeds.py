@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from permway.arrays import Reals
-from permway.diagnosis.evidence import Evidence
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.tangent import Problem
 
 GRID = 41
@@ -20,24 +20,24 @@ LIMITS = 4.0
 """Standard deviations of the prior to which speeds without bounds are looked for."""
 
 
-def begin(evidence: Evidence, problem: Problem) -> Reals:
+def begin(observations: Observations, problem: Problem) -> Reals:
     """Coordinates z to begin at, shape (p,): 0 but for speeds that are free.
 
     Parameters
     ----------
-    evidence : Evidence
+    observations : Observations
     problem : Problem
         Whose free parameters are the campaign's own.
     """
     z = np.zeros(len(problem.free))
-    known = evidence.campaign.parameters
+    known = observations.campaign.parameters
     mine = [i for i, f in enumerate(problem.free) if "campaign.conditions" in known.touches(f.name)]
     # Loads act in proportion, and slopes find them.
-    mine = [i for i in mine if not _is_load(evidence, problem.free[i].name)]
+    mine = [i for i in mine if not _is_load(observations, problem.free[i].name)]
     start = problem.at(z) if mine else None
     if start is None:
         return z
-    passing = any(dataset.record.statistic == "passage" for dataset in evidence.datasets)
+    passing = any(dataset.record.statistic == "passage" for dataset in observations.datasets)
     for index in mine * (2 if passing else 1):
         low, high = problem.free[index].limits
         best = np.inf
@@ -52,6 +52,6 @@ def begin(evidence: Evidence, problem: Problem) -> Reals:
     return z
 
 
-def _is_load(evidence: Evidence, name: str) -> bool:
-    paths = evidence.campaign.parameters.known[name].parameter.paths
+def _is_load(observations: Observations, name: str) -> bool:
+    paths = observations.campaign.parameters.known[name].parameter.paths
     return all(".axles.load" in path for path in paths)

@@ -9,9 +9,9 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
-from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.nearby import Nearby
+from permway.diagnosis.observations import Observations, Solved
 from permway.diagnosis.side_by_side import SMALL, each
 from permway.diagnosis.whitener import Whitener
 from permway.errors import InputError, SolveError
@@ -74,20 +74,22 @@ def tangent_of(at: State, whitener: Whitener, jacobian: Reals, blocks: float) ->
 class Problem:
     """Deviations as a function of z."""
 
-    def __init__(self, evidence: Evidence, build: Build, free: tuple[Free, ...]) -> None:
-        self.evidence, self.build, self.free = evidence, build, free
+    def __init__(self, observations: Observations, build: Build, free: tuple[Free, ...]) -> None:
+        self.observations, self.build, self.free = observations, build, free
         self.evaluations = 0
 
     def residuals(self, z: Reals, near: Solved | None = None) -> tuple[Reals, Solved]:
         """Of a model with these values, and its predictions; those of one near by save solves."""
         self.evaluations += 1
-        predicted = self.evidence.predicted(self._campaign(z), near)
-        return self.evidence.residuals(predicted.datasets), predicted
+        predicted = self.observations.predicted(self._campaign(z), near)
+        return self.observations.residuals(predicted.datasets), predicted
 
     def _near(self, predicted: Solved, state: State) -> Reals:
         """Deviations, those of datasets that are the state's own taken from it."""
         found, start = [], 0
-        for block, new, old in zip(self.evidence.blocks, predicted.datasets, state.solved.datasets, strict=True):
+        for block, new, old in zip(
+            self.observations.blocks, predicted.datasets, state.solved.datasets, strict=True
+        ):
             rows = slice(start, start + block.rows.channel.size)
             found.append(state.residuals[rows] if new is old else block.residuals(new))
             start = rows.stop
@@ -107,11 +109,11 @@ class Problem:
     def tangent(self, state: State, slopes: Reals | None = None) -> Tangent:
         """About a state, by finite differences unless slopes are given."""
         slopes = self.jacobian(state) if slopes is None else slopes
-        return tangent_of(state, self.evidence.whitener, slopes, self.evidence.log_determinant)
+        return tangent_of(state, self.observations.whitener, slopes, self.observations.log_determinant)
 
     def jacobian(self, state: State) -> Reals:
         """Derivative of the residuals by z: forward differences, solves spared where derivatives do."""
-        nearby = Nearby(self.evidence, state.solved)
+        nearby = Nearby(self.observations, state.solved)
         nearby.derive()
         return self.columns(state, range(len(self.free)), nearby)
 
@@ -126,7 +128,7 @@ class Problem:
                 # A number may stand at the edge of what there can be: then from its other side.
                 return self._slope(state, index, -STEP if forward else STEP, nearby)
 
-        columns = each(column, indices, threads=self.evidence.threads, least=SMALL)
+        columns = each(column, indices, threads=self.observations.threads, least=SMALL)
         return np.column_stack(columns) if columns else np.zeros((state.residuals.size, 0))
 
     def _slope(self, state: State, index: int, step: float, nearby: Nearby | None) -> Reals:
@@ -134,5 +136,5 @@ class Problem:
         moved[index] += step
         campaign = self._campaign(moved)
         near = None if nearby is None else nearby.predicted(campaign)
-        predicted = near or self.evidence.predicted(campaign, state.solved)
+        predicted = near or self.observations.predicted(campaign, state.solved)
         return np.asarray((self._near(predicted, state) - state.residuals) / step)

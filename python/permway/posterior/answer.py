@@ -119,7 +119,7 @@ def _effect(masses: Masses, index: int) -> Effect:
     return Effect(
         domain=hypothesis.domain,
         place=Place.of(where, line, within=(min(ends), max(ends)) if ends else None),
-        bands=_bands(best.fit.frame.evidence.rows.frequency_Hz, gained),
+        bands=_bands(best.fit.frame.observations.rows.frequency_Hz, gained),
         name=members[0].name if named else None,
         class_=members,
         law=Mechanics(words=hypothesis.law(values)),

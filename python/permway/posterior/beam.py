@@ -227,7 +227,7 @@ def _shared(
         return None if found is None else replace(found, cell=None)  # type: ignore[arg-type]
 
     def take() -> list[Trial | None]:
-        return each(bare, trials, threads=fitter.frame.evidence.threads, least=2, progress=progress)
+        return each(bare, trials, threads=fitter.frame.observations.threads, least=2, progress=progress)
 
     found = kept_trials(take, trials)
     return [replace(one, cell=trial.cell) for one, trial in zip(found, trials, strict=True) if one is not None]

@@ -12,10 +12,10 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.diagnosis.catalogue import entries
-from permway.diagnosis.evidence import Solved
 from permway.diagnosis.fit import Fit as Base
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
+from permway.diagnosis.observations import Solved
 from permway.diagnosis.spot import Found, Spot
 from permway.diagnosis.stacking import weaker
 from permway.diagnosis.stretches import stretches
@@ -77,7 +77,7 @@ def cells(base: Fit, ruled_out: Collection[str] = ()) -> list[Cell]:
     """
     offered: dict[str, list[Hypothesis]] = {}
     situations = list(_situations(base))
-    frequency = base.frame.evidence.rows.frequency_Hz
+    frequency = base.frame.observations.rows.frequency_Hz
     band = float(frequency.min()) / BEYOND, float(frequency.max()) * BEYOND
     for name, entry in {**entries(), **BESIDE}.items():
         if name not in ruled_out:
@@ -246,7 +246,7 @@ def _as_base(fit: Fit) -> Base:
         z=fit.z,
         covariance=fit.spread,
         campaign=solved.campaign,
-        evidence=fit.frame.evidence,
+        observations=fit.frame.observations,
         residuals=residuals,
         clean=residuals,
         chi2=float(residuals @ residuals),

@@ -44,10 +44,10 @@ def compare(
             progress(count, STEPS)
 
     kept, left_out, _ = predictable(campaign)
-    evidence = gather(campaign, kept, threads=threads)
+    observations = gather(campaign, kept, threads=threads)
     done(1)
-    fit = None if raw_only else as_base(recalibrated(evidence))
+    fit = None if raw_only else as_base(recalibrated(observations))
     done(2)
-    found = assemble(evidence, fit, left_out=left_out)
+    found = assemble(observations, fit, left_out=left_out)
     done(STEPS)
     return found

@@ -15,8 +15,8 @@ from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
 from permway.diagnosis.blocks_passage import PassageBlock
 from permway.diagnosis.blocks_spectra import LEVEL, SpectraBlock
-from permway.diagnosis.evidence import Evidence, Solved
 from permway.diagnosis.gather import first_size
+from permway.diagnosis.observations import Observations, Solved
 from permway.posterior.chains import Chains, Factor, chains_of
 from permway.posterior.hyper import IDEALISATION, LACKING, Hyper
 
@@ -39,7 +39,7 @@ class Frame:
 
     Attributes
     ----------
-    evidence : Evidence
+    observations : Observations
         Records as residuals whitened by their noise.
     chains : list of Chains
     columns : ndarray, shape (m, b)
@@ -54,7 +54,7 @@ class Frame:
         The last so many columns are of the idealisation, of a unit that its size multiplies.
     """
 
-    evidence: Evidence
+    observations: Observations
     chains: tuple[Chains, ...]
     columns: Reals
     spanned: np.ndarray
@@ -63,18 +63,18 @@ class Frame:
     idealised: int = 0
 
     @staticmethod
-    def of(evidence: Evidence) -> Frame:
+    def of(observations: Observations) -> Frame:
         """From the records."""
-        blocks = tuple(_bare(b) for b in evidence.blocks)
-        evidence = evidence.with_blocks(blocks)
+        blocks = tuple(_bare(b) for b in observations.blocks)
+        observations = observations.with_blocks(blocks)
         statistic = np.concatenate(
             [np.full(b.rows.channel.size, b.dataset.record.statistic, dtype="U16") for b in blocks]
         )
         sigma = NEPER_PER_DB * np.concatenate([b.rows.scale_dB for b in blocks])
-        columns = _columns(evidence, blocks)
+        columns = _columns(observations, blocks)
         spanned = np.flatnonzero(np.any(columns, axis=1))
         chains = tuple(chains_of(blocks))
-        return Frame(evidence, chains, columns[spanned], spanned, np.maximum(sigma, 1e-9), statistic)
+        return Frame(observations, chains, columns[spanned], spanned, np.maximum(sigma, 1e-9), statistic)
 
     def about(self, solved: Solved, covariance: Covariance, residuals: Reals) -> Frame:
         """The same records weighed by what a fit predicts and, if it lacks nothing, by the errors that it leaves.
@@ -89,12 +89,12 @@ class Frame:
             Of its residuals.
         residuals : ndarray, shape (n,)
         """
-        starts = np.cumsum([0, *(b.rows.channel.size for b in self.evidence.blocks)])
+        starts = np.cumsum([0, *(b.rows.channel.size for b in self.observations.blocks)])
         # Of a model that lacks something, errors of chains take up what it lacks.
         lacking = covariance.hyper.novel > LACKING
         errors = np.zeros_like(residuals) if lacking else covariance.errors(residuals)
         blocks: list[Block] = []
-        for index, (block, prediction) in enumerate(zip(self.evidence.blocks, solved.datasets, strict=True)):
+        for index, (block, prediction) in enumerate(zip(self.observations.blocks, solved.datasets, strict=True)):
             if isinstance(block, FrfBlock):
                 first, count = int(starts[index]), block.measured.size
                 mine = errors[first : first + count] + 1j * errors[first + count : first + 2 * count]
@@ -108,7 +108,7 @@ class Frame:
             elif isinstance(block, PassageBlock):
                 block = block.with_reference(prediction)
             blocks.append(block)
-        return Frame.of(self.evidence.with_blocks(tuple(blocks)))
+        return Frame.of(self.observations.with_blocks(tuple(blocks)))
 
     @property
     def whole(self) -> Reals:
@@ -163,7 +163,7 @@ def _bare(block: Block) -> Block:
     return block.with_floor(FLOOR) if isinstance(block, PassageBlock) else block
 
 
-def _columns(evidence: Evidence, blocks: tuple[Block, ...]) -> Reals:
+def _columns(observations: Observations, blocks: tuple[Block, ...]) -> Reals:
     """Columns of errors that are no chain's, scaled to unit variance; one source met by two records is one."""
     total = sum(b.rows.channel.size for b in blocks)
     found: dict[str, Reals] = {}
@@ -171,13 +171,13 @@ def _columns(evidence: Evidence, blocks: tuple[Block, ...]) -> Reals:
     for block in blocks:
         rows = slice(start, start + block.rows.channel.size)
         start = rows.stop
-        for name, columns in _own(evidence, block).items():
+        for name, columns in _own(observations, block).items():
             whole = found.setdefault(name, np.zeros((total, columns.shape[1])))
             whole[rows] += columns
     return np.hstack(list(found.values())) if found else np.zeros((total, 0))
 
 
-def _own(evidence: Evidence, block: Block) -> dict[str, Reals]:
+def _own(observations: Observations, block: Block) -> dict[str, Reals]:
     """Of one block, by source."""
     if isinstance(block, FrfBlock):
         return {}
@@ -189,7 +189,7 @@ def _own(evidence: Evidence, block: Block) -> dict[str, Reals]:
         half = np.full(block.dataset.data["channel"].size, 0.5, dtype=np.complex128)
         step = 1.0 / (block.dataset.record.segment_s * speed)
         level = block.moved.columns(half, LEVEL, block.frequency / speed, step)
-        return {"irregularity": first_size(evidence.campaign, "irregularity") * level, **apart}
+        return {"irregularity": first_size(observations.campaign, "irregularity") * level, **apart}
     whole, stop, found = block.calibration, 0, {}
     for source in whole.sources:
         start, stop = stop, stop + source.count
@@ -199,7 +199,7 @@ def _own(evidence: Evidence, block: Block) -> dict[str, Reals]:
             unit[index] = 1.0
             columns.append(whole.columns.times(unit))
             unit[index] = 0.0
-        found[source.name] = evidence.sizes[source.name] * np.stack(columns, axis=1)
+        found[source.name] = observations.sizes[source.name] * np.stack(columns, axis=1)
     return found
 
 

@@ -66,7 +66,7 @@ def against(control: Campaign, *, threads: int | None = None) -> Callable[[Campa
 
 def _misfit(plain: Fit, campaign: Campaign, datasets: Sequence[Dataset]) -> float:
     """Quadratic forms and priors of the best fit to a campaign's records, weighed as those of its control are."""
-    frame = Frame.of(plain.frame.evidence.of(campaign, datasets))
+    frame = Frame.of(plain.frame.observations.of(campaign, datasets))
     # What follows the records' own errors is the idealisation, as the control's fit has it.
     fitter = Fitter(frame.with_idealisation(plain.frame.idealisation))
     model = Model(campaign.with_values, plain.model.free)

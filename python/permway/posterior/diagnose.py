@@ -13,11 +13,11 @@ from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue import known
 from permway.diagnosis.clock import Clock, Progress
 from permway.diagnosis.compare import RECALIBRATED, assemble
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.fit import WIDTH
 from permway.diagnosis.fit import Fit as Base
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.labels import mislabelled
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.side_by_side import one_thread_of_blas
@@ -93,21 +93,21 @@ def diagnose(
     clock("advise")
     verdict = verdict.model_copy(update={"next": _advice(masses, verdict, clock)})
     clock("compare")
-    if frame.evidence.rows.channel.size < whole.rows.channel.size:
+    if frame.observations.rows.channel.size < whole.rows.channel.size:
         base, after = (as_base(_on(whole, member.fit)) for member in (empty, best))
     amended = after if verdict.effects and best.amendments else None
     return Diagnosis(
         verdict=with_bad_channels(verdict, bad).model_copy(update={"ruled_out": ruled_out}),
         base=base,
         amended=amended,
-        comparison=assemble(base.evidence, base, left_out=left_out),
-        after=None if amended is None else assemble(amended.evidence, amended, left_out=left_out),
+        comparison=assemble(base.observations, base, left_out=left_out),
+        after=None if amended is None else assemble(amended.observations, amended, left_out=left_out),
         seconds=clock.seconds(),
         weighed=weighed(masses, search.small[0]),
     )
 
 
-def _enough(campaign: Campaign, kept: Sequence[Dataset], whole: Evidence) -> Evidence:
+def _enough(campaign: Campaign, kept: Sequence[Dataset], whole: Observations) -> Observations:
     """The records at so many lines as are weighed."""
     found, lines = whole, LINES_PER_FREQUENCY
     while found.rows.channel.size > ENOUGH and lines > FEWEST:
@@ -119,9 +119,9 @@ def _enough(campaign: Campaign, kept: Sequence[Dataset], whole: Evidence) -> Evi
     return found
 
 
-def _on(evidence: Evidence, fit: Fit) -> Fit:
+def _on(observations: Observations, fit: Fit) -> Fit:
     """What was fitted, on all lines of the records."""
-    fitter = Fitter(Frame.of(evidence))
+    fitter = Fitter(Frame.of(observations))
     return fitter.begin(fit.model, fit.z, fit.hyper)
 
 
@@ -137,7 +137,7 @@ def _advice(masses: Masses, verdict: Verdict, progress: Progress) -> tuple[NextM
 def with_moved(after: Mapping[str, Moved], member: Member) -> dict[str, Moved]:
     """Nominal parameters, those that an amendment moves with its shift in them."""
     found = dict(after)
-    known = member.fit.frame.evidence.campaign.parameters.known
+    known = member.fit.frame.observations.campaign.parameters.known
     for index, amendment in enumerate(member.amendments):
         name, at = amendment.moves, member.moved(index)
         if name not in found or at is None:
@@ -155,12 +155,14 @@ def with_moved(after: Mapping[str, Moved], member: Member) -> dict[str, Moved]:
 def as_base(fit: Fit) -> Base:
     """The fit in the form that comparisons and reports draw."""
     sizes = {}
-    evidence = fit.frame.evidence
-    for source in evidence.columns.sources:
+    observations = fit.frame.observations
+    for source in observations.columns.sources:
         kind = source.name.split(" ", 1)[0]
-        sizes[source.name] = fit.hyper[kind] if kind in fit.hyper.names else evidence.sizes[source.name]
-    evidence = evidence.with_sizes(sizes, max(fit.hyper["length"], 0.5) if "length" in fit.hyper.names else None)
-    residuals, whitener = fit.state.residuals, evidence.whitener
+        sizes[source.name] = fit.hyper[kind] if kind in fit.hyper.names else observations.sizes[source.name]
+    observations = observations.with_sizes(
+        sizes, max(fit.hyper["length"], 0.5) if "length" in fit.hyper.names else None
+    )
+    residuals, whitener = fit.state.residuals, observations.whitener
     clean = residuals - whitener.calibration(whitener.explained(residuals), residuals.size)
     chi2 = fit.covariance.square(residuals)
     return Base(
@@ -168,7 +170,7 @@ def as_base(fit: Fit) -> Base:
         z=fit.z,
         covariance=fit.spread,
         campaign=fit.state.solved.campaign,
-        evidence=evidence,
+        observations=observations,
         residuals=residuals,
         clean=clean,
         chi2=chi2,

@@ -166,10 +166,10 @@ class Fit:
 
     def only(self, statistic: str) -> Fit:
         """The same fit of one kind of record alone."""
-        blocks = self.frame.evidence.blocks
+        blocks = self.frame.observations.blocks
         kept = [i for i, block in enumerate(blocks) if block.dataset.record.statistic == statistic]
-        rows = np.isin(self.frame.evidence.block_of, kept)
-        frame = Frame.of(self.frame.evidence.with_blocks(tuple(blocks[i] for i in kept)))
+        rows = np.isin(self.frame.observations.block_of, kept)
+        frame = Frame.of(self.frame.observations.with_blocks(tuple(blocks[i] for i in kept)))
         columns = self.frame.whole[rows]
         frame = replace(
             frame, columns=columns, spanned=np.arange(columns.shape[0]), idealised=self.frame.idealised
@@ -184,7 +184,7 @@ class Fit:
 
 def grown(fit: Fit, hypothesis: Hypothesis, prefix: str) -> Model:
     """A fit's model with an amendment more, whose parameters' names get a prefix."""
-    return extended(fit.model, hypothesis, prefix, fit.frame.evidence.campaign)
+    return extended(fit.model, hypothesis, prefix, fit.frame.observations.campaign)
 
 
 def extended(model: Model, hypothesis: Hypothesis, prefix: str, campaign: Campaign) -> Model:
@@ -245,7 +245,7 @@ class Fitter:
         InputError
             If the model cannot be solved there.
         """
-        problem = Problem(self.frame.evidence, model.build, model.free)
+        problem = Problem(self.frame.observations, model.build, model.free)
         state = problem.at(np.clip(z, *model.limits))
         if state is None:
             raise InputError("the model cannot be solved there", where="start", value=z.tolist())
@@ -262,7 +262,7 @@ class Fitter:
         fixed : int
             The first so many parameters keep their slopes, which cost most.
         """
-        problem = Problem(self.frame.evidence, start.model.build, start.model.free)
+        problem = Problem(self.frame.observations, start.model.build, start.model.free)
         low, high = start.model.limits
         fit, damping, fresh, exact = start, 1e-3, True, not fixed
         for _ in range(steps):
@@ -300,7 +300,7 @@ class Fitter:
         """With slopes taken where it is, but for the first so many parameters."""
         if fit.exact:
             return fit
-        return self.sloped(Problem(self.frame.evidence, fit.model.build, fit.model.free), fit, fixed)
+        return self.sloped(Problem(self.frame.observations, fit.model.build, fit.model.free), fit, fixed)
 
     def sloped(self, problem: Problem, fit: Fit, fixed: int) -> Fit:
         """With slopes of all parameters after the first so many taken where it is."""

@@ -44,9 +44,9 @@ class Gain:
 
 def gains(base: Fit, amended: Fit) -> list[Gain]:
     """Of every group of rows: sensors, hammer points, records, and thirds of the band."""
-    rows = base.frame.evidence.rows
-    block_of = base.frame.evidence.block_of
-    names = [b.dataset.record.name for b in base.frame.evidence.blocks]
+    rows = base.frame.observations.rows
+    block_of = base.frame.observations.block_of
+    names = [b.dataset.record.name for b in base.frame.observations.blocks]
     groups: list[tuple[str, str, np.ndarray]] = []
     for axis, labels in (("sensor", rows.sensor), ("force", rows.force), ("record", np.array(names)[block_of])):
         values = [str(v) for v in np.unique(labels) if str(v)]
@@ -63,7 +63,7 @@ def gains(base: Fit, amended: Fit) -> list[Gain]:
         before, after = _predicted(base, out), _predicted(amended, out)
         return Gain(axis, name, after[0] - before[0], before[1], after[1])
 
-    return each(gain, groups, threads=base.frame.evidence.threads, least=2)
+    return each(gain, groups, threads=base.frame.observations.threads, least=2)
 
 
 def _predicted(fit: Fit, out: np.ndarray) -> tuple[float, float]:
@@ -71,12 +71,12 @@ def _predicted(fit: Fit, out: np.ndarray) -> tuple[float, float]:
     whole, _ = _marginal(fit, np.ones(out.size, dtype=bool))
     kept, shift = _marginal(fit, ~out)
     # Solved where the others have the parameters: slopes do not reach to where a resonance is elsewhere.
-    evidence = fit.frame.evidence
-    problem = Problem(evidence, fit.model.build, fit.model.free)
+    observations = fit.frame.observations
+    problem = Problem(observations, fit.model.build, fit.model.free)
     state = problem.at(np.clip(fit.z + shift, *fit.model.limits), fit.state.solved)
     if state is None:
         return whole - kept, float("nan")
-    levels = evidence.levels_dB(state.solved.datasets)
+    levels = observations.levels_dB(state.solved.datasets)
     mine = out & np.isfinite(levels)
     error = float(np.sqrt(np.mean(levels[mine] ** 2))) if mine.any() else float("nan")
     return whole - kept, error

@@ -47,11 +47,11 @@ def idealised(fit: Fit) -> Reals:
     ndarray, shape (n, b)
         None where derivatives by all parts would cost too much.
     """
-    evidence, campaign = fit.frame.evidence, fit.state.solved.campaign
-    solved = evidence.predicted(campaign)
-    octaves = np.log2(evidence.rows.frequency_Hz)
+    observations, campaign = fit.frame.observations, fit.state.solved.campaign
+    solved = observations.predicted(campaign)
+    octaves = np.log2(observations.rows.frequency_Hz)
     band = float(octaves.min()), float(octaves.max())
-    nearby = Nearby(evidence, solved)
+    nearby = Nearby(observations, solved)
     nearby.derive()
 
     def column(of: tuple[Part, list[int], int]) -> Reals | None:
@@ -59,10 +59,10 @@ def idealised(fit: Fit) -> Reals:
         bent = nearby.perturbed(part, indices, partial(_share, band=band, order=order))
         if bent is None:
             return None
-        return np.asarray((evidence.residuals(bent.datasets) - fit.state.residuals) / STEP)
+        return np.asarray((observations.residuals(bent.datasets) - fit.state.residuals) / STEP)
 
     wanted = [(part, indices, order) for part, indices in _parts(campaign.model.line) for order in range(SHAPES)]
-    found = [one for one in each(column, wanted, threads=evidence.threads, least=SMALL) if one is not None]
+    found = [one for one in each(column, wanted, threads=observations.threads, least=SMALL) if one is not None]
     if not found:
         return np.zeros((octaves.size, 0))
     # Turned, errors of one variance stay such; most combinations of them do not show.

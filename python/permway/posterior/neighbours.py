@@ -134,19 +134,19 @@ def _stretches(
 
 def _scored(fit: Fit, moved: list[tuple[Reals, tuple[int, ...]]]) -> list[tuple[float, int]]:
     """The least objective of each neighbour while all that was not set moves along, and its index."""
-    evidence = fit.frame.evidence
+    observations = fit.frame.observations
     rest = fit.objective - fit.covariance.square(fit.state.residuals) - float(fit.z @ fit.z)
 
     def residuals(one: tuple[Reals, tuple[int, ...]]) -> Reals | None:
         try:
             campaign = fit.model.build(fit.model.values(one[0]))
-            found = evidence.residuals(evidence.predicted(campaign, fit.state.solved).datasets)
+            found = observations.residuals(observations.predicted(campaign, fit.state.solved).datasets)
         except (InputError, SolveError):
             return None
         return found if np.isfinite(found).all() else None
 
     found = []
-    for index, values in enumerate(each(residuals, moved, threads=evidence.threads, least=SMALL)):
+    for index, values in enumerate(each(residuals, moved, threads=observations.threads, least=SMALL)):
         if values is None:
             found.append((np.inf, index))
             continue

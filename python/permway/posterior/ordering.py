@@ -77,7 +77,7 @@ def _without(fitter: Fitter, member: Member, kept: Sequence[int], nominal: Model
     z = fit.z[: len(nominal.free)]
     model = nominal
     for number, index in enumerate(kept, start=1):
-        model = extended(model, member.amendments[index], f"{number}.", fitter.frame.evidence.campaign)
+        model = extended(model, member.amendments[index], f"{number}.", fitter.frame.observations.campaign)
         z = np.concatenate([z, fit.z[member.own(index)]])
     try:
         found = fitter.begin(model, z, fit.hyper.with_discrepancy(LEVELS[1]), bend=fit.bend)

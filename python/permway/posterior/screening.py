@@ -104,7 +104,7 @@ def screened(
 
 def _looked(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object], others: Sequence[Hyper]) -> Scores:
     """In hammer tests first where there are runs, too."""
-    kinds = {block.dataset.record.statistic for block in fit.frame.evidence.blocks}
+    kinds = {block.dataset.record.statistic for block in fit.frame.observations.blocks}
     if not {"frf", "csd"} <= kinds:
         return _scored(fit, cells, progress, others)
     of_line = [index for index, cell in enumerate(cells) if cell.hypothesis.domain == "path"]
@@ -173,7 +173,7 @@ def _scored(
     fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object], others: Sequence[Hyper] = ()
 ) -> Scores:
     """By all records of a fit, and with other hyperparameters where these make more of a change."""
-    evidence, solved, build = fit.frame.evidence, fit.state.solved, fit.model.build
+    observations, solved, build = fit.frame.observations, fit.state.solved, fit.model.build
     base = build(fit.values())
     views = [_View.of(replace(fit, hyper=hyper)) for hyper in (fit.hyper, *others)]
     worse = [view.moved() - views[0].moved() for view in views]
@@ -194,15 +194,15 @@ def _scored(
                 # The parameter itself moves back along: what is left by a bent path would be all that shows.
                 return np.asarray(fit.state.residuals + shift * fit.jacobian[:, names.index(hypothesis.moves)])
         try:
-            predicted = evidence.predicted(amended(cell), solved)
-            found = evidence.residuals(predicted.datasets)
+            predicted = observations.predicted(amended(cell), solved)
+            found = observations.residuals(predicted.datasets)
         except (InputError, SolveError):
             return None
         return found if np.isfinite(found).all() else None
 
     scores = Scores.none(len(cells))
     for start in range(0, len(cells), BATCH):
-        batch = each(residuals, cells[start : start + BATCH], threads=evidence.threads, least=SMALL)
+        batch = each(residuals, cells[start : start + BATCH], threads=observations.threads, least=SMALL)
         solved_ones = {index: found for index, found in enumerate(batch) if found is not None}
         if solved_ones:
             at = start + np.array(list(solved_ones))

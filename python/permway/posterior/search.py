@@ -78,7 +78,7 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
     progress : callable
         Called with what is done, and how much of it.
     """
-    campaign = fitter.frame.evidence.campaign
+    campaign = fitter.frame.observations.campaign
     nominal = Model(campaign.with_values, free_parameters(campaign))
     coarse = fitter.frame.first().with_discrepancy(LEVELS[0])
     z = first_values(fitter, nominal)

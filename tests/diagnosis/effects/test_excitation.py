@@ -16,15 +16,15 @@ from permway.campaign.predict import predict
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._change import with_chain
 from permway.diagnosis.catalogue._excite import chain_with, with_irregularity, with_speed
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Hypothesis, Situation
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.recalibrate import recalibrate
 from permway.model.contact import GivenContact
 from permway.recordings.channel import Mains
 from searched import searched
 from simulated import simulate
-from trains import blank, campaign_in, evidence_of, situation_of
+from trains import blank, campaign_in, observations_of, situation_of
 
 MINE = (
     "wheel_polygon",
@@ -248,9 +248,9 @@ def hypotheses(situation: Situation, entry: str, place: str = "") -> list[Hypoth
     return [h for h in every if place in h.locate({f.name: f.value(0.0) for f in h.free}).label]
 
 
-def injected(owner: Campaign, case: Case, strength: float) -> Evidence:
+def injected(owner: Campaign, case: Case, strength: float) -> Observations:
     """What is measured when the effect is there."""
-    return evidence_of(owner, 11, amend=lambda truth: case.inject(truth, case.at(strength)))
+    return observations_of(owner, 11, amend=lambda truth: case.inject(truth, case.at(strength)))
 
 
 def others(entry: str) -> list[str]:
@@ -298,7 +298,7 @@ def test_more_effect_is_more_gain(owner: Campaign, case: Case) -> None:
 
 def test_a_wrong_polarity_is_named(owner: Campaign) -> None:
     turned = chain("bogie", lambda _: {"polarity": -1})
-    found = searched(evidence_of(owner, 12, amend=lambda c: turned(c, {})), *MINE)
+    found = searched(observations_of(owner, 12, amend=lambda c: turned(c, {})), *MINE)
     best = found.best()
     assert best is not None
     assert best.names == ("sensor_polarity",)
@@ -307,7 +307,7 @@ def test_a_wrong_polarity_is_named(owner: Campaign) -> None:
 
 def test_nothing_missing_names_nothing(owner: Campaign) -> None:
     """Of all these entries, on one draw of the noise."""
-    found = searched(evidence_of(owner, 1), *MINE)
+    found = searched(observations_of(owner, 1), *MINE)
     assert found.members[0] is found.empty
 
 

@@ -7,12 +7,12 @@ import pytest
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.diagnosis.catalogue import speed_error
 from permway.diagnosis.catalogue._excite import with_speed
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.recalibrate import recalibrate
 from permway.laws.toml import to_toml
 from searched import searched
-from trains import CAMPAIGN, campaign_in, evidence_of
+from trains import CAMPAIGN, campaign_in, observations_of
 
 RUNS = ("slow", "fast")
 OWN = {"slow": 1.0005, "fast": 0.9992}
@@ -39,7 +39,7 @@ def owner(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
     return read_campaign(folder / "campaign.toml")
 
 
-def measured(owner: Campaign, factor: float) -> Evidence:
+def measured(owner: Campaign, factor: float) -> Observations:
     """All runs at `factor` times what was noted, each a little off beside."""
 
     def amend(truth: Campaign) -> Campaign:
@@ -47,12 +47,12 @@ def measured(owner: Campaign, factor: float) -> Evidence:
             truth = with_speed(truth, factor * OWN[name], name)
         return truth
 
-    return evidence_of(owner, 5, amend=amend)
+    return observations_of(owner, 5, amend=amend)
 
 
 def test_a_speed_far_off_is_found_and_measured(owner: Campaign) -> None:
-    evidence = measured(owner, 0.94)
-    best = searched(evidence, "speed_error").best()
+    observations = measured(owner, 0.94)
+    best = searched(observations, "speed_error").best()
     assert best is not None
     assert best.fit.hyper.novel < 0.5
     values = best.fit.values()

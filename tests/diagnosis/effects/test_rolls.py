@@ -19,7 +19,7 @@ from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.errors import InputError
 from permway.laws.toml import to_toml
 from searched import recalibrated_base, searched
-from trains import CAMPAIGN, blank, campaign_in, drawn, evidence_of, situation_of
+from trains import CAMPAIGN, blank, campaign_in, drawn, observations_of, situation_of
 
 SPACING_M = 0.6
 
@@ -77,8 +77,8 @@ def test_a_campaign_file_lets_its_train_roll(owner: Campaign, said: Campaign) ->
 def test_a_train_that_is_said_to_roll_does_so_over_the_line_that_is_found(said: Campaign) -> None:
     right = {"pad.k": 6.9e7, "pad.eta": 0.17, "level": 0.7}
     truth = said.with_values(right)
-    evidence = gather(said, drawn(truth.rolling_about(truth), 24), threads=1)
-    base = recalibrated_base(evidence)
+    observations = gather(said, drawn(truth.rolling_about(truth), 24), threads=1)
+    base = recalibrated_base(observations)
     rolling = base.campaign.stated.irregularity.rolling
     assert rolling is not None
     assert rolling.about is not None
@@ -127,7 +127,7 @@ def test_it_is_looked_for_where_supports_are_seen_to_pass(owner: Campaign, rolls
 
 
 def test_its_share_is_measured_and_lines_alone_say_less(owner: Campaign) -> None:
-    found = searched(evidence_of(owner, 21, amend=rolling), "parametric_support")
+    found = searched(observations_of(owner, 21, amend=rolling), "parametric_support")
     best = found.best()
     assert best is not None
     assert best.amendments[0].variant == "rolling"
@@ -150,7 +150,7 @@ def test_a_profile_that_is_not_as_said_is_told_beside_it(owner: Campaign) -> Non
     def amend(campaign: Campaign) -> Campaign:
         return with_irregularity(campaign, rolling=Rolling(spacing_m=SPACING_M), shape_dB=shape)
 
-    best = searched(evidence_of(owner, 23, amend=amend), "parametric_support").best()
+    best = searched(observations_of(owner, 23, amend=amend), "parametric_support").best()
     assert best is not None
     found = best.fit.values()
     assert found["1.share"] == pytest.approx(1.0, abs=0.1)

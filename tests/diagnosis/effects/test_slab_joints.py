@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue import entries, slab_joints
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.separability import places
 from permway.model.segments import Segment
@@ -54,7 +54,9 @@ def test_joints_by_one_measure_go_on_from_slab_to_slab(
     assert ends.max() <= (1.0 + slab_joints.SHORT) * length * (1.0 + 1e-9)
 
 
-def evidence_of(owner: Campaign, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign) -> Evidence:
+def observations_of(
+    owner: Campaign, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
+) -> Observations:
     return gather(owner, measured(owner, 3, amend), threads=1)
 
 
@@ -67,10 +69,11 @@ def test_joints_that_go_on_from_slab_to_slab_are_no_pattern_of_each(tmp_path: Pa
     for one in table["sensors"]:
         one["body"] = one["body"].replace("slab[1]", "slab")
     owner = written(tmp_path / "c", table, model)
-    fit = recalibrate(evidence_of(owner))
+    fit = recalibrate(observations_of(owner))
     offered = entries()["slab_joints"].hypotheses(Situation(fit, tuple(places(fit))))
     inject = next(h.amend for h in offered if h.variant == "through" and len(h.free) == 2)
-    found = searched(evidence_of(owner, lambda c: inject(c, {"length_m": 4.8, "offset": 0.0625})), "slab_joints")
+    changed = observations_of(owner, lambda c: inject(c, {"length_m": 4.8, "offset": 0.0625}))
+    found = searched(changed, "slab_joints")
     best = found.best()
     assert best is not None
     assert best.amendments[0].variant == "through"
@@ -85,7 +88,7 @@ def test_a_cut_is_beside_the_sensor_that_it_meets(tmp_path: Path) -> None:
     table = campaign(model)
     (sensor,) = [one for one in table["sensors"] if one["body"].startswith("slab")][:1]
     owner = written(tmp_path / "c", table, model)
-    fit = recalibrate(evidence_of(owner))
+    fit = recalibrate(observations_of(owner))
     (slab,) = [s for _, s in owner.model.line.beams() if s.body == "slab"]
     (cut, *_) = [h for h in entries()["slab_joints"].hypotheses(Situation(fit, ())) if len(h.free) == 2]
     x = float(sensor["x_m"])
@@ -100,4 +103,4 @@ def test_a_cut_is_beside_the_sensor_that_it_meets(tmp_path: Path) -> None:
     # The evidence can be predicted with either.
     for off in (-1e-4, 1e-4):
         values = {"length_m": 8.0, "offset": ((x + off - slab.start + 4.0) % 8.0 - 4.0) / 8.0}
-        fit.evidence.predicted(cut.amend(owner, values))
+        fit.observations.predicted(cut.amend(owner, values))

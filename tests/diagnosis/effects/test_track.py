@@ -14,9 +14,9 @@ from permway.campaign.campaign import Campaign
 from permway.campaign.predict import predict
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.catalogue._interval import weakened
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.separability import places
 from searched import searched
@@ -165,7 +165,9 @@ def read(folder: Path, line: str) -> Campaign:
     return written(folder / "c", campaign(model), model)
 
 
-def of(owner: Campaign, seed: int, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign) -> Evidence:
+def of(
+    owner: Campaign, seed: int, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
+) -> Observations:
     return gather(owner, measured(owner, seed, amend), threads=1)
 
 
@@ -266,8 +268,8 @@ def test_slabs_cut_at_fasteners_are_told_by_their_length(
     assert len(shared) > 2
     for index in (0, len(shared) - 1):
         values = {"length_m": lengths[index], "dowels_N_per_m": 1e5}
-        evidence = of(read(tmp_path / str(index), "viaduct"), 3, partial(_put, shared[index].amend, values))
-        best = searched(evidence, "slab_joints").best()
+        observations = of(read(tmp_path / str(index), "viaduct"), 3, partial(_put, shared[index].amend, values))
+        best = searched(observations, "slab_joints").best()
         assert best is not None
         told = best.values(0)
         assert told.keys() == values.keys()
@@ -304,8 +306,8 @@ def test_piers_of_one_girder_and_of_two_are_told_apart(
     """Heavy or light, on rock or on soil: found from afar, and named before a girder's own modes."""
     inject = next(h for h in entries()["pier_soil"].hypotheses(situations("two spans")[0]) if h.variant == variant)
     values = {"compliance": compliance, "mass_kg": mass_kg, "loss_factor": 0.1, "radiation": 0.03}
-    evidence = of(read(tmp_path, "two spans"), 3, partial(_put, inject.amend, values))
-    best = searched(evidence, "pier_soil", "girder_local_modes").best()
+    observations = of(read(tmp_path, "two spans"), 3, partial(_put, inject.amend, values))
+    best = searched(observations, "pier_soil", "girder_local_modes").best()
     assert best is not None
     found = best.values(0)
     assert {"compliance", "mass_kg"} <= found.keys()
@@ -320,9 +322,9 @@ def test_a_bearing_apart_is_found(
 ) -> None:
     hypotheses = entries()["bearing_stiffness"].hypotheses
     inject = {h.locate({}).x_m: h for h in hypotheses(situations("viaduct")[0])}[(15.0, 15.0)].amend
-    evidence = of(read(tmp_path, "viaduct"), 3, lambda base: inject(base, {"factor": factor}))
+    observations = of(read(tmp_path, "viaduct"), 3, lambda base: inject(base, {"factor": factor}))
     rivals = ("girder_crack", "girder_local_modes", "fastener_loss", "deck_attachment")
-    best = searched(evidence, "bearing_stiffness", *rivals).best()
+    best = searched(observations, "bearing_stiffness", *rivals).best()
     assert best is not None
     assert best.names == ("bearing_stiffness",)
     # One bearing softer or the other stiffer: which of the two, the owner's tolerance tells.
@@ -340,8 +342,8 @@ def test_of_two_girders_that_meet_one_may_have_the_other_bearing(
     hypotheses = entries()["bearing_stiffness"].hypotheses
     own = [h for h in hypotheses(situations("two spans")[0]) if h.variant == "one girder"]
     assert len(own) == 2
-    evidence = of(read(tmp_path, "two spans"), 3, lambda base: own[1].amend(base, {"factor": factor}))
-    best = searched(evidence, "bearing_stiffness").best()
+    observations = of(read(tmp_path, "two spans"), 3, lambda base: own[1].amend(base, {"factor": factor}))
+    best = searched(observations, "bearing_stiffness").best()
     assert best is not None
     values = {"factor": factor}
     assert best.amendments[0].law(values) == own[1].law(values)

@@ -78,7 +78,7 @@ def centre(hypothesis: Hypothesis) -> dict[str, float]:
 def test_an_effect_is_named_and_sized(name: str, sound: Callable[[bool], Fit]) -> None:
     what, sizes, rest = INJECTED[name]
     base = sound(name == "pad_temperature")
-    campaign, hypothesis = base.evidence.campaign, placed(name, base)
+    campaign, hypothesis = base.observations.campaign, placed(name, base)
     family = entry(name).FAMILY
     rivals = [rival for rival in RIVALS if family != entry(rival).FAMILY]
     gains = []
@@ -110,7 +110,7 @@ def test_pads_that_shift_with_temperature_are_told_from_pads_that_only_stiffen(
 ) -> None:
     """Their springpot, and by how much ten kelvin move it."""
     base = sound(True)
-    campaign = base.evidence.campaign
+    campaign = base.observations.campaign
     (shifted,) = (h for h in of("pad_temperature", base) if h.variant)
     truth = {"stiffness_factor": 1.0, "order": 0.3, "share": 0.7, "rest": 0.3, "decades_per_10K": 0.8}
     records = measured(campaign, 1, lambda c: shifted.amend(c, truth))
@@ -139,7 +139,7 @@ def test_none_is_no_effect_and_the_ends_of_the_range_can_be_solved(
     name: str, sound: Callable[[bool], Fit]
 ) -> None:
     base = sound(name == "pad_temperature")
-    campaign: Campaign = base.evidence.campaign
+    campaign: Campaign = base.observations.campaign
     datasets = blank(campaign)
     plain = predict(campaign, datasets, threads=1)
     assert set(entry(name).PARAMETERS) == {f.name for h in of(name, base) for f in h.free}

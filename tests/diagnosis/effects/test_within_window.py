@@ -34,14 +34,14 @@ def test_a_spectrum_that_turns_is_off_its_line_by_the_slope_of_the_windows_corre
 def test_a_chain_that_is_late_alters_what_channels_share_as_its_slope_says(tmp_path: Path, channel: str) -> None:
     """A delay's phase grows from line to line. Predicted anew with it, parts change as their answers to it say."""
     owner = campaign_in(tmp_path)
-    evidence = gather(owner, drawn(owner, 5), threads=1)
-    evidence = weighed_by(evidence, owner)
-    late = evidence.predicted(
+    observations = gather(owner, drawn(owner, 5), threads=1)
+    observations = weighed_by(observations, owner)
+    late = observations.predicted(
         with_chain(owner, channel, owner.sensor(channel).chain.model_copy(update={"delay_s": DELAY_S}))
     )
-    before = evidence.predicted(owner)
+    before = observations.predicted(owner)
     seen = 0
-    for block, old, new in zip(evidence.blocks, before.datasets, late.datasets, strict=True):
+    for block, old, new in zip(observations.blocks, before.datasets, late.datasets, strict=True):
         if not isinstance(block, SpectraBlock):
             continue
         moved = block.moved

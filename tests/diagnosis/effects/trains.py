@@ -16,9 +16,9 @@ import xarray as xr
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.load import Dataset, log_variance
 from permway.campaign.predict import predict
-from permway.diagnosis.evidence import Evidence
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Situation
+from permway.diagnosis.observations import Observations
 from permway.diagnosis.recalibrate import recalibrate
 from permway.laws.toml import to_toml
 
@@ -191,12 +191,12 @@ def situation_of(
     owner: Campaign, seed: int, *, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
 ) -> Situation:
     """The owner's campaign recalibrated on what was measured of another truth; nothing was located."""
-    return Situation(recalibrate(evidence_of(owner, seed, amend=amend)), ())
+    return Situation(recalibrate(observations_of(owner, seed, amend=amend)), ())
 
 
-def evidence_of(
+def observations_of(
     owner: Campaign, seed: int, *, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
-) -> Evidence:
+) -> Observations:
     """What was measured of another truth, made ready to be held against the owner's model."""
     truth = owner.with_values({"pad.k": 6.4e7, "pad.eta": 0.17, "level": 0.7})
     return gather(owner, drawn(amend(truth), seed), threads=1)

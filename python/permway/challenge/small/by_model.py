@@ -171,8 +171,8 @@ class ByModel:
     def _situation(self, random: np.random.Generator) -> Situation:
         """What the catalogue makes its hypotheses from: records without effect, and places drawn at random."""
         datasets = [_filled(d, p) for d, p in zip(self._blank, self._as_datasets(), strict=True)]
-        evidence = gather(self._with_a_parameter(), datasets, threads=1)
-        fit = recalibrate(evidence, most_steps=0)
+        observations = gather(self._with_a_parameter(), datasets, threads=1)
+        fit = recalibrate(observations, most_steps=0)
         return Situation(fit, self._found(random))
 
     def _with_a_parameter(self) -> Campaign:

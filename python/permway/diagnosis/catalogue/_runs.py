@@ -116,8 +116,8 @@ _LAST: list[tuple[weakref.ref[Fit], list[Excess]]] = []
 def _found(situation: Situation) -> list[Excess]:
     fit = situation.fit
     found = []
-    predicted = fit.evidence.predicted(fit.campaign).datasets
-    for block, expected in zip(fit.evidence.blocks, predicted, strict=True):
+    predicted = fit.observations.predicted(fit.campaign).datasets
+    for block, expected in zip(fit.observations.blocks, predicted, strict=True):
         condition = situation.campaign.condition(block.dataset.condition.name)
         if not isinstance(block, SpectraBlock) or condition.speed_m_per_s is None:
             continue
@@ -234,13 +234,13 @@ def _amplitude(
 def on_board(situation: Situation) -> list[Sensor]:
     """Sensors on the vehicle that a run was read by."""
     campaign = situation.campaign
-    used = [n for b in situation.fit.evidence.blocks for n in b.dataset.record.channels.values()]
+    used = [n for b in situation.fit.observations.blocks for n in b.dataset.record.channels.values()]
     return [sensor for sensor in campaign.stated.sensors if sensor.degree is not None and sensor.name in used]
 
 
 def suspects(situation: Situation, names: Iterable[str], most: int) -> list[str]:
     """Sensors by how badly the base fits what they read, calibration errors left in."""
-    rows = situation.fit.evidence.rows
+    rows = situation.fit.observations.rows
     square = {}
     for name in names:
         mine = rows.sensor == name
@@ -259,7 +259,7 @@ def likely(situation: Situation, most: int = 12) -> list[str]:
 def measured_psd(situation: Situation, sensor: str) -> list[tuple[Reals, Reals]]:
     """Frequencies and power of a channel in every run, SI squared per hertz."""
     found = []
-    for block in situation.fit.evidence.blocks:
+    for block in situation.fit.observations.blocks:
         data = block.dataset.data
         if "psd" in data and sensor in data["channel"].values:
             found.append((data["frequency"].values, data["psd"].sel(channel=sensor).values))

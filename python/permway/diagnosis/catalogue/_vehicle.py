@@ -54,7 +54,7 @@ def sensors_on(situation: Situation, part: str) -> list[str]:
 
 def rows_of(situation: Situation, sensors: Sequence[str]) -> np.ndarray:
     """Which residuals under a train are of sensors: of their power, and of what others share with them."""
-    rows = situation.fit.evidence.rows
+    rows = situation.fit.observations.rows
     mine = np.isin(rows.sensor, list(sensors))
     for name in sensors:
         mine |= np.char.endswith(rows.channel, f" {name}")
@@ -66,7 +66,7 @@ def loudest_Hz(
 ) -> list[float]:
     """Where the residuals of sensors under a train exceed chance most, Hz."""
     fit = situation.fit
-    rows = fit.evidence.rows
+    rows = fit.observations.rows
     left = fit.clean if fit.inflation < FITS else fit.residuals
     mine = rows_of(situation, sensors) & (rows.frequency_Hz >= low_Hz) & (rows.frequency_Hz <= high_Hz)
     if not mine.any():

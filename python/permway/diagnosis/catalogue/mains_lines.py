@@ -109,5 +109,5 @@ def _amplitude(situation: Situation, name: str, supply: float) -> float:
     """Of a line with as much power as the channel has there, in its unit."""
     sensor = situation.campaign.sensor(name)
     powers = [float(np.interp(supply, f, power)) for f, power in measured_psd(situation, name)]
-    segment = min(b.dataset.record.segment_s for b in situation.fit.evidence.blocks if "psd" in b.dataset.data)
+    segment = min(b.dataset.record.segment_s for b in situation.fit.observations.blocks if "psd" in b.dataset.data)
     return float(np.sqrt(2.0 * max(min(powers), 1e-30) * LINE_WIDTH / segment)) / sensor.to_SI

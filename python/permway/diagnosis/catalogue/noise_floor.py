@@ -46,7 +46,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
 def _of_hammer_tests(situation: Situation) -> Iterator[Hypothesis]:
     """The sensors whose noise differs most from that of the others."""
     own: dict[str, float] = {}
-    for block in situation.fit.evidence.blocks:
+    for block in situation.fit.observations.blocks:
         if isinstance(block, NoiseBlock):
             for name, value in zip(block.names, block.own, strict=True):
                 own[str(name)] = max(own.get(str(name), -np.inf), float(value))
@@ -78,7 +78,7 @@ def _on_board(situation: Situation) -> Iterator[Hypothesis]:
         sensor = situation.campaign.sensor(name)
         least = min(float(np.min(power)) for _, power in measured_psd(situation, name))
         # The stated floor, not where the base's was driven to.
-        stated = situation.fit.evidence.campaign.sensor(name).chain.noise_floor
+        stated = situation.fit.observations.campaign.sensor(name).chain.noise_floor
         unit = stated or max(LOWEST * least / sensor.to_SI**2, 1e-30)
         # As much as the least power on record, where that is more than what is stated.
         seen = float(np.log(max(least / sensor.to_SI**2 / unit, 1.0) / 10.0) / np.log(6.0))

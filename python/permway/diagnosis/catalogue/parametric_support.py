@@ -116,7 +116,7 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
 
     try:
         # Here, so that processes that share the screening do not each begin with it.
-        situation.fit.evidence.predicted(amend(situation.campaign, {"share": 1.0}))
+        situation.fit.observations.predicted(amend(situation.campaign, {"share": 1.0}))
     except (InputError, SolveError):
         return
     yield Hypothesis(
@@ -147,8 +147,8 @@ def _known_at_rest(situation: Situation) -> Campaign:
     fit, known = situation.fit, situation.campaign.parameters.known
     of_runs = {n for n, one in known.items() if all(path.startswith(RUNS) for path in one.parameter.paths)}
     z = np.array([0.0 if free.name in of_runs else at for free, at in zip(fit.free, fit.z, strict=True)])
-    responses = tuple(block for block in fit.evidence.blocks if isinstance(block, FrfBlock))
+    responses = tuple(block for block in fit.observations.blocks if isinstance(block, FrfBlock))
     if responses:
-        evidence = replace(fit.evidence, blocks=responses)
-        z = recalibrate(evidence, build=fit.build, free=fit.free, start=z).z
+        observations = replace(fit.observations, blocks=responses)
+        z = recalibrate(observations, build=fit.build, free=fit.free, start=z).z
     return fit.build({free.name: free.value(at) for free, at in zip(fit.free, z.tolist(), strict=True)})

@@ -51,10 +51,10 @@ def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
 def _noise(diagnosis: Diagnosis) -> list[tuple[str, str]]:
     """How the noise of each kind of record was had."""
     words = []
-    evidence = diagnosis.base.evidence
-    if any(isinstance(block, FrfBlock) for block in evidence.blocks):
+    observations = diagnosis.base.observations
+    if any(isinstance(block, FrfBlock) for block in observations.blocks):
         words.append((KIND["frf"], "of each line by coherence and averages"))
-    kinds = dict.fromkeys(d.record.statistic for d in evidence.datasets)
+    kinds = dict.fromkeys(d.record.statistic for d in observations.datasets)
     if "csd" in kinds or "psd" in kinds:
         words.append((KIND["psd"], "by the effective number of averages"))
     for kind in kinds:

@@ -95,7 +95,7 @@ def _read_alike(one: Campaign, other: Campaign, dataset: Dataset) -> bool:
 
 
 @dataclass(frozen=True)
-class Evidence:
+class Observations:
     """The records of a campaign as one vector of standardised residuals.
 
     Attributes
@@ -185,18 +185,18 @@ class Evidence:
         """Of the covariance by which the blocks' own calibration errors are taken out."""
         return sum(block.log_determinant for block in self.blocks)
 
-    def with_sizes(self, sizes: Mapping[str, float], length: float | None = None) -> Evidence:
+    def with_sizes(self, sizes: Mapping[str, float], length: float | None = None) -> Observations:
         """The same with other sizes of calibration errors, and another length."""
         other = replace(self, sizes=dict(sizes), length=self.length if length is None else length)
         if "columns" in self.__dict__:
             other.__dict__["columns"] = self.columns
         return other
 
-    def with_blocks(self, blocks: tuple[Block, ...]) -> Evidence:
+    def with_blocks(self, blocks: tuple[Block, ...]) -> Observations:
         """The same records as other blocks."""
         return replace(self, blocks=blocks)
 
-    def of(self, campaign: Campaign, datasets: Sequence[Dataset]) -> Evidence:
+    def of(self, campaign: Campaign, datasets: Sequence[Dataset]) -> Observations:
         """Other records of the same channels and lines, with the same errors.
 
         Parameters
@@ -214,6 +214,6 @@ class Evidence:
         """Indices of the blocks that are records themselves, and no noise of one."""
         return [index for index, block in enumerate(self.blocks) if not isinstance(block, NoiseBlock)]
 
-    def selected(self, keep: Sequence[int]) -> Evidence:
+    def selected(self, keep: Sequence[int]) -> Observations:
         """Of some blocks only."""
         return replace(self, blocks=tuple(self.blocks[i] for i in keep))
