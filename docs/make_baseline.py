@@ -130,6 +130,11 @@ def _full(found: dict[str, Any]) -> str:
         cells = ["" if row[key] is None else f"{row[key][0]}/{row[key][1]}" for key in keys]
         seconds = f"{row['seconds_median']:g} ({row['seconds_worst']:g})"
         lines.append(f"| {row['tier']}, {row['first']} to {row['last']} | {' | '.join(cells)} | {seconds} |")
+    lines += ["\nCampaigns with no truth in this repository, by `tests/sealed/make.py` of that version:\n"]
+    lines += ["| campaign | status | effects, probability | log10 Bayes factor | s |", "|---|---|---|---|---|"]
+    for name, status, effects, probabilities, factor, seconds in found["given"]:
+        each = ", ".join(f"`{e}` {p:.2f}" for e, p in zip(effects, probabilities, strict=True))
+        lines.append(f"| {name} | {status} | {each} | {'' if factor is None else factor} | {seconds} |")
     return "\n".join(lines) + "\n"
 
 
