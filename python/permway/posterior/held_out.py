@@ -20,6 +20,10 @@ from permway.diagnosis.tangent import Problem
 from permway.posterior.covariance import Covariance
 from permway.posterior.fit import Fit
 
+HIDDEN = 0.115
+"""Neper (1 dB): lines whose level noise scatters by as much are not counted in decibels, where a group has others:
+they would show the noise."""
+
 
 @dataclass(frozen=True)
 class Gain:
@@ -78,6 +82,8 @@ def _predicted(fit: Fit, out: np.ndarray) -> tuple[float, float]:
         return whole - kept, float("nan")
     levels = observations.levels_dB(state.solved.datasets)
     mine = out & np.isfinite(levels)
+    clear = mine & (fit.frame.sigma < HIDDEN)
+    mine = clear if clear.any() else mine
     error = float(np.sqrt(np.mean(levels[mine] ** 2))) if mine.any() else float("nan")
     return whole - kept, error
 

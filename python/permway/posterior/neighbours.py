@@ -102,7 +102,7 @@ def _moves(fit: Fit, own: slice, hypothesis: Hypothesis) -> Iterator[tuple[Reals
             if not same and hypothesis.size in names and np.isfinite(hypothesis.none):
                 # More joints have less each: halfway between as much each and as much together.
                 share = np.sqrt((values["length_m"] + step) / (high - low + step))
-                to[hypothesis.size] = hypothesis.none + share * (values[hypothesis.size] - hypothesis.none)
+                to[hypothesis.size] = _shared(values[hypothesis.size], hypothesis.none, float(share))
             yield from changed(to)
     elif "x_m" in names:
         for away in PLACES:
@@ -111,6 +111,13 @@ def _moves(fit: Fit, own: slice, hypothesis: Hypothesis) -> Iterator[tuple[Reals
         if one.unit == "Hz":
             for octaves in OCTAVES:
                 yield from changed({name: values[name] * 2.0**octaves})
+
+
+def _shared(size: float, none: float, share: float) -> float:
+    """A size with a share of its effect: a factor by its logarithm, for little is left of it either way."""
+    if size > 0.0 and none > 0.0:
+        return float(none * (size / none) ** share)
+    return none + share * (size - none)
 
 
 def _stretches(

@@ -18,7 +18,8 @@ from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.side_by_side import SMALL, each
 from permway.errors import InputError, SolveError
-from permway.posterior.cells import Cell
+from permway.posterior.cells import SMALL as SHARE
+from permway.posterior.cells import Cell, least_measure, resized, times
 from permway.posterior.covariance import Roots
 from permway.posterior.fit import Fit, grown
 from permway.posterior.hyper import Hyper
@@ -31,10 +32,24 @@ EACH_FORM = 12
 """Changes of the line of one form, the best by hammer tests, that are scored by all records: twice as many as are
 fitted."""
 
+ROUNDED = 1e-16
+"""Square of a change, in standard deviations, that residuals are rounded to."""
+
 SEEN = 0.01
 """Square of a change, in standard deviations, from which hammer tests show it. The discrepancy is large where they
 are asked, so that a tenth of a deviation is a change of a tenth of one line."""
 
+SEEN_WHOLE = 10.0
+"""The same in a look at small changes, of a change as large as a start has it: three deviations."""
+
+CLOSER = 6.0
+"""Of the objective, from which what gains is looked at once more: of less, few are worth a fit."""
+
+STEEP = 1.5
+"""Power of its size from which a change is that of a power rather than of an amplitude: between 1 and 2."""
+
+LIMITED = 0.01
+"""Share by which a size stays behind what would gain most because of its limits."""
 
 LINEAR = 1.0
 """Standard deviations of its tolerance, by which a nominal parameter moves in a straight line in a look at small
@@ -53,7 +68,7 @@ class Scores:
     gain : ndarray, shape (cells,)
         By how much its change in the most favourable measure lowers the fit's objective.
     measure : ndarray, shape (cells,)
-        That measure: 1 is the change as it stands, 0 none.
+        That measure: 1 is the change as it stands, 0 none, below 0 the other way.
     shown : ndarray, shape (cells,)
         Square of its change as it stands, in standard deviations, the fit's parameters moved along.
     view : ndarray of int, shape (cells,)
@@ -79,7 +94,7 @@ def screened(
     fit: Fit,
     cells: Sequence[Cell],
     progress: Callable[[int], object] = lambda _: None,
-    others: Sequence[Hyper] = (),
+    others: Sequence[Hyper] | None = None,
 ) -> Scores:
     """Score all cells about a fit.
 
@@ -94,15 +109,48 @@ def screened(
     cells : sequence of Cell
     progress : callable
         Called with how many are done.
-    others : sequence of Hyper
-        Hyperparameters with which a gain counts, too, less what the fit itself loses by them.
+    others : sequence of Hyper, optional
+        If given, cells are small changes, and what gains is looked at once more where it gains most. With these
+        hyperparameters a gain counts, too, less what the fit itself loses by them.
     """
-    logs = [hyper.log for hyper in others]
+    logs = [hyper.log for hyper in others or ()]
     given = (fit.state.residuals, fit.z, fit.hyper.log, *logs, len(cells), *(cell.z for cell in cells))
-    return kept_table(lambda: _looked(fit, cells, progress, others), Scores, *given)
+
+    def take() -> Scores:
+        if others is None:
+            return _looked(fit, cells, progress)
+        return _closer(fit, cells, _looked(fit, cells, progress, others, small=True), others)
+
+    return kept_table(take, Scores, *given)
 
 
-def _looked(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object], others: Sequence[Hyper]) -> Scores:
+def _closer(fit: Fit, cells: Sequence[Cell], found: Scores, others: Sequence[Hyper]) -> Scores:
+    """With what gains changed by as much: a change may bend, or grow by the square of its size as power does."""
+    at = np.flatnonzero(found.gain > CLOSER).tolist()
+    changed = [resized(cells[i], float(found.measure[i])) for i in at]
+    again = _scored(fit, changed, lambda _: None, others)
+    gain, measure = found.gain[at], found.measure[at]
+    # A size may have limits.
+    reached = np.array([times(new, cells[i]) for i, new in zip(at, changed, strict=True)])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        power = 0.5 * np.log(again.shown / found.shown[at]) / np.log(np.abs(reached))
+    squared = power > STEEP
+    root = np.sign(measure) * np.abs(measure) ** (1.0 / np.where(squared, power, 1.0))
+    limited = np.abs(reached) < (1.0 - LIMITED) * np.abs(measure)
+    better = ~squared & (limited | (again.gain > gain))
+    found.measure[at] = np.where(squared, root, np.where(again.gain > 0.0, reached * again.measure, measure))
+    found.gain[at] = np.where(better, again.gain, gain)
+    found.view[at] = np.where(better, again.view, found.view[at])
+    return found
+
+
+def _looked(
+    fit: Fit,
+    cells: Sequence[Cell],
+    progress: Callable[[int], object],
+    others: Sequence[Hyper] = (),
+    small: bool = False,
+) -> Scores:
     """In hammer tests first where there are runs, too."""
     kinds = {block.dataset.record.statistic for block in fit.frame.observations.blocks}
     if not {"frf", "csd"} <= kinds:
@@ -110,15 +158,16 @@ def _looked(fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object], 
     of_line = [index for index, cell in enumerate(cells) if cell.hypothesis.domain == "path"]
     first = _scored(fit.only("frf"), [cells[i] for i in of_line], progress)
     chosen = set(range(len(cells))) - set(of_line)
-    chosen |= {index for index, shown in zip(of_line, first.shown, strict=True) if shown < SEEN}
+    least = SEEN_WHOLE * SHARE**2 if small else SEEN
+    chosen |= {index for index, shown in zip(of_line, first.shown, strict=True) if shown < least}
     prior = np.array([cells[i].log_prior for i in of_line])
-    for score in (first.objective - 2.0 * prior, -first.gain - 2.0 * prior):
-        count: Counter[tuple[str, ...]] = Counter()
-        for index in (of_line[at] for at in np.argsort(score).tolist()):
-            form = cells[index].hypothesis.form
-            count[form] += 1
-            if count[form] <= EACH_FORM:
-                chosen.add(index)
+    score = (-first.gain if small else first.objective) - 2.0 * prior
+    count: Counter[tuple[str, ...]] = Counter()
+    for index in (of_line[at] for at in np.argsort(score).tolist()):
+        form = cells[index].hypothesis.form
+        count[form] += 1
+        if count[form] <= EACH_FORM:
+            chosen.add(index)
     again, done = sorted(chosen), len(of_line)
     rest = _scored(fit, [cells[i] for i in again], lambda n: progress(min(done + n, len(cells))), others)
     found = Scores.none(len(cells))
@@ -134,39 +183,33 @@ class _View:
     fit: Fit
     factor: tuple[Reals, bool] | None
     before: Roots
-    least: float
     uphill: Reals
-    rest: float
 
     @staticmethod
     def of(fit: Fit) -> _View:
         """Of a fit."""
         before = fit.covariance.roots(fit.state.residuals[:, None])
-        least = float(before.squares()[0])
         factor = linalg.cho_factor(fit.normal) if fit.z.size else None
         uphill = fit.roots.times(before)[:, 0] + fit.z
-        return _View(fit, factor, before, least, uphill, fit.objective - least - float(fit.z @ fit.z))
+        return _View(fit, factor, before, uphill)
 
     def moved(self) -> float:
         """The least objective of the fit itself, its parameters moved along."""
         gain = 0.0 if self.factor is None else float(self.uphill @ linalg.cho_solve(self.factor, self.uphill))
         return self.fit.objective - gain
 
-    def scores(self, residuals: Reals) -> tuple[Reals, Reals, Reals]:
-        """Of columns of residuals: the least objective, and of their change d the products r'd and d'd.
+    def scores(self, changes: Reals) -> tuple[Reals, Reals, Reals]:
+        """Of columns d that residuals r change by: the least objective, and the products r'd and d'd.
 
         All with the fit's parameters moved along; without the prior of the change.
         """
-        z, roots = self.fit.z, self.fit.covariance.roots(residuals)
-        square, across = roots.squares(), self.before.times(roots)[0]
-        along, size = across - self.least, square - 2.0 * across + self.least
+        roots = self.fit.covariance.roots(changes)
+        size, along = roots.squares(), self.before.times(roots)[0]
         if self.factor is not None:
-            slope = self.fit.roots.times(roots) + z[:, None]
-            square = square + float(z @ z) - np.einsum("pk,pk->k", slope, linalg.cho_solve(self.factor, slope))
-            change = slope - self.uphill[:, None]
-            turned = linalg.cho_solve(self.factor, change)
-            along, size = along - self.uphill @ turned, size - np.einsum("pk,pk->k", change, turned)
-        return square + self.rest, along, size
+            slope = self.fit.roots.times(roots)
+            turned = linalg.cho_solve(self.factor, slope)
+            along, size = along - self.uphill @ turned, size - np.einsum("pk,pk->k", slope, turned)
+        return self.moved() + 2.0 * along + size, along, size
 
 
 def _scored(
@@ -206,15 +249,15 @@ def _scored(
         solved_ones = {index: found for index, found in enumerate(batch) if found is not None}
         if solved_ones:
             at = start + np.array(list(solved_ones))
-            columns = np.stack(list(solved_ones.values()), axis=1)
-            # A channel is swapped or it is not.
+            changes = np.stack(list(solved_ones.values()), axis=1) - fit.state.residuals[:, None]
+            low = np.array([least_measure(cells[i]) for i in at])
             discrete = np.array([not cells[i].hypothesis.free for i in at])
             for number, view in enumerate(views):
-                objective, along, size = view.scores(columns)
-                # Of r + a d with a at least 0.
-                measure = np.where(along < 0.0, -along / np.maximum(size, 1e-300), 0.0)
-                gain = np.where(discrete, -2.0 * along - size, -measure * along) - worse[number]
-                measure = np.where(discrete, 1.0, measure)
+                objective, along, size = view.scores(changes)
+                # Of r + a d. What changes less than residuals are rounded to says nothing.
+                best = np.where(size > ROUNDED, -along / np.maximum(size, ROUNDED), 0.0)
+                measure = np.where(discrete, 1.0, np.maximum(best, low))
+                gain = -measure * (2.0 * along + measure * size) - worse[number]
                 if not number:
                     scores.objective[at] = objective + [float(cells[i].z @ cells[i].z) for i in at]
                     scores.shown[at] = size

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from permway.diagnosis.fit import free_parameters
+from permway.posterior.alternatives import alternatives
 from permway.posterior.beam import (
     STEPS,
     Member,
@@ -27,7 +28,7 @@ from permway.posterior.beam import (
 )
 from permway.posterior.cells import Cell, cells, resized, small
 from permway.posterior.fit import Fit, Fitter, Model
-from permway.posterior.hyper import LACKING
+from permway.posterior.hyper import LACKING, Hyper
 from permway.posterior.ordering import LEFT, LEVELS, annealed, apart, ordered, weighed
 from permway.posterior.recalibrated import first_values
 from permway.posterior.screening import Scores, screened
@@ -97,6 +98,8 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
         if lacks < LEVELS[1]:
             seen = _small_changes(best, ruled_out, progress, what)
             found += _near(fitter, best, *seen, progress, what)
+            if found:
+                found += _alike(fitter, best, max(found, key=lambda m: m.log_mass), ruled_out, progress, what)
         leader = min((best, *found), key=lambda m: -m.log_mass).fit.hyper
         if leader.novel > LACKING or leader.strained:
             # What lacks little is not to be looked for where nothing shows. What is missing may have been taken
@@ -137,18 +140,50 @@ def _offered(root: Member, about: Fit, ruled_out: Collection[str]) -> list[Cell]
     return [cell for cell in cells(about, ruled_out) if cell.hypothesis.moves not in moved]
 
 
-def _near(
-    fitter: Fitter, root: Member, starts: Sequence[Cell], scores: Scores, progress: Progress, what: str
+def _alike(
+    fitter: Fitter, root: Member, leader: Member, ruled_out: Collection[str], progress: Progress, what: str
 ) -> list[Member]:
-    """Sets with one amendment more, whose change is small: begun where the smaller set fits best."""
+    """Sets with another amendment where the leader has its own, if they may come as near as a class shows."""
+    views = (leader.fit.hyper, *root.fit.hyper.smaller())
+    starts = small(alternatives(leader, _offered(root, root.fit, ruled_out)))
+    scores = screened(root.fit, starts, _saying(progress, f"alternatives, {what}", len(starts)), views)
+    return _near(fitter, root, starts, scores, progress, what, views, leader.log_mass - root.log_mass - LEFT)
+
+
+def _near(
+    fitter: Fitter,
+    root: Member,
+    starts: Sequence[Cell],
+    scores: Scores,
+    progress: Progress,
+    what: str,
+    views: Sequence[Hyper] | None = None,
+    least_gain: float = float(np.log(PREDICTED)),
+) -> list[Member]:
+    """Sets with one amendment more, whose change is small: begun where the smaller set fits best.
+
+    Parameters
+    ----------
+    fitter : Fitter
+    root : Member
+        The smaller set.
+    starts : sequence of Cell
+    scores : Scores
+    progress : callable
+    what : str
+    views : sequence of Hyper, optional
+        Of the scores, after the smaller set's own.
+    least_gain : float
+        Nats that a start is predicted to gain before it is fitted.
+    """
     count = root.fit.state.residuals.size
     predicted = np.array([tempered(0.5 * gain, count) for gain in scores.gain.tolist()])
     predicted += [cell.log_prior for cell in starts]
-    views = [root.fit.hyper, *root.fit.hyper.smaller()]
+    hypers = [root.fit.hyper, *(root.fit.hyper.smaller() if views is None else views)]
     worth = []
-    for i in np.flatnonzero(predicted > np.log(PREDICTED)).tolist():
-        cell = resized(starts[i], float(scores.measure[i]))
-        worth.append((-predicted[i], cell.hypothesis, Trial.beside(root, cell, views[scores.view[i]])))
+    for i in np.flatnonzero(predicted > least_gain).tolist():
+        cell, hyper = resized(starts[i], float(scores.measure[i])), hypers[scores.view[i]]
+        worth.append((-predicted[i], cell.hypothesis, Trial.beside(root, cell, hyper)))
     # Hyperparameters are the smaller set's still: what is behind with them hardly comes first with its own.
     least = -tempered(root.fit.log_evidence, count) - float(np.log(NEGLECTED))
     trials = chosen(worth, WIDTHS[1], PER_FORM[1])
