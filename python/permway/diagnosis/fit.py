@@ -58,7 +58,7 @@ class Fit:
     covariance : ndarray, shape (p, p)
         Of z (Laplace).
     campaign : Campaign
-        With these values.
+        With these values, and no amendment.
     observations : Observations
         With the sizes of calibration errors.
     residuals : ndarray, shape (n,)

@@ -10,7 +10,7 @@ import numpy as np
 
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.fit import Fit, Free
-from permway.diagnosis.spot import Found
+from permway.diagnosis.location import Location
 
 Domain = Literal["path", "irregularity", "vehicle", "measurement"]
 Amend = Callable[[Campaign, Mapping[str, float]], Campaign]
@@ -25,26 +25,26 @@ class Situation:
     ----------
     fit : Fit
         The recalibrated base.
-    found : sequence of Found
-        Places by what a free stiffness there explains, the most telling first; empty without hammer tests.
+    locations : sequence of Location
+        Places to look at, those that matter most first; may be empty.
     """
 
     fit: Fit
-    found: tuple[Found, ...]
+    locations: tuple[Location, ...]
 
     @property
     def campaign(self) -> Campaign:
         """The base, recalibrated."""
         return self.fit.campaign
 
-    def joints(self, law: str, most: int = 3) -> list[Found]:
-        """The most telling joints of a law."""
-        mine = [f for f in self.found if f.spot.kind == "joint" and f.spot.name == law]
+    def joints(self, law: str, most: int = 3) -> list[Location]:
+        """The first joints of a law."""
+        mine = [at for at in self.locations if at.kind == "joint" and at.name == law]
         return mine[:most]
 
-    def bodies(self, body: str, most: int = 3) -> list[Found]:
-        """The most telling places of a body."""
-        mine = [f for f in self.found if f.spot.kind == "body" and f.spot.name.split("[")[0] == body]
+    def bodies(self, body: str, most: int = 3) -> list[Location]:
+        """The first places of a body."""
+        mine = [at for at in self.locations if at.kind == "body" and at.name.split("[")[0] == body]
         return mine[:most]
 
 

@@ -21,9 +21,9 @@ from permway.diagnosis.clock import Progress
 from permway.diagnosis.fit import Fit, free_parameters, limits_of
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Hypothesis, Situation
+from permway.diagnosis.location import Location
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.side_by_side import one_thread_of_blas
-from permway.diagnosis.spot import Found, Spot
 from permway.diagnosis.stacking import stacked
 from permway.diagnosis.stretches import stretches
 from permway.diagnosis.tangent import Problem
@@ -160,30 +160,24 @@ def _untouched(fit: Fit) -> Fit:
     return replace(fit, residuals=nothing, clean=nothing, chi2=0.0, prior=0.0, inflation=1.0)
 
 
-def places(fit: Fit) -> Iterator[Found]:
-    """A quarter, the middle and three quarters of each layer and body, as places of which nothing is known yet."""
-    line, rows = fit.campaign.model.line, fit.observations.rows
-    frequency = np.geomspace(float(rows.frequency_Hz.min()), float(rows.frequency_Hz.max()), BANDS)
-    nothing, flat = np.zeros(BANDS, dtype=np.complex128), np.ones(BANDS)
-    # Resonators are begun where most is to be seen: where nobody looked yet, in the middle of the band.
-    shown = np.where(np.arange(BANDS) == BANDS // 2, 2.0, 1.0)
+def places(fit: Fit) -> Iterator[Location]:
+    """A quarter, the middle and three quarters of each layer and body."""
     for share in SHARES:
-        for spots in _spots(line):
-            spot = spots[round(share * (len(spots) - 1))]
-            yield Found(spot, 0.0, 0, frequency, nothing, flat, shown, 1.0)
+        for locations in _locations(fit.campaign.model.line):
+            yield locations[round(share * (len(locations) - 1))]
 
 
-def _spots(line: Line) -> Iterator[list[Spot]]:
+def _locations(line: Line) -> Iterator[list[Location]]:
     """The joints of each layer and the places of each body, in order."""
     table = line.joint_table()
     order = np.argsort(table.x, kind="stable")
     for index, law in enumerate(line.laws):
         mine = [int(j) for j in order if table.law[j] == index]
         if mine:
-            yield [Spot("joint", law, (float(table.x[j]), float(table.x[j])), (j,)) for j in mine]
+            yield [Location("joint", law, float(table.x[j])) for j in mine]
     for segment, low, high in stretches(line):
         inside = np.linspace(low, high, max(2, round(high - low) + 1))
-        yield [Spot("body", segment.name, (float(x), float(x))) for x in inside]
+        yield [Location("body", segment.name, float(x)) for x in inside]
 
 
 class _Base:

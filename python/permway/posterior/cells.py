@@ -13,10 +13,9 @@ import numpy as np
 from permway.arrays import Reals
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.fit import Fit as Base
-from permway.diagnosis.fit import Free
+from permway.diagnosis.fit import Free, free_parameters
 from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
-from permway.diagnosis.observations import Solved
-from permway.diagnosis.spot import Found, Spot
+from permway.diagnosis.location import Location
 from permway.diagnosis.stretches import stretches
 from permway.posterior import generic, stated
 from permway.posterior.fit import Fit
@@ -24,9 +23,6 @@ from permway.posterior.spans import BEYOND, begun, spread_out, tuned, widened
 
 SPACING_M = 1.0
 """Between places along a body, m: a third of what the places' priors span."""
-
-BAND_HZ, BANDS = (8.0, 200.0), 24
-"""What a place that was not scanned is handed on with: frequencies where nothing stands out."""
 
 FARTHEST = 40.0
 """Standard deviations, beyond which no value is looked for: places on a rail without ends have no limits."""
@@ -253,31 +249,24 @@ def _situations(base: Fit) -> Iterator[Situation]:
     line = fit.campaign.model.line
     yield Situation(fit, ())
     table, laws = line.joint_table(), list(line.laws)
-    for index in range(table.x.size):
-        yield Situation(fit, (_place("joint", laws[table.law[index]], float(table.x[index]), (index,)),))
+    for law, x in zip(table.law, table.x, strict=True):
+        yield Situation(fit, (Location("joint", laws[law], float(x)),))
     for segment, first, last in stretches(line):
         for x in np.arange(first + 0.5 * SPACING_M, last, SPACING_M):
-            yield Situation(fit, (_place("body", segment.name, float(x), ()),))
-
-
-def _place(kind: str, name: str, x: float, joints: tuple[int, ...]) -> Found:
-    """A place about which nothing is known."""
-    frequency = np.geomspace(*BAND_HZ, BANDS)
-    flat = np.full(BANDS, 1.0 / BANDS)
-    return Found(
-        Spot(kind, name, (x, x), joints), 1e6, BANDS, frequency, flat * (0.0 + 0.0j), np.ones(BANDS), flat, 1e6
-    )
+            yield Situation(fit, (Location("body", segment.name, float(x)),))
 
 
 def _as_base(fit: Fit) -> Base:
-    """What entries of the catalogue are handed."""
+    """What entries of the catalogue are handed: the line without amendments, which a hypothesis might keep."""
     residuals = fit.state.residuals
-    solved: Solved = fit.state.solved
+    nominal = fit.frame.observations.campaign
+    names = {free.name for free in free_parameters(nominal)}
+    campaign = nominal.with_values({name: v for name, v in fit.values().items() if name in names})
     return Base(
         free=fit.model.free,
         z=fit.z,
         covariance=fit.spread,
-        campaign=solved.campaign,
+        campaign=campaign,
         observations=fit.frame.observations,
         residuals=residuals,
         clean=residuals,

@@ -27,8 +27,8 @@ from permway.diagnosis.catalogue import entries
 from permway.diagnosis.fit import Free
 from permway.diagnosis.gather import gather
 from permway.diagnosis.hypothesis import Hypothesis, Situation
+from permway.diagnosis.location import Location
 from permway.diagnosis.recalibrate import recalibrate
-from permway.diagnosis.spot import Found, Spot
 
 STEP = 1e-3
 """Of slopes, in standard deviations of a prior."""
@@ -173,7 +173,7 @@ class ByModel:
         datasets = [_filled(d, p) for d, p in zip(self._blank, self._as_datasets(), strict=True)]
         observations = gather(self._with_a_parameter(), datasets, threads=1)
         fit = recalibrate(observations, most_steps=0)
-        return Situation(fit, self._found(random))
+        return Situation(fit, self._locations(random))
 
     def _with_a_parameter(self) -> Campaign:
         """The campaign, or, if it states no parameter, with one: a base has something to recalibrate."""
@@ -189,21 +189,16 @@ class ByModel:
     def _as_datasets(self) -> list[xr.Dataset]:
         return predict(self.true, self._blank, threads=1)
 
-    def _found(self, random: np.random.Generator) -> tuple[Found, ...]:
+    def _locations(self, random: np.random.Generator) -> tuple[Location, ...]:
         line = self.campaign.model.line
         table, laws, first = line.joint_table(), list(line.laws), self._place(random)
         drawn = [int(j) for j in random.permutation(table.x.size)]
         order = [j for j in drawn if abs(table.x[j] - first) < 0.5] + drawn
-        spots = [
-            Spot("joint", laws[table.law[j]], (float(table.x[j]), float(table.x[j])), (j,))
-            for j in dict.fromkeys(order)
-        ]
+        found = [Location("joint", laws[table.law[j]], float(table.x[j])) for j in dict.fromkeys(order)]
         for _, segment in line.beams():
             x = round(min(max(first, segment.start + 0.1), segment.stop - 0.1), 3)
-            spots.insert(int(random.integers(3)), Spot("body", segment.name, (x, x)))
-        f = np.geomspace(8.0, 200.0, 24)
-        ones = np.ones(f.size)
-        return tuple(Found(s, 1e6, 24, f, np.zeros(f.size, complex), ones, ones / f.size, 1e6) for s in spots)
+            found.insert(int(random.integers(3)), Location("body", segment.name, x))
+        return tuple(found)
 
 
 AT_A_POINT = 0.3

@@ -39,7 +39,7 @@ def local_loss(
     x = stations_of(situation.campaign.model.line, law)
     step = spacing(x)
     taken: list[float] = []
-    for centre in [f.spot.x_m[0] for f in situation.joints(law, most=40)] or places:
+    for centre in [at.x_m for at in situation.joints(law, most=40)] or places:
         if all(abs(centre - other) >= 4.0 * step for other in taken):
             taken.append(centre)
     for centre in taken[:most]:

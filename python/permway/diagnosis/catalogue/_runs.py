@@ -116,7 +116,8 @@ _LAST: list[tuple[weakref.ref[Fit], list[Excess]]] = []
 def _found(situation: Situation) -> list[Excess]:
     fit = situation.fit
     found = []
-    predicted = fit.observations.predicted(fit.campaign).datasets
+    # With what a set of amendments explains already.
+    predicted = fit.observations.predicted(fit.build(fit.values())).datasets
     for block, expected in zip(fit.observations.blocks, predicted, strict=True):
         condition = situation.campaign.condition(block.dataset.condition.name)
         if not isinstance(block, SpectraBlock) or condition.speed_m_per_s is None:

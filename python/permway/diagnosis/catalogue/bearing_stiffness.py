@@ -32,10 +32,10 @@ MOST = 3
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
-    """One for each of the most telling stations, and where two girders meet one for each of them."""
+    """One for each of the first stations, and where two girders meet one for each of them."""
     line = situation.campaign.model.line
     for layer in bearings(line):
-        located = [f.spot.x_m[0] for f in situation.joints(layer.law, most=MOST)]
+        located = [at.x_m for at in situation.joints(layer.law, most=MOST)]
         for x in dict.fromkeys((*located, *layer.x.tolist()[:MOST])) if located else layer.x.tolist()[:MOST]:
             if np.abs(layer.x - x).min() < REACH_M:
                 yield _station(layer, float(x))

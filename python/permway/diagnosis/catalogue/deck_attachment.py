@@ -32,18 +32,17 @@ SOURCE = "Den Hartog, Mechanical Vibrations (1956), chapter 3"
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
-    """At the most telling place of the girder, at frequencies over the records' range."""
+    """At a place of the girder, at frequencies over the records' range."""
     for body in girders(situation.campaign.model.line):
         yield from resonators(situation, body, ID)
 
 
 def resonators(situation: Situation, body: str, entry: str) -> Iterator[Hypothesis]:
-    """On any beam, at its most telling place."""
+    """On any beam, at the first place that is looked at."""
     best = situation.bodies(body, most=1)
     if not best:
         return
-    centre = best[0].spot.x_m[0]
-    name = best[0].spot.name
+    centre, name = best[0].x_m, best[0].name
     segment = next(s for s in situation.campaign.model.line.segments() if s.name == name)
     low, high = max(segment.start, centre - 12.0), min(segment.stop, centre + 12.0)
 
@@ -55,10 +54,8 @@ def resonators(situation: Situation, body: str, entry: str) -> Iterator[Hypothes
             laws={law: hung_mass(values["mass_kg"], values["frequency_Hz"], values["loss_factor"])},
         )
 
-    # The dissipative part of a resonator's stiffness peaks at its frequency.
-    shown = best[0].by_band
-    peaks = best[0].frequency_Hz[np.argsort(-shown)[:1]]
-    octaves = np.log(np.concatenate([peaks, np.geomspace(4.0, 150.0, 12)]) / 25.0) / np.log(2.5)
+    # The likeliest first.
+    octaves = sorted((np.log(np.geomspace(4.0, 150.0, 12) / 25.0) / np.log(2.5)).tolist(), key=abs)
     yield Hypothesis(
         entry=entry,
         domain=DOMAIN,
@@ -71,7 +68,7 @@ def resonators(situation: Situation, body: str, entry: str) -> Iterator[Hypothes
         ),
         amend=amend,
         locate=lambda v: Where(what=name, x_m=(v["x_m"], v["x_m"])),
-        starts=tuple((0.0, 0.0, float(z), 0.3) for z in octaves),
+        starts=tuple((0.0, 0.0, z, 0.3) for z in octaves),
         law=lambda v: (
             f"{v['mass_kg']:.3g} kg on a spring, {v['frequency_Hz']:.3g} Hz, loss factor {v['loss_factor']:.2g}"
         ),

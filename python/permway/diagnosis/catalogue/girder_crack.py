@@ -48,13 +48,13 @@ STARTS = 7
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
-    """One for each row of girders, on the beam of the row that the scan names, else on the first."""
+    """One for each row of girders, on the beam of the row that is looked at, else on the first."""
     line = situation.campaign.model.line
     for name in girders(line):
         located = situation.bodies(name, most=1)
         segments = reaches(line, name)
-        segment = next((s for s in segments if located and s.name == located[0].spot.name), segments[0])
-        yield _on(name, segment, located[0].spot.x_m[0] if located else None)
+        segment = next((s for s in segments if located and s.name == located[0].name), segments[0])
+        yield _on(name, segment, located[0].x_m if located else None)
 
 
 def _on(name: str, segment: Segment, located: float | None) -> Hypothesis:
