@@ -89,16 +89,22 @@ def _predicted(fit: Fit, out: np.ndarray) -> tuple[float, float]:
 
 
 def _marginal(fit: Fit, keep: np.ndarray) -> tuple[float, np.ndarray]:
-    """Log marginal likelihood of some rows, and by how far the parameters are elsewhere without the others."""
+    """Log marginal likelihood of some rows, and by how far the parameters are elsewhere without the others.
+
+    Ends of stretches stay: between two joints they have no slope, so that the prior alone would move them.
+    """
+    ends = [index for centre, length, _ in fit.model.stretches for index in (centre, length)]
+    moving = np.setdiff1d(np.arange(fit.z.size), ends)
     covariance = _of_rows(fit.covariance, keep)
-    columns = np.column_stack([fit.state.residuals, fit.jacobian])
+    columns = np.column_stack([fit.state.residuals, fit.jacobian[:, moving]])
     roots = covariance.roots(columns)
     inner = roots.times(roots)
-    normal = inner[1:, 1:] + np.eye(fit.z.size)
-    slope = inner[1:, 0] + fit.z
-    shift = -np.linalg.solve(normal, slope) if fit.z.size else np.zeros(0)
-    least = inner[0, 0] + fit.z @ fit.z + slope @ shift
-    curvature = np.linalg.slogdet(normal)[1] if fit.z.size else 0.0
+    normal = inner[1:, 1:] + np.eye(moving.size)
+    slope = inner[1:, 0] + fit.z[moving]
+    shift = np.zeros(fit.z.size)
+    shift[moving] = -np.linalg.solve(normal, slope) if moving.size else 0.0
+    least = inner[0, 0] + fit.z @ fit.z + slope @ shift[moving]
+    curvature = np.linalg.slogdet(normal)[1] if moving.size else 0.0
     count = int(keep.sum())
     return -0.5 * float(least + curvature + covariance.log_determinant + count * np.log(2.0 * np.pi)), shift
 
