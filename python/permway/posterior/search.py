@@ -96,15 +96,17 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
         found = []
         lacks = best.fit.hyper.lacks
         if lacks < LEVELS[1]:
-            seen = _small_changes(best, ruled_out, progress, what)
+            offered = _offered(best, best.fit, ruled_out)
+            seen = _small_changes(best, small(offered), progress, what)
             found += _near(fitter, best, *seen, progress, what)
             if found:
-                found += _alike(fitter, best, max(found, key=lambda m: m.log_mass), ruled_out, progress, what)
-        leader = min((best, *found), key=lambda m: -m.log_mass).fit.hyper
-        if leader.novel > LACKING or leader.strained:
+                leader = max(found, key=lambda m: m.log_mass)
+                found += _alike(fitter, best, leader, small(alternatives(leader, offered)), progress, what)
+        hyper = max((best, *found), key=lambda m: m.log_mass).fit.hyper
+        if hyper.novel > LACKING or hyper.strained:
             # What lacks little is not to be looked for where nothing shows. What is missing may have been taken
             # for errors of chains, too, about which no small change gains.
-            far_off = count == 1 and (lacks > LEVELS[1] or leader.strained)
+            far_off = count == 1 and (lacks > LEVELS[1] or hyper.strained)
             found += _far(fitter, far if far_off else best, far_off, ruled_out, progress, what)
         fitter, members = ordered(fitter, best, [*members, *found], nominal)
         root = _next_root(members, count)
@@ -125,11 +127,8 @@ def _next_root(members: Sequence[Member], count: int) -> Member | None:
     return next((m for m in members if len(m.amendments) == count and not m.fit.hyper.strained), None)
 
 
-def _small_changes(
-    root: Member, ruled_out: Collection[str], progress: Progress, what: str
-) -> tuple[list[Cell], Scores]:
+def _small_changes(root: Member, starts: list[Cell], progress: Progress, what: str) -> tuple[list[Cell], Scores]:
     """A look at all small changes about a set that fits."""
-    starts = small(_offered(root, root.fit, ruled_out))
     say = _saying(progress, f"small changes, {what}", len(starts))
     return starts, screened(root.fit, starts, say, root.fit.hyper.smaller())
 
@@ -141,11 +140,10 @@ def _offered(root: Member, about: Fit, ruled_out: Collection[str]) -> list[Cell]
 
 
 def _alike(
-    fitter: Fitter, root: Member, leader: Member, ruled_out: Collection[str], progress: Progress, what: str
+    fitter: Fitter, root: Member, leader: Member, starts: Sequence[Cell], progress: Progress, what: str
 ) -> list[Member]:
     """Sets with another amendment where the leader has its own, if they may come as near as a class shows."""
     views = (leader.fit.hyper, *root.fit.hyper.smaller())
-    starts = small(alternatives(leader, _offered(root, root.fit, ruled_out)))
     scores = screened(root.fit, starts, _saying(progress, f"alternatives, {what}", len(starts)), views)
     return _near(fitter, root, starts, scores, progress, what, views, leader.log_mass - root.log_mass - LEFT)
 
