@@ -12,6 +12,7 @@ from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import between_free, linear_free, log_free
 from permway.laws import Hysteretic, Maxwell, Parallel, Scaled, Springpot
 from permway.laws.base import Law
+from permway.laws.waves import Waves
 
 AT_HZ = 100.0
 """Where the stiffness of a springpot is counted."""
@@ -65,6 +66,15 @@ def _inerter(v: Values) -> Law:
     return fixed_mass(v["inertance_kg"])
 
 
+def _rod(v: Values) -> Law:
+    """A rod that is held below and free above, -m omega^2 tan(b) / b with b = (pi / 2) f / f1 / sqrt(1 + i eta).
+
+    It is one half of a rod of twice the length whose ends move alike.
+    """
+    stiffness = 0.5 * v["mass_kg"] * (4.0 * v["frequency_Hz"]) ** 2
+    return Waves(stiffness=stiffness, delay_s=0.5 / v["frequency_Hz"], loss_factor=v["loss_factor"], part="end")
+
+
 def _signed(name: str, unit: str, size: float) -> Free:
     return linear_free(name, unit, 0.0, size, -8.0 * size, 8.0 * size)
 
@@ -107,3 +117,20 @@ ELEMENTS = (
         lambda v: f"an inertance of {v['inertance_kg']:.3g} kg",
     ),
 )
+
+STANDING = (
+    Element(
+        "rod",
+        lambda k, f: (
+            log_free("mass_kg", "kg", k / (2.0 * np.pi * f) ** 2, 3.0),
+            log_free("frequency_Hz", "Hz", f, 3.0),
+            log_free("loss_factor", "1", 0.1, 2.5),
+        ),
+        _rod,
+        lambda v: (
+            f"a standing rod of {v['mass_kg']:.3g} kg, a quarter wave long at {v['frequency_Hz']:.3g} Hz, loss "
+            f"factor {v['loss_factor']:.2g}"
+        ),
+    ),
+)
+"""What stands on a body: a mast, a post, a pier that carries waves."""

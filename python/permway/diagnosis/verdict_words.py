@@ -141,6 +141,16 @@ def strongest(verdict: Verdict) -> tuple[str, HeldOutGain] | None:
     return max(known.items(), key=lambda item: item[1].gain_nats, default=None)
 
 
+def held_dB(verdict: Verdict) -> tuple[float, float] | None:
+    """Error of all held-out records, one group after the other, root mean square: before and after."""
+    known = [(g.db_before, g.db_after) for g in verdict.held_out.values()]
+    decibels = np.array([(b, a) for b, a in known if b is not None and a is not None]).reshape(-1, 2)
+    if not decibels.size:
+        return None
+    before, after = np.sqrt(np.mean(decibels**2, axis=0)).tolist()
+    return float(before), float(after)
+
+
 def _named(effect: Effect) -> str:
     """What, where, how much, how surely, with 90 % intervals."""
     known = probability(effect)
@@ -195,12 +205,10 @@ def _disbelieved(effect: Effect) -> bool:
 
 def _better(verdict: Verdict) -> str:
     """How much better all records are predicted that were left out, one after the other: root mean squares."""
-    known = [(g.db_before, g.db_after) for g in verdict.held_out.values()]
-    decibels = np.array([(b, a) for b, a in known if b is not None and a is not None]).reshape(-1, 2)
-    found = strongest(verdict)
-    if found is None:
+    found, errors = strongest(verdict), held_dB(verdict)
+    if found is None or errors is None:
         return ""
-    before, after = np.sqrt(np.mean(decibels**2, axis=0)).tolist()
+    before, after = errors
     if found[1].gain_nats > 0.0 and f"{before:.1f}" == f"{after:.1f}":
         nats = quantity(found[1].gain_nats)
         return (
@@ -296,6 +304,7 @@ def _advice(verdict: Verdict) -> str:
     first = verdict.next[0]
     suspected, rival = first.separates
     sure = rival == RECALIBRATED
+    suspected = " and ".join(dict.fromkeys(suspected.split(" and ")))
     aim = f"be sure of {name_of(suspected)}" if sure else f"tell {name_of(suspected)} from {name_of(rival)}"
     return f"to {aim}, measure: {first.measurement}"
 

@@ -1,4 +1,4 @@
-"""Mechanics of no catalogue: a spring, dashpot, springpot, Maxwell pair or inertance at a place.
+"""Mechanics of no catalogue: a spring, dashpot, springpot, Maxwell pair, inertance or standing rod at a place.
 
 It ties two bodies that a layer ties, or a body to the ground. What fits is a description and no name.
 """
@@ -13,7 +13,7 @@ import numpy as np
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import fresh, with_joints
 from permway.diagnosis.catalogue._roles import Layer, layers
-from permway.diagnosis.elements import ELEMENTS, Element
+from permway.diagnosis.elements import ELEMENTS, STANDING, Element
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free, log_free
 from permway.diagnosis.verdict import NOVEL
@@ -71,8 +71,8 @@ def _places(segment: Segment, carrying: list[Layer]) -> np.ndarray:
 
 
 def _elements(segment: Segment, lower: str, x: float, typical: float) -> Iterator[Hypothesis]:
-    """Each element; what hangs on a body is in the catalogue."""
-    for element in ELEMENTS:
+    """Each element; what hangs on a body by one spring is in the catalogue."""
+    for element in (*ELEMENTS, *(STANDING if lower == GROUND else ())):
         if element.name == "spring":
             yield _of(segment, lower, x, typical, element, 1.0)
         yield _of(segment, lower, x, typical, element, -1.0 if element.name == "spring" else 1.0)
@@ -112,5 +112,5 @@ def _of(segment: Segment, lower: str, x: float, typical: float, element: Element
     return replace(made, starts=(*made.starts, (1.0, *made.starts[0][1:])))
 
 
-_POWER = {"dashpot": 1, "inerter": 2}
+_POWER = {"dashpot": 1, "inerter": 2, "rod": 2}
 """By which power of an angular frequency an element's constant is less than a stiffness."""

@@ -28,7 +28,7 @@ from permway.posterior.beam import (
 )
 from permway.posterior.cells import Cell, cells, resized, small
 from permway.posterior.fit import Fit, Fitter, Model
-from permway.posterior.hyper import LACKING, Hyper
+from permway.posterior.hyper import LACKING
 from permway.posterior.ordering import LEFT, LEVELS, annealed, apart, ordered, weighed
 from permway.posterior.recalibrated import first_values
 from permway.posterior.screening import Scores, screened
@@ -96,18 +96,17 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
         found = []
         lacks = best.fit.hyper.lacks
         if lacks < LEVELS[1]:
-            offered = _offered(best, best.fit, ruled_out)
-            seen = _small_changes(best, small(offered), progress, what)
+            seen = _small_changes(best, small(_offered(best, best.fit, ruled_out)), progress, what)
             found += _near(fitter, best, *seen, progress, what)
-            if found:
-                leader = max(found, key=lambda m: m.log_mass)
-                found += _alike(fitter, best, leader, small(alternatives(leader, offered)), progress, what)
         hyper = max((best, *found), key=lambda m: m.log_mass).fit.hyper
         if hyper.novel > LACKING or hyper.strained:
             # What lacks little is not to be looked for where nothing shows. What is missing may have been taken
             # for errors of chains, too, about which no small change gains.
             far_off = count == 1 and (lacks > LEVELS[1] or hyper.strained)
             found += _far(fitter, far if far_off else best, far_off, ruled_out, progress, what)
+        leader = max((best, *found), key=lambda m: m.log_mass)
+        if leader is not best:
+            found += _alike(fitter, best, leader, ruled_out, progress, what)
         fitter, members = ordered(fitter, best, [*members, *found], nominal)
         root = _next_root(members, count)
     return Explored(apart(members), seen)
@@ -140,46 +139,36 @@ def _offered(root: Member, about: Fit, ruled_out: Collection[str]) -> list[Cell]
 
 
 def _alike(
-    fitter: Fitter, root: Member, leader: Member, starts: Sequence[Cell], progress: Progress, what: str
+    fitter: Fitter, root: Member, leader: Member, ruled_out: Collection[str], progress: Progress, what: str
 ) -> list[Member]:
     """Sets with another amendment where the leader has its own, if they may come as near as a class shows."""
-    views = (leader.fit.hyper, *root.fit.hyper.smaller())
-    scores = screened(root.fit, starts, _saying(progress, f"alternatives, {what}", len(starts)), views)
-    return _near(fitter, root, starts, scores, progress, what, views, leader.log_mass - root.log_mass - LEFT)
+    fixed, fit = root.fit.z.size, leader.fit
+    without = fitter.begin(root.fit.model, fit.z[:fixed], fit.hyper, fit.jacobian[:, :fixed])
+    starts = small(alternatives(leader, _offered(root, without, ruled_out)))
+    scores = screened(without, starts, _saying(progress, f"alternatives, {what}", len(starts)), ())
+    count = fit.state.residuals.size
+    behind = 0.5 * (without.objective - scores.gain - fit.objective)
+    worth = []
+    for i, (cell, nats) in enumerate(zip(starts, behind.tolist(), strict=True)):
+        lacking = tempered(nats, count) + leader.log_priors[-1] - cell.log_prior
+        if lacking < LEFT:
+            other = resized(cell, float(scores.measure[i]))
+            trial = replace(Trial.of(root, other, fit.hyper), z=np.concatenate([fit.z[:fixed], other.z]))
+            worth.append((lacking, other.hypothesis, trial))
+    trials = chosen(worth, WIDTHS[2], PER_FORM[2])
+    return completed(fitter, root, trials, _saying(progress, f"alternatives, {what}, to the end", len(trials)))
 
 
 def _near(
-    fitter: Fitter,
-    root: Member,
-    starts: Sequence[Cell],
-    scores: Scores,
-    progress: Progress,
-    what: str,
-    views: Sequence[Hyper] | None = None,
-    least_gain: float = float(np.log(PREDICTED)),
+    fitter: Fitter, root: Member, starts: Sequence[Cell], scores: Scores, progress: Progress, what: str
 ) -> list[Member]:
-    """Sets with one amendment more, whose change is small: begun where the smaller set fits best.
-
-    Parameters
-    ----------
-    fitter : Fitter
-    root : Member
-        The smaller set.
-    starts : sequence of Cell
-    scores : Scores
-    progress : callable
-    what : str
-    views : sequence of Hyper, optional
-        Of the scores, after the smaller set's own.
-    least_gain : float
-        Nats that a start is predicted to gain before it is fitted.
-    """
+    """Sets with one amendment more, whose change is small: begun where the smaller set fits best."""
     count = root.fit.state.residuals.size
     predicted = np.array([tempered(0.5 * gain, count) for gain in scores.gain.tolist()])
     predicted += [cell.log_prior for cell in starts]
-    hypers = [root.fit.hyper, *(root.fit.hyper.smaller() if views is None else views)]
+    hypers = [root.fit.hyper, *root.fit.hyper.smaller()]
     worth = []
-    for i in np.flatnonzero(predicted > least_gain).tolist():
+    for i in np.flatnonzero(predicted > np.log(PREDICTED)).tolist():
         cell, hyper = resized(starts[i], float(scores.measure[i])), hypers[scores.view[i]]
         worth.append((-predicted[i], cell.hypothesis, Trial.beside(root, cell, hyper)))
     # Hyperparameters are the smaller set's still: what is behind with them hardly comes first with its own.

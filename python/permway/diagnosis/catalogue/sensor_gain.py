@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 
 from permway.campaign.campaign import Campaign
@@ -13,12 +14,15 @@ ID = "sensor_gain"
 DOMAIN: Domain = "measurement"
 FAMILY = "level"
 SUMMARY = "What one sensor reads is a constant factor off."
-PARAMETERS = {"gain": "1, 0.13 to 7.6: read over true"}
+PARAMETERS = {"gain": "1, 0.001 to 1000: read over true"}
 SIGNATURE = "One row of all frequency responses, or one channel of all runs, by one factor at all frequencies."
 CONFUSED_WITH = {
     "irregularity_level": "all channels of a run move together there",
     "sensor_mounting": "the factor grows with frequency",
 }
+FARTHEST = 17.0
+"""Standard deviations: a factor of 1000."""
+
 SOURCE = "ISO 16063-21; Bendat and Piersol, Random Data (2010), section 8.3"
 
 
@@ -38,7 +42,8 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             entry=ID,
             domain=DOMAIN,
             family=FAMILY,
-            free=(log_free("gain", "1", 1.0, 1.5),),
+            # A unit that is mistaken (g, mV) is far from what a calibration is off by.
+            free=(replace(log_free("gain", "1", 1.0, 1.5), limits=(-FARTHEST, FARTHEST)),),
             amend=amend,
             locate=partial(_at, sensor.name),
             starts=((0.13,), (-0.13,)),

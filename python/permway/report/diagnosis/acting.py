@@ -7,7 +7,7 @@ from permway.diagnosis.plain_names import chance, ends, estimate, name_of, param
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.tolerances import outside
 from permway.diagnosis.verdict import NOVEL, UNPROVED, Effect, Verdict
-from permway.diagnosis.verdict_words import DOMAIN, STATED, STATUS, probability, strongest
+from permway.diagnosis.verdict_words import DOMAIN, STATED, STATUS, held_dB, probability, strongest
 from permway.diagnosis.weighed import Aside, Rival, Weighed
 from permway.model.line import Line
 
@@ -30,17 +30,15 @@ def facts_first(verdict: Verdict) -> Facts:
         if one is not None:
             span = f"; 90 %: {ends(one)}" if ends(one) else ""
             found.append((estimate(one), f"{_meaning(effect, effect.size or '')}{span}"))
-    best = strongest(verdict)
-    if best is not None and verdict.effects:
-        group, gain = best
-        before, after = (f"{one or 0.0:.1f}" for one in (gain.db_before, gain.db_after))
-        held = f"what was held out ({group})"
+    best, errors = strongest(verdict), held_dB(verdict)
+    if best is not None and errors is not None and verdict.effects:
+        before, after = (f"{one:.1f}" for one in errors)
         if before == after:
-            found.append(
-                (f"{gain.gain_nats:+.0f} nats", f"gain of the log density of {held}; {after} dB off as before")
-            )
+            group, gain = best
+            gained = f"gain of the log density of what was held out ({group}); {after} dB off as before"
+            found.append((f"{gain.gain_nats:+.0f} nats", gained))
         else:
-            found.append((f"{before} → {after} dB", f"error of {held}, before and after"))
+            found.append((f"{before} → {after} dB", "error of what was held out, before and after"))
     return found
 
 
