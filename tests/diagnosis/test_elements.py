@@ -8,7 +8,9 @@ from permway.diagnosis.elements import STANDING
 
 
 @pytest.mark.parametrize("loss_factor", [0.02, 0.3])
-def test_a_standing_rod_is_its_mass_at_low_frequency_and_resonates_at_odd_quarter_waves(loss_factor: float) -> None:
+def test_a_standing_rod_is_its_mass_at_low_frequency_and_resonates_at_odd_quarter_waves(
+    loss_factor: float,
+) -> None:
     (rod,) = STANDING
     mass, quarter = 1.2e4, 33.9
     law = rod.law({"mass_kg": mass, "frequency_Hz": quarter, "loss_factor": loss_factor})

@@ -40,3 +40,24 @@ def test_hypotheses_beside_a_set_hold_nothing_of_it(tmp_path: Path, index: int) 
             except InputError:
                 continue
             assert one.hypothesis.amend(campaign, one.values).model == expected
+
+
+@pytest.mark.parametrize("index", range(12))
+def test_any_amendment_on_any_other_changes_the_line_or_is_refused(tmp_path: Path, index: int) -> None:
+    """A set may have changed the law, or cut the beam, that another amendment is about."""
+    name = make_small(5150003, index, tmp_path)
+    campaign = read_campaign(tmp_path / name / "campaign.toml")
+    forms = {cell.hypothesis.form: cell for cell in cells(recalibrated(gather(campaign, threads=1)))}
+    assert len(forms) > 10
+    refused = 0
+    for first in forms.values():
+        if first.hypothesis.moves:
+            continue
+        amended = first.hypothesis.amend(campaign, first.values)
+        for second in forms.values():
+            if not second.hypothesis.moves:
+                try:
+                    second.hypothesis.amend(amended, second.values)
+                except InputError:
+                    refused += 1
+    assert refused < 0.3 * len(forms) ** 2

@@ -46,6 +46,9 @@ BEHIND = 92.0
 PREDICTED = 0.03
 """The same by a linear look, which predicts too much: it has no penalty for what parameters could have been."""
 
+GROWS = 0.5
+"""Share of the best's gain, by which a small change that is not yet fitted to the end may be behind it."""
+
 MOVING = 5.0
 """Nats that a small change may lack before it is moved to better neighbours."""
 
@@ -178,9 +181,11 @@ def _near(
         say = _saying(progress, f"{what}, from small changes", len(trials))
         trials = advanced(fitter, root, trials, steps=STEPS[int(moves)], moves=moves, progress=say)
         rows = [(-tempered(t.log_evidence, count) - t.cell.log_prior, t.cell.hypothesis, t) for t in trials]
+        # What has gained half of the best may still gain the rest: a large change is far from where it began.
+        gained = GROWS * (least - min((row[0] for row in rows), default=least))
         if not moves:
-            trials = [row[2] for row in leading(rows, 0.5 * BEHIND) if row[0] < least + MOVING]
-    rows = [row for row in leading(distinct(rows), 2.0 * LEFT) if row[0] < least]
+            trials = [row[2] for row in leading(rows, max(0.5 * BEHIND, gained)) if row[0] < least + MOVING]
+    rows = [row for row in leading(distinct(rows), max(2.0 * LEFT, gained)) if row[0] < least]
     kept = chosen(rows, WIDTHS[2], PER_FORM[2])
     return completed(fitter, root, kept, _saying(progress, f"{what}, to the end", len(kept)))
 

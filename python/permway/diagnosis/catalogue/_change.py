@@ -10,12 +10,14 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
+from permway.errors import InputError
 from permway.laws import Hysteretic, Measured, Series, StorageLossPair
 from permway.laws.base import Law
 from permway.model.changes import Change
 from permway.model.joints import Joints
 from permway.model.line import Line
 from permway.recordings.channel import Chain
+from permway.records import type_name
 
 REACH_M = 1e-6
 """Half the length of a change that holds one joint."""
@@ -117,6 +119,22 @@ def hung_mass(mass_kg: float, frequency_Hz: float, loss_factor: float) -> Law:
     """
     spring = Hysteretic(stiffness=max(mass_kg, 1e-9) * (2.0 * np.pi * frequency_Hz) ** 2, loss_factor=loss_factor)
     return Series(first=spring, second=fixed_mass(mass_kg))
+
+
+def constant_law(campaign: Campaign, name: str) -> Hysteretic:
+    """A law k (1 + i eta) of the line.
+
+    Raises
+    ------
+    InputError
+        If another amendment has changed its kind.
+    """
+    law = campaign.model.line.laws[name]
+    if not isinstance(law, Hysteretic):
+        raise InputError(
+            "its stiffness is not constant any more", where=f"line.laws.{name}", value=type_name(type(law))
+        )
+    return law
 
 
 def constant_loss(loss: float) -> Law:

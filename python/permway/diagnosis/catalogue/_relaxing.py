@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from permway.campaign.campaign import Campaign
-from permway.diagnosis.catalogue._change import with_law
+from permway.diagnosis.catalogue._change import constant_law, with_law
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Hypothesis, Where, between_free, log_free
 from permway.laws import Hysteretic, Maxwell, Parallel, Scaled, Springpot
@@ -120,10 +120,9 @@ def relaxing(
         r, of the constant loss, what stays, of all that relaxes too; what goes, the springpot has. Of a share
         below :data:`WHOLE` so much less goes.
     """
-    law = campaign.model.line.laws[name]
     if share == 0.0:
         return campaign
-    assert isinstance(law, Hysteretic)
+    law = constant_law(campaign, name)
     stiffness = law.stiffness * stiffness_factor
     # At f0 the real parts add up to the stiffness.
     coefficient = stiffness * share / np.cos(0.5 * np.pi * order) * (2.0 * np.pi * REFERENCE_HZ) ** -order
@@ -156,10 +155,9 @@ def relaxing_once(
     rest : float
         Of the constant loss eta, what stays, of all that relaxes too.
     """
-    law = campaign.model.line.laws[name]
     if rise == 0.0:
         return campaign
-    assert isinstance(law, Hysteretic)
+    law = constant_law(campaign, name)
     stiffness = law.stiffness * stiffness_factor
     static = 1.0 / (1.0 + rise * REFERENCE_HZ**2 / (REFERENCE_HZ**2 + relaxation_Hz**2))
     branch = rise * static * stiffness

@@ -10,8 +10,10 @@ from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import constant_loss, with_loss
 from permway.diagnosis.catalogue._roles import laws_of, layers, pads
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, between_free, log_free
+from permway.errors import InputError
 from permway.laws import Hysteretic, KelvinVoigt
 from permway.laws.base import Law
+from permway.records import type_name
 
 ID = "layer_damping"
 DOMAIN: Domain = "path"
@@ -53,7 +55,10 @@ def exchanged(law: Law, share: float, equal_at_Hz: float) -> tuple[Law, Law]:
     if isinstance(law, Hysteretic):
         kept = Hysteretic(stiffness=law.stiffness, loss_factor=law.eta * (1.0 - share))
         return kept, KelvinVoigt(stiffness=0.0, damping=share * law.stiffness * law.eta / omega)
-    assert isinstance(law, KelvinVoigt)
+    if not isinstance(law, KelvinVoigt):
+        raise InputError(
+            "its loss is not constant or viscous any more", where="line.laws", value=type_name(type(law))
+        )
     rest = KelvinVoigt(stiffness=law.stiffness, damping=law.damping * (1.0 - share))
     return rest, constant_loss(share * law.damping * omega)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from permway.campaign.campaign import Campaign
-from permway.diagnosis.catalogue._change import with_law
+from permway.diagnosis.catalogue._change import constant_law, with_law
 from permway.diagnosis.catalogue._roles import beds, laws_of, slabs
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, between_free, log_free
 from permway.laws import Hysteretic
@@ -44,8 +44,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
 
 def _of(name: str) -> Hypothesis:
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
-        law = campaign.model.line.laws[name]
-        assert isinstance(law, Hysteretic)
+        law = constant_law(campaign, name)
         left = values["stiffness_factor"]
         loss = law.eta + values["rubbing"] * max(0.0, 1.0 - left)
         return with_law(campaign, name, Hysteretic(stiffness=law.stiffness * left, loss_factor=loss))
