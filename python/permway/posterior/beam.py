@@ -20,12 +20,15 @@ from permway.errors import InputError, SolveError
 from permway.posterior.cells import SOMETHING, Cell
 from permway.posterior.estimate import estimated
 from permway.posterior.fit import STRETCH, Fit, Fitter, Model, grown
-from permway.posterior.hyper import Hyper
+from permway.posterior.hyper import IDEAL, IDEALISATION, Hyper
 from permway.posterior.journal import kept_trials
 from permway.posterior.neighbours import rested
 
 STEPS = (4, 8, 8, 20)
 """Of the fit at each discrepancy, and at the end."""
+
+TAKEN_UP = 4.0
+"""Times its median, two standard deviations, from which an idealisation may have taken an effect up."""
 
 SAME, ALIKE = 2.0, 0.01
 """Of the objective, and of each value in proportion: two fits of one form this near are one."""
@@ -251,6 +254,19 @@ def finished(fitter: Fitter, fit: Fit, amendments: Sequence[Hypothesis] = ()) ->
     # Slopes of nominal parameters change little: only at the end are they taken at every step.
     fixed = stop if amendments else 0
     fit = fitter.fit(fitter.settled(fit), steps=STEPS[-1], fixed=fixed)
+    found = _estimated(fitter, fit, fixed)
+    if amendments and found.hyper[IDEALISATION] > TAKEN_UP * IDEAL:
+        # What a large idealisation takes up constrains no amendment: with a usual one both may fit better.
+        usual = found.hyper.moved(
+            np.where([n == IDEALISATION for n in found.hyper.names], np.log(IDEAL), found.hyper.log)
+        )
+        other = fitter.fit(fitter.settled(replace(found, hyper=usual)), steps=STEPS[-1], fixed=fixed)
+        found = max(found, _estimated(fitter, other, fixed), key=lambda one: one.log_evidence)
+    return found
+
+
+def _estimated(fitter: Fitter, fit: Fit, fixed: int) -> Fit:
+    """With the most probable hyperparameters, and slopes of all at the end."""
     fit = fitter.fit(estimated(fitter.settled(fit)), steps=STEPS[-1], fixed=fixed)
     return fitter.settled(fitter.fit(fitter.settled(fit), steps=STEPS[-1]))
 

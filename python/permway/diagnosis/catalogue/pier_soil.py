@@ -47,7 +47,7 @@ COMPLIANCE, MASS_KG = (0.5, 3.0), (1e5, 2.5)
 """Usual, and the factor of one standard deviation."""
 
 COMPLIANCES = (0.1, 0.4, 1.6)
-PIER_HZ = (10.0, 25.0, 50.0, 100.0)
+PIER_HZ = (10.0, 16.0, 25.0, 40.0, 63.0, 100.0, 160.0, 250.0, 400.0)
 """Begun from: of the soil, over a bearing's; and where the pier on the soil alone would ring."""
 
 
