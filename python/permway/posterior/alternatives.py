@@ -6,29 +6,48 @@ fitted there, all others with a frequency, a loss factor or a place are looked a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from permway.posterior.beam import Member
 from permway.posterior.cells import Cell, coordinate
+from permway.posterior.fit import Fitter, Model, extended
 
 FAR = 3.0
 """Standard deviations from the middle of its prior, beyond which a value is another hypothesis's."""
 
 
-def alternatives(found: Member, starts: Sequence[Cell]) -> list[Cell]:
-    """Starts of other forms than a set's last amendment, with its values where parameters have the same name.
+def without_each(fitter: Fitter, member: Member, nominal: Model) -> Iterator[tuple[int, Member]]:
+    """A set without each of its amendments in turn, all else as it is and not fitted again."""
+    fit, campaign = member.fit, fitter.frame.observations.campaign
+    for index in range(len(member.amendments)):
+        kept = [i for i in range(len(member.amendments)) if i != index]
+        model, columns = nominal, [np.arange(len(nominal.free))]
+        for number, i in enumerate(kept, start=1):
+            model = extended(model, member.amendments[i], f"{number}.", campaign)
+            columns.append(np.arange(member.own(i).start, member.own(i).stop))
+        own = np.concatenate(columns)
+        left = fitter.begin(model, fit.z[own], fit.hyper, fit.jacobian[:, own], fit.bend)
+        amendments = tuple(member.amendments[i] for i in kept)
+        yield index, Member(amendments, left, tuple(member.log_priors[i] for i in kept))
+
+
+def alternatives(found: Member, index: int, starts: Sequence[Cell]) -> list[Cell]:
+    """Starts of other forms than one amendment of a set, with its values where parameters have the same name.
 
     Parameters
     ----------
     found : Member
-        Of one amendment at least.
+    index : int
+        Of the amendment.
     starts : sequence of Cell
         Of all hypotheses.
     """
-    last = found.amendments[-1]
+    last = found.amendments[index]
     units = {free.name: free.unit for free in last.free}
-    values = found.values(len(found.amendments) - 1)
+    values = found.values(index)
     moved = []
     for cell in starts:
         hypothesis = cell.hypothesis

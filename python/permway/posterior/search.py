@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from permway.diagnosis.fit import free_parameters
-from permway.posterior.alternatives import alternatives
+from permway.posterior.alternatives import alternatives, without_each
 from permway.posterior.beam import (
     STEPS,
     Member,
@@ -109,7 +109,8 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
             found += _far(fitter, far if far_off else best, far_off, ruled_out, progress, what)
         leader = max((best, *found), key=lambda m: m.log_mass)
         if leader is not best:
-            found += _alike(fitter, best, leader, ruled_out, progress, what)
+            for index, others in without_each(fitter, leader, nominal):
+                found += _alike(fitter, leader, index, others, ruled_out, progress, what)
         fitter, members = ordered(fitter, best, [*members, *found], nominal)
         root = _next_root(members, count)
     return Explored(apart(members), seen)
@@ -142,24 +143,41 @@ def _offered(root: Member, about: Fit, ruled_out: Collection[str]) -> list[Cell]
 
 
 def _alike(
-    fitter: Fitter, root: Member, leader: Member, ruled_out: Collection[str], progress: Progress, what: str
+    fitter: Fitter,
+    leader: Member,
+    index: int,
+    others: Member,
+    ruled_out: Collection[str],
+    progress: Progress,
+    what: str,
 ) -> list[Member]:
-    """Sets with another amendment where the leader has its own, if they may come as near as a class shows."""
-    fixed, fit = root.fit.z.size, leader.fit
-    without = fitter.begin(root.fit.model, fit.z[:fixed], fit.hyper, fit.jacobian[:, :fixed])
-    starts = small(alternatives(leader, _offered(root, without, ruled_out)))
+    """Sets with another amendment where the leader has one, if they may come as near as a class shows.
+
+    Parameters
+    ----------
+    fitter : Fitter
+    leader : Member
+    index : int
+        Of the amendment.
+    others : Member
+        The leader without it.
+    ruled_out : collection of str
+    progress : callable
+    what : str
+    """
+    fit, without = leader.fit, others.fit
+    starts = small(alternatives(leader, index, _offered(others, without, ruled_out)))
     scores = screened(without, starts, _saying(progress, f"alternatives, {what}", len(starts)), ())
     count = fit.state.residuals.size
     behind = 0.5 * (without.objective - scores.gain - fit.objective)
     worth = []
     for i, (cell, nats) in enumerate(zip(starts, behind.tolist(), strict=True)):
-        lacking = tempered(nats, count) + leader.log_priors[-1] - cell.log_prior
+        lacking = tempered(nats, count) + leader.log_priors[index] - cell.log_prior
         if lacking < LEFT:
             other = resized(cell, float(scores.measure[i]))
-            trial = replace(Trial.of(root, other, fit.hyper), z=np.concatenate([fit.z[:fixed], other.z]))
-            worth.append((lacking, other.hypothesis, trial))
+            worth.append((lacking, other.hypothesis, Trial.of(others, other, fit.hyper)))
     trials = chosen(worth, WIDTHS[2], PER_FORM[2])
-    return completed(fitter, root, trials, _saying(progress, f"alternatives, {what}, to the end", len(trials)))
+    return completed(fitter, others, trials, _saying(progress, f"alternatives, {what}, to the end", len(trials)))
 
 
 def _near(
