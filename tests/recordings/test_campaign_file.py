@@ -101,7 +101,7 @@ FAULTS: list[tuple[Callable[[Table], None], str, str]] = [
     ),
     (_set("sensors", 0, "chain", to={"mount_Hz": "high"}), "sensors[0].chain.mount_Hz", "number"),
     (_set("forces", 0, "body", to="floor"), "forces[0].body", "no such body"),
-    (_set("forces", 0, "unit", to="lbf"), "forces[0].unit", "'N'"),
+    (_set("forces", 0, "unit", to="kgf"), "forces[0].unit", "'N'"),
     (_set("forces", 1, "name", to="hit"), "forces[1].name", "twice"),
     (_set("conditions", 0, "kind", to="feather"), "conditions[0].kind", "hammer"),
     (_set("conditions", 0, "temperature_C", to=285.0), "conditions[0].temperature_C", "150"),

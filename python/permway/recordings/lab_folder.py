@@ -175,6 +175,8 @@ def _shown(seen: dict[str, Any]) -> dict[str, Any]:
     if "responses" in seen:
         found = seen["responses"]
         holds = f"{len(found['read'])} x {len(found['struck'])} responses"
+        if found["missing"]:
+            holds += f", {found['pairs']} of {found['pairs'] + len(found['missing'])} pairs"
         reach = f"{found['from_Hz']:g} to {found['to_Hz']:g} Hz"
         unit = ", ".join(one for one in found["unit"] if one != "None") or "no unit"
         return {"holds": holds, "unit": unit, "reach": reach}

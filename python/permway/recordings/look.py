@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from permway.errors import InputError
-from permway.recordings.look_campaign import Places, frf_part, spectra_part, time_part
+from permway.recordings.look_campaign import Places, frf_part, spectra_part, time_part, unmeasured
 from permway.recordings.readers.formats import recognise
 from permway.recordings.readers.front import opened, read_frf, read_table
 from permway.recordings.readers.hints import NO_HINTS, Hints
@@ -125,6 +125,7 @@ def _responses(record: FrfRecord) -> dict[str, Any]:
     return {
         "responses": {
             "pairs": len(record.responses),
+            "missing": unmeasured(record),
             "read": list(dict.fromkeys(record.responses)),
             "struck": list(dict.fromkeys(record.references)),
             "from_Hz": float(frequency[0]),
