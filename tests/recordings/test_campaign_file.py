@@ -165,6 +165,21 @@ def test_every_fault_is_one_sentence_with_its_place(
     assert "\n" not in text
 
 
+def test_records_that_are_all_at_fault_are_not_called_none(tmp_path: Path) -> None:
+    campaign, _ = tables()
+    for record in campaign["records"]:
+        record["avrages"] = 8
+    with pytest.raises(InputError) as caught:
+        read_campaign(write(tmp_path, campaign))
+    assert "at least 1 item" not in str(caught.value)
+    assert caught.value.remedy == (
+        "1 further fault(s) in the same table: records[1].avrages: unknown key; did you mean 'averages'?"
+    )
+    campaign["records"] = []
+    with pytest.raises(InputError, match="at least 1 item"):
+        read_campaign(write(tmp_path, campaign))
+
+
 MODEL_FAULTS: list[tuple[Callable[[Table], None], str, str]] = [
     (_set("line", "laws", "pad", "stiffness", to=-1.0), "model", "negative"),
     (_set("frequencies", to={}), "model", "give values_Hz"),
