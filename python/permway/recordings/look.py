@@ -96,8 +96,11 @@ def look(path: str | Path, asked: Asked | None = None) -> dict[str, Any]:
             return result | {"spectra": held, "campaign": spectra_part(held, source.name, asked, places)}
     if "channels" not in result and "responses" not in result:
         result |= _columns(source, asked)
-        # Of a table of text that is no record in time, what it lacks of a table of responses helps nobody.
-        result["problems"] = [str(error) for error in (problems[-1:] if kind == "text" else problems)]
+        if kind == "text":
+            # What a table lacks of responses helps where it is over frequency; else what a record in time lacks.
+            names = [str(row["column"]).lower() for row in result.get("columns", ())]
+            problems = problems[:1] if any(re.match(r"f(req|\b)", name) for name in names) else problems[-1:]
+        result["problems"] = [str(error) for error in problems]
     result.setdefault("campaign", "")
     return result
 
