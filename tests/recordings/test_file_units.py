@@ -20,7 +20,7 @@ def run_with(folder: Path, **stated: object) -> Campaign:
     """The small campaign, its run in a file whose header says m/s2 and g."""
     campaign, model = tables()
     campaign["records"] = campaign["records"][1:]
-    campaign["records"][0] |= stated.pop("record", {})  # type: ignore[arg-type]
+    campaign["records"][0] |= stated.pop("record", {})
     next(one for one in campaign["sensors"] if one["name"] == "axle").update(stated)
     path = write(folder, campaign, model)
     samples = np.random.default_rng(3).normal(size=(2, 5000))
