@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-PICTURES = Path(__file__).parents[1] / "images" / "examples"
 COLOURS = ("#c8553d", "#2a7bb0", "#26293b", "#6a994e", "#b08a2a")
 DPI = 110
 
@@ -33,11 +32,10 @@ def show(
     numbers: Callable[[Any], Mapping[str, float]],
     picture: Callable[[Any], Figure],
 ) -> None:
-    """Print an example's numbers and draw its picture."""
+    """Print an example's numbers and draw its picture into the current folder."""
     found = compute()
     for name, value in numbers(found).items():
         print(f"{value:12.5g}  {name}")
-    path = PICTURES / f"{Path(file).stem}.png"
-    path.parent.mkdir(parents=True, exist_ok=True)
+    path = Path(f"{Path(file).stem}.png")
     picture(found).savefig(path, dpi=DPI, metadata={"Software": None})
     print(path)

@@ -12,6 +12,10 @@ Complexes = NDArray[np.complex128]
 
 ABSOLUTE_ZERO_C = -273.15
 
+COLDEST_C, HOTTEST_C = -100.0, 150.0
+"""Temperatures of a track, degC: what lies beyond is in kelvin. At half of the upper rails in the sun are near it,
+at twice of it 293 K is taken for degrees; no line is in use at half of the lower."""
+
 
 def real_numbers(values: ArrayLike, where: str) -> Reals:
     """Real numbers as float64; numpy by itself would drop an imaginary part with a mere warning.
@@ -32,6 +36,9 @@ def real_numbers(values: ArrayLike, where: str) -> Reals:
         array = np.asarray(values)
         if any_complex(array):
             raise InputError("must be real, not complex", where=where, value=values, remedy=_REAL)
+        if array.dtype.kind in "US" or (array.dtype == object and any(isinstance(v, str) for v in array.flat)):
+            what = "not a number or an array of numbers"
+            raise InputError(what, where=where, value=values, remedy="give numbers, without quotation marks")
         return np.asarray(array, dtype=np.float64)
     except (TypeError, ValueError) as error:
         if isinstance(error, InputError):
@@ -82,6 +89,14 @@ def check_temperature(temperature_C: ArrayLike | None) -> Reals | None:
             remedy="give degrees Celsius",
         )
     return temperature
+
+
+def check_track_temperature(temperature_C: float | None) -> None:
+    """Refuse a temperature that no track has, as files of models and campaigns do."""
+    # What is no number is refused by the laws that need one.
+    if is_real(temperature_C) and temperature_C is not None and not COLDEST_C <= temperature_C <= HOTTEST_C:
+        what = "is no temperature of a track: give degrees Celsius, not kelvin"
+        raise InputError(what, where="temperature_C", value=temperature_C)
 
 
 def _first(values: Reals, bad: NDArray[np.bool_]) -> tuple[str, float]:

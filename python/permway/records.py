@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Annotated, Any
 
 import numpy as np
@@ -87,7 +87,9 @@ def input_error(error: ValidationError, table: object, place: str, words: Words 
         What to say of a complaint; by default what pydantic states.
     """
     words = words or plain_words
-    first, *others = error.errors(include_url=False)
+    every = error.errors(include_url=False)
+    # A list whose items are all at fault is called empty, too.
+    first, *others = [one for one in every if not (one["type"] == "too_short" and _holds_fault(one["loc"], every))]
     what, value = words(first)
     remedy = ""
     if others:
@@ -95,6 +97,12 @@ def input_error(error: ValidationError, table: object, place: str, words: Words 
         reported = "; ".join(dict.fromkeys(each)) + ("; ..." if len(others) > MOST_TOLD else "")
         remedy = f"{len(others)} further fault(s) in the same table: {reported}"
     return InputError(what, where=place_in(table, first["loc"], place), value=value, remedy=remedy)
+
+
+def _holds_fault(location: tuple[str | int, ...], faults: Iterable[Mapping[str, Any]]) -> bool:
+    """Whether something inside a place is at fault."""
+    depth = len(location)
+    return any(len(one["loc"]) > depth and one["loc"][:depth] == location for one in faults)
 
 
 def plain_words(complaint: Mapping[str, Any]) -> tuple[str, object]:

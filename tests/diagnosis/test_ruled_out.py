@@ -31,3 +31,15 @@ def test_names_are_sorted_and_unknown_ones_refused() -> None:
     assert all(name in str(caught.value.remedy) for name in entries())
     with pytest.raises(InputError, match="no effect of the catalogue"):
         app(["diagnose", "nowhere.toml", "--rule-out", "nonsense"], standalone_mode=False)
+
+
+@pytest.mark.parametrize("words", ["lost fasteners", "Lost Fasteners", "fastener loss", "fastener_loss"])
+def test_the_words_of_a_verdict_rule_out(words: str) -> None:
+    assert known([words]) == ("fastener_loss",)
+    assert known([words, "bearing stiffness", "bearing_stiffness"]) == ("bearing_stiffness", "fastener_loss")
+
+
+def test_a_typo_is_answered_with_what_is_near() -> None:
+    with pytest.raises(InputError) as caught:
+        known(["baering stifness"])
+    assert caught.value.remedy.startswith("did you mean 'bearing_stiffness'")

@@ -116,3 +116,10 @@ def test_the_survey_s_diagnosis_says_what_its_page_says(tmp_path: Path) -> None:
 def test_every_example_is_in_the_gallery() -> None:
     shown = {example for page, example, _ in quoted() if page == "gallery.md"}
     assert shown == set(EXAMPLES)
+
+
+def test_a_user_s_picture_is_written_where_the_user_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    look = import_module("look")
+    look.show(str(DOCS / "examples" / "deck.py"), lambda: 1.0, lambda _: {"one": 1.0}, lambda _: look.axes()[0])
+    assert [path.name for path in tmp_path.iterdir()] == ["deck.png"]

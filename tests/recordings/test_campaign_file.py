@@ -101,7 +101,7 @@ FAULTS: list[tuple[Callable[[Table], None], str, str]] = [
     ),
     (_set("sensors", 0, "chain", to={"mount_Hz": "high"}), "sensors[0].chain.mount_Hz", "number"),
     (_set("forces", 0, "body", to="floor"), "forces[0].body", "no such body"),
-    (_set("forces", 0, "unit", to="lbf"), "forces[0].unit", "'N'"),
+    (_set("forces", 0, "unit", to="kgf"), "forces[0].unit", "'N'"),
     (_set("forces", 1, "name", to="hit"), "forces[1].name", "twice"),
     (_set("conditions", 0, "kind", to="feather"), "conditions[0].kind", "hammer"),
     (_set("conditions", 0, "temperature_C", to=285.0), "conditions[0].temperature_C", "150"),
@@ -163,6 +163,21 @@ def test_every_fault_is_one_sentence_with_its_place(
     assert text.startswith(f"{tmp_path / 'campaign.toml'}: {where}"), text
     assert what in text
     assert "\n" not in text
+
+
+def test_records_that_are_all_at_fault_are_not_called_none(tmp_path: Path) -> None:
+    campaign, _ = tables()
+    for record in campaign["records"]:
+        record["avrages"] = 8
+    with pytest.raises(InputError) as caught:
+        read_campaign(write(tmp_path, campaign))
+    assert "at least 1 item" not in str(caught.value)
+    assert caught.value.remedy == (
+        "1 further fault(s) in the same table: records[1].avrages: unknown key; did you mean 'averages'?"
+    )
+    campaign["records"] = []
+    with pytest.raises(InputError, match="at least 1 item"):
+        read_campaign(write(tmp_path, campaign))
 
 
 MODEL_FAULTS: list[tuple[Callable[[Table], None], str, str]] = [

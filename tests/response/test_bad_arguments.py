@@ -15,7 +15,9 @@ from permway.model.train import Train
 from permway.model.vehicle_presets import crh380a
 from permway.problem.solve import write_dataset
 from permway.response.decay import decay_rate
+from permway.response.operating import operating_shapes
 from permway.response.receptance import receptance
+from permway.response.sensitivity import sensitivity
 from permway.response.train import train_response
 
 RAIL = Beam(
@@ -65,6 +67,18 @@ def joined(at, between=("rail", "ground")):
         (lambda: solved(frequency=[np.nan]), "frequency_Hz[0]", "got nan"),
         (lambda: solved(frequency=[[1.0, 2.0]]), "frequency_Hz", "must be a list (got (1, 2))"),
         (lambda: solved(frequency=["low"]), "frequency_Hz", "not a number or an array of numbers"),
+        (lambda: solved(frequency="100"), "frequency_Hz", "not a number or an array of numbers"),
+        (lambda: solved(frequency=["100", "200"]), "frequency_Hz", "without quotation marks"),
+        (lambda: solved(frequency=[100.0, "200"]), "frequency_Hz", "not a number or an array of numbers"),
+        (lambda: solved(frequency=[]), "frequency_Hz", "none given"),
+        (lambda: solved(forces=[]), "forces", "none given"),
+        (lambda: solved(sensors=[]), "sensors", "none given"),
+        (lambda: sensitivity(TRACK, [10.0], forces=[], sensors=[HAMMER]), "forces", "none given"),
+        (lambda: sensitivity(TRACK, [], forces=[HAMMER], sensors=[HAMMER]), "frequency_Hz", "none given"),
+        (lambda: operating_shapes(TRACK, [], forces=[HAMMER]), "frequency_Hz", "none given"),
+        (lambda: solved(temperature_C=293), "temperature_C", "degrees Celsius, not kelvin"),
+        (lambda: solved(temperature_C=-120.0), "temperature_C", "is no temperature of a track"),
+        (lambda: Place(body="rail", x_m="0.3"), "Place.x_m", "valid number"),
         (lambda: solved(frequency=[1.0 + 2.0j]), "frequency_Hz", "must be real, not complex"),
         (lambda: solved(frequency=[20.0, 10.0]), "frequency_Hz[1]", "sort them"),
         (lambda: solved(frequency=[1e18]), "frequency_Hz", "too short"),

@@ -126,7 +126,7 @@ def third_octaves(record: xr.Dataset) -> xr.Dataset:
         return np.where(stated, np.abs(values) ** (1 if power else 2), 0.0)
 
     measured = squares(record["measured"].values)
-    scatter = np.where(stated, measured * record["scatter_dB"].values, 0.0)
+    scatter = measured * np.where(stated, record["scatter_dB"].values, 0.0)
     # Neighbouring lines under Hann's window say half the same.
     alike = 2.0 if record.attrs["variable"] == "psd" else 1.0
     with np.errstate(divide="ignore", invalid="ignore"):

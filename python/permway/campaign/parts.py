@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, PositiveFloat, StrictBool, model_validator
 
-from permway.arrays import Reals
+from permway.arrays import COLDEST_C, HOTTEST_C, Reals
 from permway.campaign.excitation import Dips, Push, Rolling, RoughBand, TrackLines, WheelLines
 from permway.errors import InputError
 from permway.model.faults import fault
@@ -62,7 +62,7 @@ class Condition(FrozenModel):
 
     name: str = Field(min_length=1)
     kind: Literal["hammer", "train", "shaker", "table", "passage"]
-    temperature_C: Number | None = Field(default=None, ge=-100.0, le=150.0)
+    temperature_C: Number | None = Field(default=None, ge=COLDEST_C, le=HOTTEST_C)
     speed_m_per_s: Number | None = Field(default=None, gt=0.0, le=FASTEST_M_PER_S)
     centre_m: Number | None = None
     wheels_m: tuple[Number, ...] | None = Field(default=None, min_length=1)

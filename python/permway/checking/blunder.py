@@ -12,12 +12,14 @@ Kind = Literal[
     "quantity",
     "sign",
     "conjugate",
+    "exchanged",
     "labels",
     "decibels",
     "angle",
     "noise_floor",
     "tolerance",
     "place",
+    "model",
 ]
 
 
@@ -30,7 +32,8 @@ class Blunder:
     kind : str
         "unreadable": a record that cannot be read or predicted; "bad channel": a channel whose samples are no
         measurement; "factor": one factor on levels; "quantity": a derivative or an integral of what is stated;
-        "sign"; "conjugate": phases run backwards; "labels": two have changed places; "decibels": levels read as
+        "sign"; "conjugate": phases run backwards; "exchanged": real for imaginary part;
+        "labels": two have changed places; "decibels": levels read as
         sizes; "angle": degrees for radians; "noise_floor": none is stated; "tolerance"; "place".
     where : str
         Record, and the sensors or points concerned, as in the campaign file.

@@ -40,6 +40,8 @@ class Change:
         Of the change over no change.
     ratios : mapping of (int, Ratio)
         By row of :class:`permway.checking.compared.Compared`: channels, then points.
+    exchanged : tuple of int
+        Rows of channels whose real and imaginary parts change places.
     conjugate : bool
         Whether phases are reversed.
     swapped : (int, int), optional
@@ -54,6 +56,7 @@ class Change:
     kind: Kind
     log_prior: float
     ratios: Mapping[int, Ratio] = field(default_factory=dict)
+    exchanged: tuple[int, ...] = ()
     conjugate: bool = False
     swapped: tuple[int, int] | None = None
     reading: Reading = ""

@@ -14,10 +14,12 @@ from permway.campaign.predict import predict
 from permway.checking.angles import angles
 from permway.checking.blunder import Blunder
 from permway.checking.compared import Compared, compared
+from permway.checking.file_units import file_units
 from permway.checking.noise import noise_floors
 from permway.checking.reading import Reading, read
 from permway.checking.search import reported
-from permway.checking.stated import places, tolerances
+from permway.checking.stated import places, same_places, tolerances
+from permway.checking.unlike import unlike
 from permway.checking.words import blunder_of
 from permway.errors import InputError, SolveError
 
@@ -82,12 +84,16 @@ def check(campaign: Campaign, *, threads: int | None = None) -> Checked:
         points = [campaign.point(name) for name in given.points]
         changes, right = reported(given, sensors, [point.unit for point in points])
         records.append((dataset, given, right))
-        blunders += [blunder_of(one, dataset.record.name, given, sensors, points) for one in changes]
+        sized = any(one.change.kind in ("factor", "quantity") for one in changes)
+        of_file = file_units(campaign, dataset.record) if sized else {}
+        blunders += [blunder_of(one, dataset.record, given, sensors, points, of_file) for one in changes]
     blunders += angles(campaign)
     beside = {dataset.record.name: right for dataset, _, right in records}
     blunders += noise_floors(campaign, reading.whole, beside)
     blunders += tolerances(campaign)
     blunders += places(campaign)
+    blunders += same_places(campaign)
+    blunders += unlike([(dataset, right) for dataset, _, right in records])
     blunders = _together(blunders)
     blunders.sort(key=lambda one: (one.asked, one.log_odds is not None, -(one.log_odds or 0.0)))
     return Checked(campaign, reading, tuple(records), tuple(blunders))

@@ -79,7 +79,7 @@ class Compared:
         """Rows that a change acts on."""
         if change.whole or change.conjugate or change.reading:
             return np.ones(self.first.size, dtype=bool)
-        members = list(change.ratios) + list(change.swapped or ())
+        members = [*change.ratios, *(change.swapped or ()), *change.exchanged]
         return np.asarray(np.isin(self.first, members) | np.isin(self.second, members))
 
     def changed(self, change: Change) -> Compared:
@@ -91,6 +91,10 @@ class Compared:
             measured = np.abs(measured) * np.exp(1j * np.angle(measured) * 180.0 / np.pi)
         if change.conjugate:
             measured = measured.conj()
+        if change.exchanged:
+            # im + i re is i times the conjugate.
+            rows = np.isin(self.first, change.exchanged)
+            measured = np.where(rows[:, None], 1j * measured.conj(), measured)
         found = replace(self, measured=measured)
         if change.swapped is not None:
             found = found._swapped(*change.swapped)

@@ -55,12 +55,18 @@ def offered(given: Compared, sensors: Sequence[Sensor], forces: Sequence[str]) -
         if given.points or len(channels) == 1:
             yield Change("sign", WHOLE, {member: Ratio(-1.0) for member in channels}, whole=True)
         yield Change("conjugate", WHOLE, conjugate=True)
+    # A cross spectrum is not read as two columns.
+    apart = given.phased.any() and (bool(given.points) or bool((given.second < 0).all()))
+    if apart:
+        yield Change("exchanged", WHOLE, exchanged=tuple(channels), whole=True)
     yield from _readings(given)
     if len(channels) > 1:
         for member in channels:
             yield from _ratios([member], [sensors[member]], [], whole=False)
             if given.phased.any():
                 yield Change("sign", SINGLE, {member: Ratio(-1.0)})
+            if apart:
+                yield Change("exchanged", SINGLE, exchanged=(member,))
         yield from _swaps(channels)
     if len(points) > 1:
         for member in points:
@@ -86,7 +92,7 @@ def _ratios(
     alike = all((s.quantity, s.unit) == (one.quantity, one.unit) for s in sensors)
     units = [ratio for _, _, ratio in other_units(one)] if alike and one.quantity in DERIVATIVES else []
     # Of forces in kN that were stated to be in N, or the other way round.
-    units += [Ratio(1e-3 if force == "N" else 1e3) for force in dict.fromkeys(forces)]
+    units += [ratio for force in dict.fromkeys(forces) for _, ratio in other_forces(force)]
     odd = [Ratio(size) for factor in FACTORS for size in (factor, 1.0 / factor)]
     odd += [Ratio(1.0, order) for order in (-2, -1, 1, 2)]
     for ratio, shift in [*((ratio, 0.0) for ratio in units), *((ratio, ODD) for ratio in odd)]:
@@ -105,6 +111,16 @@ def other_units(sensor: Sensor) -> Iterator[tuple[str, str, Ratio]]:
             ratio = Ratio(size / sensor.to_SI, DERIVATIVES[sensor.quantity] - order)
             if not same(ratio, Ratio()):
                 yield quantity, unit, ratio
+
+
+def other_forces(unit: str) -> Iterator[tuple[str, Ratio]]:
+    """Units that a force may have instead, and the factor on responses that each would mean.
+
+    Pounds are written by files that state them, and are no slip of who writes a campaign.
+    """
+    for other, size in UNITS["force"].items():
+        if other not in (unit, "lbf"):
+            yield other, Ratio(UNITS["force"][unit] / size)
 
 
 def same(one: Ratio, other: Ratio) -> bool:

@@ -81,4 +81,5 @@ def _undoes(new: Change, old: Change) -> bool:
     """Whether a change is of the same members and kind as one that was made: no more is estimated of them."""
     if new.kind != old.kind and {new.kind, old.kind} != {"factor", "quantity"}:
         return False
-    return not new.ratios or bool(set(new.ratios) & set(old.ratios))
+    mine, before = {*new.ratios, *new.exchanged}, {*old.ratios, *old.exchanged}
+    return not mine or bool(mine & before)

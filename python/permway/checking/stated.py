@@ -17,6 +17,10 @@ FAR_M, FAR = 30.0, 5.0
 """Distance from all other places, m, and over what they span, from which a place is asked back. At half of it a
 sensor in the next span is asked of; at twice 60 m is passed."""
 
+MANY = 3
+"""Sensors, or points, at one and the same place from which it is asked back. At half of it two accelerometers side
+by side are asked of, at twice of it a campaign of five whose places were never answered is passed."""
+
 
 def tolerances(campaign: Campaign) -> Iterator[Blunder]:
     """Relative tolerances of more than the number itself."""
@@ -48,3 +52,21 @@ def places(campaign: Campaign) -> Iterator[Blunder]:
         ]
         remedy = "is it " + " or ".join(f"{one:g}" for one in likely) + "?" if likely else "see where it stands"
         yield Blunder("place", f"{key}.{name}", what, remedy, asked=True)
+
+
+def same_places(campaign: Campaign) -> Iterator[Blunder]:
+    """Sensors that read the same at one place, and points struck at one: places may not have been answered."""
+    sensors = [
+        (one.name, (one.body, one.x_m, one.direction, one.quantity)) for one in campaign.stated.sensors if one.body
+    ]
+    points = [(one.name, (one.body, one.x_m, one.direction)) for one in campaign.stated.forces]
+    for key, words, named in (("sensors", "sensors", sensors), ("forces", "points", points)):
+        groups: dict[tuple[object, ...], list[str]] = {}
+        for name, place in named:
+            groups.setdefault(place, []).append(name)
+        for (body, x, *_), names in groups.items():
+            # `permway new` proposes 0 where no label holds a place: all of two there were not answered.
+            if len(names) < MANY and not (x == 0.0 and 1 < len(names) == len(named)):
+                continue
+            what = f"{len(names)} {words} at x = {x:g} m of {body}: is that so?"
+            yield Blunder("place", f"{key}: {', '.join(names)}", what, "see where each stands: x_m", asked=True)

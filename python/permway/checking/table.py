@@ -6,13 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from permway.arrays import Reals
 from permway.campaign.load import Dataset
 from permway.checking.check import Checked
 from permway.checking.compared import Compared
-
-DECIBELS = 20.0 / np.log(10.0)
-"""Of a neper."""
+from permway.checking.deviations import DECIBELS, levels_dB
 
 
 def record_rows(checked: Checked) -> list[dict[str, Any]]:
@@ -58,21 +55,6 @@ def _row(dataset: Dataset, right: Compared | None) -> dict[str, Any]:
     elif "coherence" in data:
         row["coherence"] = round(float(np.nanmedian(data["coherence"].values)), 3)
     return row
-
-
-def levels_dB(one: Compared) -> Reals:
-    """Measured over predicted, shape (rows that have a level, F); NaN where a line states nothing."""
-    rows = one.levelled
-    with np.errstate(divide="ignore"):
-        levels = DECIBELS * np.log(np.abs(one.measured[rows] / one.predicted[rows]))
-    return np.where(one.used[rows], levels, np.nan)
-
-
-def phases_deg(one: Compared) -> Reals:
-    """Measured less predicted, -180 to 180, shape (rows that have a phase, F); NaN where a line states nothing."""
-    rows = one.phased
-    phases = np.rad2deg(np.angle(one.measured[rows] / one.predicted[rows]))
-    return np.where(one.used[rows], phases, np.nan)
 
 
 def labels(one: Compared, rows: np.ndarray) -> list[str]:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from permway.cli.output import Folder, Json, Outside, Threads, examples, print_result
+
+if TYPE_CHECKING:
+    from permway.checking.check import Checked
 
 checks = typer.Typer(rich_markup_mode=None)
 
@@ -36,6 +39,7 @@ def check(
     fitted.
     """
     from permway.campaign.campaign import read_campaign
+    from permway.campaign.kinds import kind_of
     from permway.campaign.rolls import how_trains_run
     from permway.checking.check import check as run
     from permway.checking.table import blunder_rows, record_rows
@@ -46,6 +50,9 @@ def check(
         "blunders": rows if as_json else [sentence_of(row) for row in rows],
         "records": record_rows(checked),
     }
+    missing = {one.record.name: kind_of(one.record).unmeasured(one) for one in checked.reading.whole}
+    if any(missing.values()):
+        result["not_measured"] = [f"{name}: {_pairs(checked, name, of)}" for name, of in missing.items() if of]
     runs = how_trains_run(checked.campaign.stated, checked.campaign.model)
     if runs is not None:
         result["trains"] = runs
@@ -58,6 +65,9 @@ def check(
         if picture is not None:
             result["picture"] = str(picture)
     print_result(result, as_json)
+    if not checked.reading.whole:
+        # What stops every record is an error of input, which has one status in all commands.
+        raise typer.Exit(2)
 
 
 @checks.command(epilog=examples("permway new exports", "permway new exports --json"))
@@ -71,6 +81,15 @@ def new(folder: Folder, as_json: Json = False) -> None:
     from permway.recordings.skeleton import write_skeleton
 
     print_result(write_skeleton(folder), as_json)
+
+
+def _pairs(checked: Checked, name: str, missing: list[str]) -> str:
+    """How many pairs of a record are there, and which are not."""
+    from permway.recordings.look_campaign import listed
+
+    data = next(one.data for one in checked.reading.whole if one.record.name == name)
+    count = data.sizes["sensor"] * data.sizes["force"]
+    return f"{count - len(missing)} of {count} pairs; not {listed(missing)}"
 
 
 def sentence_of(row: dict[str, Any]) -> str:

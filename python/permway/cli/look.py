@@ -47,8 +47,8 @@ def look(
     Prints channels with units, rates and lengths, or frequency responses, as they are read here; what is missing;
     and the part of a campaign file to paste. Options have the names of the keys of [[records]].
     """
+    from permway.recordings.lab_folder import looked
     from permway.recordings.look import Asked
-    from permway.recordings.look import look as run
     from permway.recordings.readers.hints import Hints
 
     if decimal not in (None, ".", ","):
@@ -62,7 +62,7 @@ def look(
         unit=_units(unit or []),
         pairs=_pairs(pair or []),
     )
-    result = run(file, Asked(form, part, sampling_hz, hints))
+    result = looked(file, Asked(form, part, sampling_hz, hints))
     print_result(result if as_json else _shown(result), as_json)
 
 

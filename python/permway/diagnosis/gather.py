@@ -19,6 +19,9 @@ from permway.diagnosis.observations import Observations
 from permway.diagnosis.thinning import LINES_PER_FREQUENCY, thinned
 from permway.errors import InputError
 
+NOT_MEASURED = "was not measured: the file has no such pair"
+"""Of a pair of a sensor and a force point."""
+
 
 class Readable(NamedTuple):
     """What of a campaign's records can be used.
@@ -60,6 +63,9 @@ def predictable(campaign: Campaign, *, screened: bool = True) -> Readable:
         name, why = next(iter(left_out.items()))
         raise InputError("no record can be predicted", where=f"records.{name}", remedy=why)
     left_out |= {f"{one.record}: {one.channel}": f"{one.kind}: {one.what}" for one in bad}
+    for dataset in kept:
+        missing = kind_of(dataset.record).unmeasured(dataset)
+        left_out |= {f"{dataset.record.name}: {pair}": NOT_MEASURED for pair in missing}
     return Readable(kept, left_out, bad)
 
 

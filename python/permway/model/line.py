@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field, model_validator
 
-from permway.arrays import Complexes, Reals, real_numbers
+from permway.arrays import Complexes, Reals, check_track_temperature, real_numbers
 from permway.errors import InputError
 from permway.laws import AnyLaw, Hysteretic
 from permway.model.beam_columns import beam_columns
@@ -133,6 +133,7 @@ class Line(FrozenModel, Shown):
             finite, or that creates energy.
         """
         frequency = np.atleast_1d(real_numbers(frequency_Hz, "frequency_Hz"))
+        check_track_temperature(temperature_C)
         columns = []
         for name, law in self.laws.items():
             try:

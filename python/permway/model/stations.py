@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, PositiveFloat, TypeAdapter, model_v
 
 from permway.arrays import Reals
 from permway.model.faults import fault
-from permway.records import FrozenModel
+from permway.records import FrozenModel, Number
 
 FARTHEST_M = 1e6
 """Coordinates beyond this are taken for a wrong unit."""
@@ -23,7 +23,7 @@ MEETINGS = "meetings"
 TOUCH_M = 1e-9
 """Stations closer than this are one, as in the core."""
 
-Metres = Annotated[float, Field(ge=-FARTHEST_M, le=FARTHEST_M)]
+Metres = Annotated[Number, Field(ge=-FARTHEST_M, le=FARTHEST_M)]
 
 
 def _pair(value: object) -> object:

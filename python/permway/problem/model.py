@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, PositiveFloat, field_validator, model_validator
 
-from permway.arrays import Reals
+from permway.arrays import COLDEST_C, HOTTEST_C, Reals
 from permway.errors import InputError
 from permway.model.faults import below, fault
 from permway.model.irregularity import AnyIrregularity, Conversion
@@ -149,7 +149,7 @@ class Model(FrozenModel, Shown):
             raise ValueError("forces without [[sensors]]: say where the response is wanted")
         if self.roll is not None and not self.forces:
             raise fault("without [[forces]] nothing rolls: a train runs on both rails alike", "roll")
-        if self.temperature_C is not None and not -100.0 <= self.temperature_C <= 150.0:
+        if self.temperature_C is not None and not COLDEST_C <= self.temperature_C <= HOTTEST_C:
             what = "is no temperature of a track: give degrees Celsius, not kelvin"
             raise fault(what, "temperature_C", value=self.temperature_C)
         return self

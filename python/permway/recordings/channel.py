@@ -22,7 +22,7 @@ UNITS: dict[str, dict[str, float]] = {
     "displacement": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
     "velocity": {"m/s": 1.0, "mm/s": 1e-3},
     "acceleration": {"m/s2": 1.0, "m/s^2": 1.0, "g": 9.80665, "mm/s2": 1e-3},
-    "force": {"N": 1.0, "kN": 1e3},
+    "force": {"N": 1.0, "kN": 1e3, "lbf": 4.4482216152605},
 }
 """Units of each quantity, and what one of them is in SI."""
 
@@ -234,8 +234,13 @@ class Point(FrozenModel):
     body: str
     x_m: Number
     direction: Literal["down", "up"] = "down"
-    unit: Literal["N", "kN"] = "N"
+    unit: Literal["N", "kN", "lbf"] = "N"
     chain: Chain = Chain()
+
+    @property
+    def to_SI(self) -> float:
+        """One unit of the file in N."""
+        return UNITS["force"][self.unit]
 
     def transfer(self, frequency_Hz: Reals) -> Complexes:
         """What is read over the force down, both in N, shape (F,)."""

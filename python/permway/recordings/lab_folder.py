@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from permway.errors import InputError
 from permway.recordings.look import Asked, look
 from permway.recordings.readers import read_frf
-from permway.recordings.readers.hints import Hints
 
 LEFT_ALONE = {
     ".toml",
@@ -116,7 +115,7 @@ def _wanted(inside: Path, path: Path) -> bool:
 def _export(folder: Path, path: Path) -> Export:
     name = path.relative_to(folder)
     try:
-        seen = _looked(path)
+        seen = looked(path)
     except InputError as error:
         return Export(name, "", remarks=[f"{error.what}; {error.remedy}".rstrip("; ")])
     part = str(seen.get("campaign", ""))
@@ -139,15 +138,24 @@ def _export(folder: Path, path: Path) -> Export:
     )
 
 
-def _looked(path: Path) -> dict[str, Any]:
-    """A look; of a table whose names do not say what was struck, the file's name does: one point a file."""
-    seen = look(path)
-    if seen["format"] != "text" or "responses" in seen or "columns" not in seen:
+def looked(path: Path, asked: Asked | None = None) -> dict[str, Any]:
+    """A look; of a table whose names do not say what was struck, the file's name does: one point a file.
+
+    Parameters
+    ----------
+    path : Path
+    asked : Asked, optional
+        As of :func:`permway.recordings.look.look`, whose dict this is, too.
+    """
+    asked = asked or Asked()
+    seen = look(path, asked)
+    if seen["format"] != "text" or "responses" in seen or "columns" not in seen or asked.hints.pairs:
         return seen
     pairs: dict[str, tuple[str, str]] = {}
     while len(pairs) < MOST_COLUMNS:
+        hints = replace(asked.hints, pairs=pairs or None)
         try:
-            read_frf(path, hints=Hints(pairs=pairs or None), keep_nonfinite=True)
+            read_frf(path, format=asked.format, part=asked.part, hints=hints, keep_nonfinite=True)
         except InputError as error:
             name = str(error.value)
             if not error.what.startswith(UNDETERMINED) or name in pairs:
@@ -155,7 +163,11 @@ def _looked(path: Path) -> dict[str, Any]:
             pairs[name] = (name, path.stem)
         else:
             break
-    return look(path, Asked(hints=Hints(pairs=pairs))) if pairs else seen
+    if not pairs:
+        return seen
+    found = look(path, replace(asked, hints=replace(asked.hints, pairs=pairs)))
+    note = f"what was struck stands in no column, and is taken from the file's name: {path.stem!r}"
+    return found | {"notes": [*found.get("notes", ()), note]}
 
 
 def _short(seen: Mapping[str, Any]) -> bool:
@@ -175,6 +187,8 @@ def _shown(seen: dict[str, Any]) -> dict[str, Any]:
     if "responses" in seen:
         found = seen["responses"]
         holds = f"{len(found['read'])} x {len(found['struck'])} responses"
+        if found["missing"]:
+            holds += f", {found['pairs']} of {found['pairs'] + len(found['missing'])} pairs"
         reach = f"{found['from_Hz']:g} to {found['to_Hz']:g} Hz"
         unit = ", ".join(one for one in found["unit"] if one != "None") or "no unit"
         return {"holds": holds, "unit": unit, "reach": reach}

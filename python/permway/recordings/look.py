@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from permway.errors import InputError
-from permway.recordings.look_campaign import Places, frf_part, spectra_part, time_part
+from permway.recordings.look_campaign import Places, frf_part, spectra_part, time_part, unmeasured
 from permway.recordings.readers.formats import recognise
 from permway.recordings.readers.front import opened, read_frf, read_table
 from permway.recordings.readers.hints import NO_HINTS, Hints
@@ -96,8 +96,11 @@ def look(path: str | Path, asked: Asked | None = None) -> dict[str, Any]:
             return result | {"spectra": held, "campaign": spectra_part(held, source.name, asked, places)}
     if "channels" not in result and "responses" not in result:
         result |= _columns(source, asked)
-        # Of a table of text that is no record in time, what it lacks of a table of responses helps nobody.
-        result["problems"] = [str(error) for error in (problems[-1:] if kind == "text" else problems)]
+        if kind == "text":
+            # What a table lacks of responses helps where it is over frequency; else what a record in time lacks.
+            names = [str(row["column"]).lower() for row in result.get("columns", ())]
+            problems = problems[:1] if any(re.match(r"f(req|\b)", name) for name in names) else problems[-1:]
+        result["problems"] = [str(error) for error in problems]
     result.setdefault("campaign", "")
     return result
 
@@ -125,6 +128,7 @@ def _responses(record: FrfRecord) -> dict[str, Any]:
     return {
         "responses": {
             "pairs": len(record.responses),
+            "missing": unmeasured(record),
             "read": list(dict.fromkeys(record.responses)),
             "struck": list(dict.fromkeys(record.references)),
             "from_Hz": float(frequency[0]),

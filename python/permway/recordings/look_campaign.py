@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from permway.errors import InputError
 from permway.recordings.channel import UNITS
+from permway.recordings.ratio import ratio_of
 from permway.recordings.record import FrfRecord
 from permway.units import parse_unit
 
@@ -68,10 +69,11 @@ def frf_part(record: FrfRecord, file: str, asked: Asked, places: Places) -> str:
     """Sensors, force points and a record for frequency responses."""
     responses, references = list(dict.fromkeys(record.responses)), list(dict.fromkeys(record.references))
     unit = next((record.unit_of(row) for row in range(len(record.responses)) if record.unit_of(row)), None)
-    top, force = _ratio(unit)
+    ratio = ratio_of(unit)
+    quantity, top, force = ratio or ("acceleration", "m/s2", "N")
     lines: list[str] = []
     for name in responses[:_SHOWN]:
-        lines += _sensor(name, *top, _place(name, places), known=unit is not None)
+        lines += _sensor(name, quantity, top, _place(name, places), known=ratio is not None)
     for name in references[:_SHOWN]:
         lines += [
             "[[forces]]",
@@ -81,6 +83,12 @@ def frf_part(record: FrfRecord, file: str, asked: Asked, places: Places) -> str:
             f"unit = {_quoted(force)}",
             "",
         ]
+    if unit is not None and ratio is None:
+        lines += [f"# The file is in {unit}, which no sensor over a force has: bring a copy of it to (m/s2)/N."]
+    missing = unmeasured(record)
+    if missing:
+        count = len(responses) * len(references)
+        lines += [f"# {len(record.responses)} of {count} pairs are there; not: {listed(missing)}"]
     averages = record.averages or "8                    # number of blows of each point: the file does not say it"
     lines += [
         "[[records]]",
@@ -96,6 +104,19 @@ def frf_part(record: FrfRecord, file: str, asked: Asked, places: Places) -> str:
     if record.coherence is None:
         lines.append("# The file has no coherence, which a record of this statistic needs: export it, too.")
     return "\n".join(lines)
+
+
+def unmeasured(record: FrfRecord) -> list[str]:
+    """Pairs of the responses and references of a file that it does not have, as "response < reference"."""
+    there = set(zip(record.responses, record.references, strict=True))
+    responses, references = dict.fromkeys(record.responses), dict.fromkeys(record.references)
+    return [f"{a} < {b}" for a in responses for b in references if (a, b) not in there]
+
+
+def listed(names: Sequence[str], most: int = 12) -> str:
+    """Names in one line; of many the first, and how many more."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more
 
 
 def spectra_part(rows: Sequence[Mapping[str, Any]], file: str, asked: Asked, places: Places) -> str:
@@ -170,21 +191,6 @@ def _motion(unit: str | None) -> tuple[str, str] | None:
             if parse_unit(name).same(found):
                 return quantity, name
     return None
-
-
-def _ratio(unit: str | None) -> tuple[tuple[str, str], str]:
-    """Quantity and unit of the sensor, and unit of the force, that a response's unit is the ratio of."""
-    if unit is not None:
-        try:
-            found = parse_unit(unit)
-        except InputError:
-            found = None
-        for quantity, units in UNITS.items():
-            for top in units:
-                for force in UNITS["force"]:
-                    if found is not None and parse_unit(f"({top})/{force}").same(found):
-                        return (quantity, top), force
-    return ("acceleration", "m/s2"), "N"
 
 
 def _hints(asked: Asked, stated: Mapping[str, str]) -> list[str]:

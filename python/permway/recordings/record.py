@@ -232,7 +232,7 @@ class FrfRecord:
                     f"{name} is empty or not a finite number ({int(bad.sum())} such here)",
                     where=f"{where}, {self.frequency_Hz[line]:g} Hz",
                     value=complex(table[row, line]) if np.iscomplexobj(table) else float(table[row, line]),
-                    remedy="measure it again, or leave the line out of the record's band_Hz",
+                    remedy=_line_remedy(self.frequency_Hz, used, line),
                 )
 
     def check_coherence(self) -> None:
@@ -278,6 +278,17 @@ class FrfRecord:
     def pair(self, response: str, reference: str) -> Complexes:
         """Frequency response of a pair, shape (frequency,)."""
         return np.asarray(self.values[self.index(response, reference)])
+
+
+def _line_remedy(frequency_Hz: Reals, used: NDArray[np.bool_], line: int) -> str:
+    """What takes one line out of a record: a band can do it at its ends alone."""
+    at = float(frequency_Hz[line])
+    inside = used & (frequency_Hz < at)
+    if inside.any() and (used & (frequency_Hz > at)).any():
+        return f"measure it again, or delete all rows of {at:g} Hz in a copy of the file (of arrays their entries)"
+    low, high = (at, None) if not inside.any() else (None, at)
+    side = f"above {low:g} Hz" if high is None else f"below {high:g} Hz"
+    return f"measure it again, or keep to lines {side} by the record's band_Hz"
 
 
 Cells = Reals | tuple[str, ...]

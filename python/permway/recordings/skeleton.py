@@ -20,8 +20,14 @@ HAMMER = "hammer tests"
 
 NO_SAYING = "question: the file does not say it"
 
-NAMED = re.compile(r"(?:hit )?(rail|slab|base|deck|girder)[ @_-]*(\d+(?:\.\d+)?) ?m?")
-"""A label that seems to hold body and place: "rail@10.5", "hit deck 4.5 m"."""
+_NUMBER = r"(?P<x>[-+]?\d+(?:[.,]\d+)?)"
+
+NAMED = (
+    re.compile(rf"(?:.*\s)?(?P<body>[^\W\d]\w*) ?@ ?(?:x ?= ?)?{_NUMBER} ?m?"),
+    re.compile(r"(?:hit )?(?P<body>rail|slab|base|deck|girder)[ _-]*(?P<x>\d+(?:\.\d+)?) ?m?"),
+    re.compile(rf".*?(?<![^\W_])x ?= ?{_NUMBER} ?m?(?:[^\w.,].*)?"),
+)
+"""Labels that seem to hold a place, and all but the last the body: "beam@2.5", "hit deck 4.5 m", "Acc x=2.5m"."""
 
 
 def write_skeleton(folder: Path) -> dict[str, Any]:
@@ -156,13 +162,17 @@ def _named(
 def _place(name: str, table: Mapping[str, Any], key: str) -> list[str]:
     """Body and place: what the file states, or a question, with what the label seems to say as its answer."""
     x = float(table.get("x_m", 0.0))
-    match = NAMED.fullmatch(name)
-    body, at = (match.group(1), match.group(2)) if match else ("rail", "0.0")
+    match = next((found for found in (one.fullmatch(name) for one in NAMED) if found), None)
+    held = match.groupdict() if match else {}
+    body = held.get("body") or "rail"
+    at = f"{float(held['x'].replace(',', '.')):.9g}" if "x" in held else "0.0"
     on, where = "on which body of the model?", "where on it, m?"
-    if match:
-        on, where = f"{on} By its name this one", f"{where} By its name here"
+    if "body" in held:
+        on += " By its name this one."
+    if "x" in held:
+        where += " By its name here"
     if key == "sensors":
-        on += '. On the vehicle: degree = "car1.wheelset1" and no x_m'
+        on += ' On the vehicle: degree = "car1.wheelset1" and no x_m'
     up = "is up positive?" if key == "sensors" else "is a push up positive?"
     return [
         _asked(f"body = {_quoted(body)}", f"question: {on}"),

@@ -15,7 +15,8 @@ from matplotlib.figure import Figure
 from permway.arrays import Reals
 from permway.checking.check import Checked
 from permway.checking.compared import Compared
-from permway.checking.table import labels, levels_dB, phases_deg
+from permway.checking.deviations import levels_dB, phases_deg
+from permway.checking.table import labels
 from permway.files import prepare_folder, write_bytes
 from permway.report.compare.looks import FONT, INK, colour_map, logarithmic_hertz, name_rows, plain
 from permway.report.diagnosis.track import HALF, draw, drawing

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Sized
 from functools import partial
 from typing import get_args
 
@@ -74,6 +74,10 @@ def receptance(
     """
     check_line(line)
     frequency = check_sweep(frequency_Hz)
+    check_given(forces, "forces")
+    if not extensions:
+        # What joints extend by needs no sensor.
+        check_given(sensors, "sensors")
     solved = between(
         line,
         frequency,
@@ -160,6 +164,12 @@ def check_line(line: object, where: str = "line") -> None:
     must_be(line, Line, where, remedy="of a model it is model.line")
 
 
+def check_given(places: object, where: str) -> None:
+    """Refuse an empty list of places; what is none is refused with the places."""
+    if isinstance(places, Sized) and not isinstance(places, str) and not len(places):
+        raise InputError("none given", where=where, remedy="as in [Place(body=..., x_m=...)]")
+
+
 def check_places(line: Line, places: Sequence[Place], where: str) -> dict[str, np.ndarray]:
     """Places as the core's columns: segment of each, and x.
 
@@ -210,6 +220,8 @@ def check_sweep(frequency_Hz: ArrayLike) -> Reals:
     frequency = np.atleast_1d(real_numbers(frequency_Hz, "frequency_Hz"))
     if frequency.ndim != 1:
         raise InputError("frequencies must be a list", where="frequency_Hz", value=frequency.shape)
+    if not frequency.size:
+        raise InputError("none given", where="frequency_Hz", remedy="give one frequency in Hz at least")
     bad = np.flatnonzero(~(np.isfinite(frequency) & (frequency > 0.0)))
     if bad.size:
         raise InputError(

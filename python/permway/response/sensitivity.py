@@ -24,6 +24,7 @@ from permway.response.core import Progress, Solved, run
 from permway.response.limits import check_answer
 from permway.response.receptance import (
     CONVENTION,
+    check_given,
     check_line,
     check_places,
     check_sweep,
@@ -91,6 +92,8 @@ def sensitivity(
     """
     check_line(line)
     frequency = check_sweep(frequency_Hz)
+    check_given(forces, "forces")
+    check_given(sensors, "sensors")
     wanted = {"forces": check_places(line, forces, "forces"), "sensors": check_places(line, sensors, "sensors")}
     ports, sensor_port, force_port = _ports(wanted)
     table = line.joint_table()

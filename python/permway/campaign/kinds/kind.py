@@ -97,6 +97,10 @@ class RecordKind(ABC):
         names = [str(n) for n in data["channel"].values] if "channel" in data.dims else [dataset.record.name]
         return names, [""] * len(names)
 
+    def unmeasured(self, dataset: Dataset) -> list[str]:
+        """Curves that a record asks for and its file does not have, as "sensor < force"; without pairs none."""
+        return []
+
     def unit(self, campaign: Campaign, dataset: Dataset, channel: str) -> str:
         """Of a curve."""
         return str(dataset.data[self.variable].attrs.get("units", "1"))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from difflib import get_close_matches
 
 import numpy as np
 import xarray as xr
@@ -12,6 +11,7 @@ from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.dataset import SI_UNITS, Dataset, in_band
 from permway.campaign.kinds.kind import Interval, RecordKind, of_solved
+from permway.campaign.kinds.pairs import check_units, rows_of, unsure
 from permway.campaign.parts import Condition, Record
 from permway.campaign.predictions import hammer
 from permway.campaign.predictions.sweeps import Request
@@ -22,7 +22,6 @@ from permway.recordings.line_scatter import scatter_variance
 from permway.recordings.readers import read_frf
 from permway.recordings.record import FrfRecord
 from permway.response.receptance import frequency_coordinate
-from permway.units import check_same
 
 DIMENSIONS = ("sensor", "force", "frequency")
 
@@ -70,6 +69,12 @@ class Responses(RecordKind):
         found["chain"] = xr.Variable(found["frf"].dims, found["frf"].values, named)
         return found
 
+    def unmeasured(self, dataset: Dataset) -> list[str]:
+        """Pairs of the grid of sensors and points that the file does not have."""
+        sensor, force = self.channels(dataset)
+        empty = np.isnan(dataset.data["frf"].values).all(axis=-1).ravel()
+        return [f"{s} < {f}" for s, f, none in zip(sensor, force, empty, strict=True) if none]
+
     def channels(self, dataset: Dataset) -> tuple[list[str], list[str]]:
         """Pairs of sensor and point."""
         sensors, forces = dataset.names("sensor"), dataset.names("force")
@@ -94,39 +99,30 @@ class Responses(RecordKind):
         return low, high, half
 
 
-def _loaded(campaign: Campaign, record: Record) -> xr.Dataset:
-    """What a file of frequency responses holds of a record's pairs and band, in SI."""
-    sensors, points = list(record.responses), list(record.references)
-    file = read_frf(
+def _read(
+    campaign: Campaign, record: Record, responses: list[str] | None, references: list[str] | None
+) -> FrfRecord:
+    """A record's file, with the pairs of these labels; all without."""
+    return read_frf(
         campaign.path(record),
-        responses=sensors,
-        references=points,
+        responses=responses,
+        references=references,
         format=record.format,
         part=record.part,
         hints=record.hints,
         keep_nonfinite=True,
     )
+
+
+def _loaded(campaign: Campaign, record: Record) -> xr.Dataset:
+    """What a file of frequency responses holds of a record's pairs and band, in SI."""
+    sensors, points = list(record.responses), list(record.references)
+    file = _read(campaign, record, sensors, points)
     frequency = np.asarray(file.frequency_Hz, dtype=np.float64)
     used = in_band(frequency, record)
-    pairs = {pair: i for i, pair in enumerate(zip(file.responses, file.references, strict=True))}
-    at = np.full((len(sensors), len(points)), -1, dtype=np.int64)
-    for i, sensor in enumerate(sensors):
-        for j, point in enumerate(points):
-            at[i, j] = pairs.get((sensor, point), -1)
-    for names, key, missing in (
-        (sensors, "responses", (at < 0).all(axis=1)),
-        (points, "references", (at < 0).all(axis=0)),
-    ):
-        if missing.any():
-            label = names[int(np.flatnonzero(missing)[0])]
-            known = sorted(set(getattr(file, key)))
-            near = get_close_matches(label, known, 1)
-            remedy = f"it has {known[:12]}{', ...' if len(known) > 12 else ''}"
-            if near:
-                remedy = f"did you mean {near[0]!r}? {remedy}"
-            raise InputError("the file has no such label", where=f"{key}.{label}", remedy=remedy)
+    at = rows_of(record, file, lambda: _read(campaign, record, None, None))
     file.of(sensors, points).check_finite(used)
-    _check_units(campaign, record, file, at)
+    check_units(campaign, record, file, at)
     there = (at >= 0)[:, :, None]
 
     def spread(values: np.ndarray) -> np.ndarray:
@@ -136,10 +132,10 @@ def _loaded(campaign: Campaign, record: Record) -> xr.Dataset:
     names = [record.responses[label] for label in sensors]
     forces = [record.references[label] for label in points]
     scale = np.array([campaign.sensor(name).to_SI for name in names])[:, None] / np.array(
-        [1e3 if campaign.point(name).unit == "kN" else 1.0 for name in forces]
+        [campaign.point(name).to_SI for name in forces]
     )
     frf = spread(file.values) * scale[:, :, None]
-    coherence, variance, averages = _noise(record, file, frequency[used], frf, spread)
+    coherence, variance, averages = _noise(record, file, frequency[used], frf, spread, at)
     data = xr.Dataset(
         {
             "frf": (DIMENSIONS, frf),
@@ -156,17 +152,25 @@ def _loaded(campaign: Campaign, record: Record) -> xr.Dataset:
 
 
 def _noise(
-    record: Record, file: FrfRecord, frequency_Hz: Reals, frf: Complexes, spread: Callable[[Reals], Reals]
+    record: Record,
+    file: FrfRecord,
+    frequency_Hz: Reals,
+    frf: Complexes,
+    spread: Callable[[Reals], Reals],
+    at: np.ndarray,
 ) -> tuple[Reals, Reals, float | None]:
     """Coherence, variance of log magnitude and of phase, and averages, as the record states what states them.
 
     Raises
     ------
     InputError
-        Without averages or coherence where those should state it; with a coherence that would be left aside.
+        Without averages or coherence where those should state it, if of one pair only; with a coherence that would
+        be left aside.
     """
+    without = unsure(record, file, at)
     if record.noise == "scatter":
-        if file.coherence is not None:
+        # Of a record some of whose pairs have none, the scatter states the noise of all.
+        if file.coherence is not None and not without:
             remedy = 'leave noise = "scatter" out'
             raise InputError("has a coherence, which states more than scatter", where=record.file, remedy=remedy)
         return np.full(frf.shape, np.nan), scatter_variance(frequency_Hz, frf, where="band_Hz"), None
@@ -180,36 +184,17 @@ def _noise(
             'noise = "scatter" takes the scatter of neighbouring lines for it'
         )
         raise InputError("has no coherence, which states how sure each line is", where=record.file, remedy=remedy)
+    if without:
+        label, struck = without[0]
+        more = f" (nor have {len(without) - 1} more pairs of it)" if len(without) > 1 else ""
+        remedy = (
+            "give its coherence column; or leave it out of responses or references; or "
+            'noise = "scatter" takes the scatter of neighbouring lines for it, in the whole record'
+        )
+        what = f"has no coherence, which states how sure each line is, though other pairs have one{more}"
+        raise InputError(what, where=f"{record.file}: {label} / {struck}", remedy=remedy)
     coherence = spread(file.coherence)
     return coherence, log_variance(coherence, averages), float(averages)
-
-
-def _check_units(campaign: Campaign, record: Record, file: FrfRecord, at: np.ndarray) -> None:
-    """Refuse a file whose unit is not that of the sensor over that of the force point.
-
-    Raises
-    ------
-    InputError
-        With the pair, both units, and the key that would settle it.
-    """
-    for i, (label, name) in enumerate(record.responses.items()):
-        for j, (struck, point) in enumerate(record.references.items()):
-            found = None if at[i, j] < 0 else file.unit_of(int(at[i, j]))
-            if found is None:
-                continue
-            stated = f"({campaign.sensor(name).unit})/{campaign.point(point).unit}"
-            where = f"{record.file}: {label} / {struck}"
-            try:
-                check_same(found, stated, where=where)
-            except InputError as error:
-                what = f"{error.what}: the sensor and the force point make it {stated!r}"
-                what = (
-                    what
-                    if record.unit is None
-                    else f"the record states {found!r}, sensor and force point {stated!r}"
-                )
-                remedy = f'correct the unit of the sensor or of the point; if the file is wrong, unit = "{stated}"'
-                raise InputError(what, where=where, value=found, remedy=remedy) from error
 
 
 def log_variance(coherence: Reals, averages: float) -> Reals:

@@ -18,6 +18,7 @@ _IMAGINARY = rf"(?:{_UNSIGNED}\s*\*?\s*[ij]|[ij]\s*\*?\s*{_UNSIGNED})"
 _BOTH = re.compile(rf"(?P<re>{_REAL})\s*(?P<sign>[-+])\s*(?P<im>{_IMAGINARY})")
 _PURE = re.compile(rf"(?P<sign>[-+]?)\s*(?P<im>{_IMAGINARY})")
 _PLAIN = re.compile(_REAL)
+_ENDLESS = re.compile(r"[-+]?(?:1[.,]#)?inf(?:inity)?(?:[-+].*)?|.*[-+]inf(?:inity)?\s*\*?[ij]", re.IGNORECASE)
 
 _DECIBELS = re.compile(r"(?<![A-Za-z])dB(?![A-Za-z])")
 _LEVEL = re.compile(
@@ -51,9 +52,12 @@ def complex_number(cell: str, where: str) -> complex:
         return complex("nan")
     if _PLAIN.fullmatch(bare):
         return complex(_float(bare), 0.0)
+    if _ENDLESS.fullmatch(bare):
+        remedy = "measure it again, or delete its row in a copy of the file"
+        raise InputError("not a finite number", where=where, value=cell, remedy=remedy)
     found = _BOTH.fullmatch(bare) or _PURE.fullmatch(bare)
     if found is None:
-        remedy = "write 1.2+3.4j, or real and imaginary part in columns of their own"
+        remedy = "give a plain number, or write both parts as 1.2+3.4j"
         raise InputError("no complex number", where=where, value=cell, remedy=remedy)
     size = _float(re.sub(r"[\sij*]", "", found["im"]))
     real = _float(found["re"]) if "re" in found.re.groupindex else 0.0
