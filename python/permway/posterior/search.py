@@ -47,7 +47,10 @@ PREDICTED = 0.03
 """The same by a linear look, which predicts too much: it has no penalty for what parameters could have been."""
 
 GROWS = 0.5
-"""Share of the best's gain, by which a small change that is not yet fitted to the end may be behind it."""
+"""Share of the best's gain, by which a change that is not yet fitted to the end may be behind it."""
+
+EXCHANGED = 4
+"""Other forms that are fitted in place of one amendment of the leading set, one start of each."""
 
 MOVING = 5.0
 """Nats that a small change may lack before it is moved to better neighbours."""
@@ -169,14 +172,17 @@ def _alike(
     starts = small(alternatives(leader, index, _offered(others, without, ruled_out)))
     scores = screened(without, starts, _saying(progress, f"alternatives, {what}", len(starts)), ())
     count = fit.state.residuals.size
-    behind = 0.5 * (without.objective - scores.gain - fit.objective)
+    gains = 0.5 * (without.objective - fit.objective)
+    behind = gains - 0.5 * scores.gain
+    # The others are where the leader has them: what gains half as much there may gain the rest once they move.
+    most = max(LEFT, GROWS * tempered(gains, count))
     worth = []
     for i, (cell, nats) in enumerate(zip(starts, behind.tolist(), strict=True)):
         lacking = tempered(nats, count) + leader.log_priors[index] - cell.log_prior
-        if lacking < LEFT:
+        if lacking < most:
             other = resized(cell, float(scores.measure[i]))
             worth.append((lacking, other.hypothesis, Trial.of(others, other, fit.hyper)))
-    trials = chosen(worth, WIDTHS[2], PER_FORM[2])
+    trials = chosen(worth, EXCHANGED, 1)
     return completed(fitter, others, trials, _saying(progress, f"alternatives, {what}, to the end", len(trials)))
 
 
