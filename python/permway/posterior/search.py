@@ -172,14 +172,11 @@ def _alike(
     starts = small(alternatives(leader, index, _offered(others, without, ruled_out)))
     scores = screened(without, starts, _saying(progress, f"alternatives, {what}", len(starts)), ())
     count = fit.state.residuals.size
-    gains = 0.5 * (without.objective - fit.objective)
-    behind = gains - 0.5 * scores.gain
-    # The others are where the leader has them: what gains half as much there may gain the rest once they move.
-    most = max(LEFT, GROWS * tempered(gains, count))
+    behind = 0.5 * (without.objective - scores.gain - fit.objective)
     worth = []
     for i, (cell, nats) in enumerate(zip(starts, behind.tolist(), strict=True)):
         lacking = tempered(nats, count) + leader.log_priors[index] - cell.log_prior
-        if lacking < most:
+        if lacking < LEFT:
             other = resized(cell, float(scores.measure[i]))
             worth.append((lacking, other.hypothesis, Trial.of(others, other, fit.hyper)))
     trials = chosen(worth, EXCHANGED, 1)
