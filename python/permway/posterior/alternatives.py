@@ -54,11 +54,11 @@ def alternatives(found: Member, index: int, starts: Sequence[Cell]) -> list[Cell
         if hypothesis.form == last.form:
             continue
         z, shared = cell.z.copy(), False
-        for index, free in enumerate(hypothesis.free):
+        for place, free in enumerate(hypothesis.free):
             if free.name != hypothesis.size and units.get(free.name) == free.unit:
                 own = coordinate(free, values[free.name])
                 if own is not None and abs(own) < FAR:
-                    z[index], shared = own, True
+                    z[place], shared = own, True
         if shared:
             moved.append(replace(cell, z=z))
     return moved

@@ -49,9 +49,6 @@ PREDICTED = 0.03
 GROWS = 0.5
 """Share of the best's gain, by which a change that is not yet fitted to the end may be behind it."""
 
-EXCHANGED = 4
-"""Other forms that are fitted in place of one amendment of the leading set, one start of each."""
-
 MOVING = 5.0
 """Nats that a small change may lack before it is moved to better neighbours."""
 
@@ -179,7 +176,7 @@ def _alike(
         if lacking < LEFT:
             other = resized(cell, float(scores.measure[i]))
             worth.append((lacking, other.hypothesis, Trial.of(others, other, fit.hyper)))
-    trials = chosen(worth, EXCHANGED, 1)
+    trials = chosen(worth, WIDTHS[2], PER_FORM[2])
     return completed(fitter, others, trials, _saying(progress, f"alternatives, {what}, to the end", len(trials)))
 
 
