@@ -4,10 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-from scipy import optimize
-
-from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.hypothesis import Hypothesis
@@ -41,28 +37,3 @@ def stacked(
 
     free = tuple(Free(prefix + f.name, f.unit, f.value, f.limits) for f in hypothesis.free)
     return made, free
-
-
-def weaker(hypothesis: Hypothesis, z: Reals, share: float) -> list[Reals]:
-    """The same with a size so much nearer to none; nothing where an effect has no such size.
-
-    Parameters
-    ----------
-    hypothesis : Hypothesis
-    z : ndarray
-        Of its parameters.
-    share : float
-        Of how far the size is from none.
-    """
-    names = [f.name for f in hypothesis.free]
-    if not 0.0 < share < 1.0 or hypothesis.size not in names or np.isinf(hypothesis.none):
-        return []
-    place = names.index(hypothesis.size)
-    free = hypothesis.free[place]
-    size = hypothesis.none + share * (free.value(float(z[place])) - hypothesis.none)
-    low, high = free.limits
-    if (free.value(low) - size) * (free.value(high) - size) >= 0.0:
-        return []
-    found = z.copy()
-    found[place] = optimize.brentq(lambda one: free.value(one) - size, low, high)
-    return [found]

@@ -12,9 +12,9 @@ from permway.diagnosis.catalogue import support_gradient
 from permway.diagnosis.catalogue._pads import STIFFNESS, factors, keys_of
 from permway.diagnosis.catalogue._relaxing import REFERENCE_HZ, relaxing, relaxing_once
 from permway.diagnosis.hypothesis import Hypothesis, Where, between_free, log_free
-from permway.diagnosis.stacking import weaker
 from permway.laws import Hysteretic, Scaled
 from permway.laws.checks import check_law
+from permway.posterior.cells import Cell, resized
 from simulated import simulate
 
 FREQUENCY = np.geomspace(1.0, 1000.0, 200)
@@ -106,20 +106,18 @@ def sized(none: float, *, size: str = "size") -> Hypothesis:
 
 def test_a_start_is_made_weaker_in_its_size_alone() -> None:
     start = np.array([0.0, 0.3])
-    (half,) = weaker(sized(0.0), start, 0.5)
+    half = resized(Cell(sized(0.0), start, 0.0), 0.5).z
     assert sized(0.0).free[0].value(float(half[0])) == pytest.approx(2.5)
     assert half[1] == start[1]
     # Where none is a number to be divided by, on the way there.
-    (nearer,) = weaker(sized(1.0), start, 0.25)
+    nearer = resized(Cell(sized(1.0), start, 0.0), 0.25).z
     assert sized(1.0).free[0].value(float(nearer[0])) == pytest.approx(2.0)
 
 
-def test_what_has_no_size_or_would_grow_is_left_as_it_is() -> None:
+@pytest.mark.parametrize("hypothesis", [sized(np.inf), sized(0.0, size="")])
+def test_what_has_no_size_is_left_as_it_is(hypothesis: Hypothesis) -> None:
     start = np.array([0.0, 0.3])
-    assert weaker(sized(np.inf), start, 0.5) == []
-    assert weaker(sized(0.0, size=""), start, 0.5) == []
-    assert weaker(sized(0.0), start, 1.5) == []
-    assert weaker(sized(0.0), start, 0.0) == []
+    assert (resized(Cell(hypothesis, start, 0.0), 0.5).z == start).all()
 
 
 @pytest.mark.parametrize("beyond", [True, False])
