@@ -9,7 +9,7 @@ import pytest
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather
 from permway.posterior.covariance import Frame
-from permway.posterior.estimate import SETTLED, _objective, estimated
+from permway.posterior.estimate import SETTLED, estimated, least_objective
 from permway.posterior.fit import Fit, Fitter, Model
 from scipy import optimize
 from simulated import simulate
@@ -26,7 +26,7 @@ def fit(tmp_path_factory: pytest.TempPathFactory) -> Fit:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_it_comes_to_the_least_that_a_library_finds(fit: Fit, seed: int) -> None:
-    objective = _objective(fit)
+    objective = least_objective(fit)
     low, high = fit.hyper.bounds()
     random = np.random.default_rng(seed)
     # Discrepancies from that of an idealisation to one in which all is lost.

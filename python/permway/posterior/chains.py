@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from scipy import linalg, sparse
+from scipy import sparse
 
 from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.posterior.matern import STATES, Nodes
+from permway.posterior.tridiagonal import Tridiagonal
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,8 @@ class Chains:
     ----------
     local : slice or ndarray of int
         The rows that the processes act on, ascending.
+    order : ndarray of int, shape (local rows,)
+        Where each of these stands among `rows`, first column by column.
     acts : sparse array, shape (local rows, parts states)
         How the states act on them; where rows are turned, log gains are the first part and phases the second.
     """
@@ -80,32 +84,29 @@ class Chains:
         self.design = sparse.csr_array(
             (weights[inside], (row[inside], columns[inside])), shape=(len(rows), self.size)
         )
-        self.band = 2 * width if self.nodes.x.size > 1 else width
         self.parts = 1 if turn is None else 2
         local = rows if turn is None else rows.T.reshape(-1)
-        order = np.argsort(local)
-        self.acts = sparse.csr_array((self.design if turn is None else _turned(self.design, turn))[order])
-        self.local = _contiguous(local[order])
+        self.order = np.argsort(local)
+        self.acts = sparse.csr_array((self.design if turn is None else _turned(self.design, turn))[self.order])
+        self.local = _contiguous(local[self.order])
         self._pairs()
 
     def _pairs(self) -> None:
-        """Products of entries of one row, and where they stand in the banded normal matrix."""
-        design = self.design
+        """Products of entries of one row, and where they stand in the blocks of the normal matrix."""
+        design, width = self.design, STATES * len(self.kinds)
         row = np.repeat(np.arange(design.shape[0]), np.diff(design.indptr))
         each = sparse.csr_array((np.ones(design.nnz, dtype=np.int64), (np.arange(design.nnz), row)))
-        meets = each @ each.T
-        first, second = meets.tocoo().coords
-        low = design.indices[first] >= design.indices[second]
-        first, second = first[low], second[low]
-        at, beside = design.indices[first], design.indices[second]
-        # Lower banded form: element (i, j) stands at row i - j, column j.
-        place = (at - beside).astype(np.int64) * self.size + beside
+        first, second = (each @ each.T).tocoo().coords
+        at, beside = (design.indices[which].astype(np.int64) for which in (first, second))
+        low = at // width >= beside // width
+        first, second, at, beside = first[low], second[low], at[low], beside[low]
+        # Blocks on the diagonal, each with its rows; then those below it.
+        block = np.where(at // width == beside // width, at // width, self.nodes.x.size + beside // width)
+        place = (block * width + at % width) * width + beside % width
         # Each place once: of all rows that add to it, only weights differ.
-        self._place, inverse = np.unique(place, return_inverse=True)
+        self.place, inverse = np.unique(place, return_inverse=True)
         values = design.data[first] * design.data[second]
-        self._products = sparse.csr_array(
-            (values, (inverse, row[first])), shape=(self._place.size, design.shape[0])
-        )
+        self.products = sparse.csr_array((values, (inverse, row[first])), shape=(self.place.size, design.shape[0]))
 
     def factor(self, sizes: Reals, length: float, weights: Reals) -> Factor:
         """Factor the normal matrix of the processes.
@@ -120,23 +121,16 @@ class Chains:
             Precision of each row.
         """
         diagonal, below, log_prior = self.nodes.precision(length)
-        banded = np.zeros((self.band, self.size))
-        banded.reshape(-1)[self._place] = self._products @ weights
-        count, width = self.nodes.x.size, STATES * len(self.kinds)
-        precision = 1.0 / sizes**2
-        for i in range(STATES):
-            for j in range(STATES):
-                column = np.arange(count)[:, None] * width + STATES * np.arange(len(self.kinds)) + j
-                if i >= j:
-                    banded[i - j, column.reshape(-1)] += (diagonal[:, i, j, None] * precision).reshape(-1)
-                if count > 1:
-                    at = column[:-1].reshape(-1)
-                    banded[width + i - j, at] += (below[:, i, j, None] * precision).reshape(-1)
-        factor = linalg.cholesky_banded(banded, lower=True, overwrite_ab=True, check_finite=False)
-        prior = len(self.kinds) * log_prior - STATES * count * float(np.log(sizes**2).sum())
-        log_determinant = 2.0 * float(np.log(factor[0]).sum()) - prior
-        if self.turn is not None:
-            log_determinant *= 2.0
+        count, processes = self.nodes.x.size, len(self.kinds)
+        blocks = np.zeros((2 * count - 1, processes, STATES, processes, STATES))
+        blocks.reshape(-1)[self.place] = self.products @ weights
+        each = np.arange(processes)
+        prior = np.concatenate([diagonal, below])
+        blocks[:, each, :, each, :] += prior / (sizes**2)[:, None, None, None]
+        square = blocks.reshape(2 * count - 1, processes * STATES, processes * STATES)
+        factor = Tridiagonal.of(square[:count], square[count:])
+        log_prior = processes * log_prior - STATES * count * float(np.log(sizes**2).sum())
+        log_determinant = self.parts * (factor.log_determinant - log_prior)
         return Factor(self, factor, weights, log_determinant)
 
 
@@ -157,34 +151,43 @@ class Factor:
     """Applies the inverse of D + C K C', D diagonal, K that of the processes (Woodbury's identity)."""
 
     chains: Chains
-    factor: Reals
+    factor: Tridiagonal
     weights: Reals
     log_determinant: float
     """Of I + C K C' D^-1."""
 
     def pulled(self, weighted: Reals) -> Reals:
         """C' times columns that are weighted already, as the factor solves for it: shape (states, parts k)."""
-        chains = self.chains
-        each = np.asarray(chains.acts.T @ weighted).reshape(chains.parts, chains.size, -1)
-        return np.ascontiguousarray(np.moveaxis(each, 0, 1).reshape(chains.size, -1))
+        chains, count = self.chains, weighted.shape[1]
+        each = np.asarray(chains.acts.T @ weighted).reshape(chains.parts, chains.size, count)
+        return np.ascontiguousarray(np.moveaxis(each, 0, 1).reshape(chains.size, chains.parts * count))
 
     def half(self, weighted: Reals) -> Reals:
         """L^-1 C' times columns that are weighted already, L the factor: shape (states parts, k)."""
-        count = weighted.shape[1]
-        if not count:
-            # LAPACK reads beyond arrays that hold nothing.
-            return np.zeros((self.chains.parts * self.chains.size, 0))
-        solved, _ = linalg.lapack.dtbtrs(self.factor, self.pulled(weighted), uplo="L")
-        return np.asarray(solved).reshape(-1, count)
+        solved = self.factor.forward(self.pulled(weighted))
+        return solved.reshape(self.chains.parts * self.chains.size, weighted.shape[1])
 
     def states(self, weighted: Reals) -> Reals:
         """Most probable states of the processes, given what rows are: shape (parts states, k)."""
+        chains, count = self.chains, weighted.shape[1]
+        solved = self.factor.backward(self.factor.forward(self.pulled(weighted)))
+        each = solved.reshape(chains.size, chains.parts, count)
+        return np.ascontiguousarray(np.moveaxis(each, 1, 0).reshape(chains.parts * chains.size, count))
+
+    @cached_property
+    def inverse(self) -> tuple[Reals, Reals]:
+        """See :meth:`Tridiagonal.inverse_blocks`."""
+        return self.factor.inverse_blocks()
+
+    @cached_property
+    def variance(self) -> Reals:
+        """Of what the processes do to each of the rows that they act on, given what rows are."""
         chains = self.chains
-        if not weighted.shape[1]:
-            return np.zeros((chains.parts * chains.size, 0))
-        solved = linalg.cho_solve_banded((self.factor, True), self.pulled(weighted), check_finite=False)
-        each = solved.reshape(chains.size, chains.parts, -1)
-        return np.ascontiguousarray(np.moveaxis(each, 1, 0).reshape(chains.parts * chains.size, -1))
+        at, below = self.inverse
+        # Products of entries are there once of two that are in different blocks.
+        both = np.concatenate([at, 2.0 * below]).reshape(-1)[chains.place]
+        found = np.asarray(chains.products.T @ both)
+        return found[chains.order % found.size]
 
     def apply(self, weighted: Reals) -> Reals:
         """What the processes take off columns that are weighted already, but for the weights."""
@@ -225,9 +228,20 @@ def of_responses(blocks: list[tuple[int, FrfBlock]]) -> Chains:
 
 
 def of_spectra(blocks: list[tuple[int, SpectraBlock]]) -> Chains:
-    """Errors of the channels of all runs together: log gain and phase of each."""
-    names: dict[tuple[str, complex], int] = {}
+    """Errors of the channels of all runs together: log gain and phase of each, and of what it does not share.
+
+    What a channel shares with no other is little, and of much that no model has: its noise, its crosstalk, what
+    the window tears apart. So the density of it is off by as smooth an error.
+    """
+    names: dict[tuple[str, complex | str], int] = {}
     rows, parts, start = [], [], 0
+
+    def add(what: tuple[str, complex | str], at: Reals, row: int, value: Reals, slope: Reals) -> None:
+        process = names.setdefault(what, len(names))
+        where = np.flatnonzero((np.abs(value) > 0.0) | (np.abs(slope) > 0.0))
+        each = np.full(where.size, process)
+        parts.append(Entries(row + where, each, np.log2(at[where]), value[where], slope[where]))
+
     for first, block in blocks:
         channels = block.dataset.data["channel"].values.astype(str)
         moved, count = block.moved, block.rows.channel.size
@@ -236,29 +250,24 @@ def of_spectra(blocks: list[tuple[int, SpectraBlock]]) -> Chains:
         nothing = np.zeros(channels.size, dtype=np.complex128)
         for index, channel in enumerate(channels):
             for part in (1.0 + 0.0j, 1.0j):
-                process = names.setdefault((channel, part), len(names))
                 one = nothing.copy()
                 one[index] = part
                 row = start
                 both = (moved.answers(one, nothing), moved.answers(nothing, one))
                 for (what, _, _, at, sigma), by_value, by_rate in zip(moved.parts, *both, strict=True):
                     for take in (np.real, np.imag)[: 2 if what == "transfer" else 1]:
-                        value, slope = take(by_value) / sigma, take(by_rate) * step[at] / sigma
-                        acts = (np.abs(value) > 0.0) | (np.abs(slope) > 0.0)
-                        where = np.flatnonzero(acts)
-                        parts.append(
-                            Entries(
-                                row + where,
-                                np.full(where.size, process),
-                                np.log2(block.frequency[at][where]),
-                                value[where],
-                                slope[where],
-                            )
-                        )
+                        slope = take(by_rate) * step[at] / sigma
+                        add((channel, part), block.frequency[at], row, take(by_value) / sigma, slope)
                         row += at.size
+        row = start
+        for what, child, _, at, sigma in moved.parts:
+            if what == "rest":
+                add((channels[child], "unshared"), block.frequency[at], row, 1.0 / sigma, np.zeros(at.size))
+            row += at.size * (2 if what == "transfer" else 1)
         rows.append(first + np.arange(count))
         start += count
-    return Chains(np.concatenate(rows), None, ("channel",) * len(names), _joined(parts))
+    kinds = tuple("unshared" if part == "unshared" else "channel" for _, part in names)
+    return Chains(np.concatenate(rows), None, kinds, _joined(parts))
 
 
 def _joined(parts: list[Entries]) -> Entries:

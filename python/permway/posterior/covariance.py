@@ -239,12 +239,21 @@ class Covariance:
     noise: float
     factors: tuple[Factor, ...]
 
+    @property
+    def _sizes(self) -> Reals:
+        """By which the frame's columns count: those of the idealisation by their size."""
+        count = self.frame.columns.shape[1]
+        return np.where(np.arange(count) < count - self.frame.idealised, 1.0, self.hyper[IDEALISATION])
+
+    @property
+    def columns(self) -> Reals:
+        """Errors that a few columns span, of unit variance, at all rows, (n, b)."""
+        return self.frame.whole * self._sizes
+
     @cached_property
     def _columns(self) -> Reals:
-        """The frame's, those of the idealisation of their size."""
-        count = self.frame.columns.shape[1]
-        sizes = np.where(np.arange(count) < count - self.frame.idealised, 1.0, self.hyper[IDEALISATION])
-        return self.frame.columns * sizes
+        """The same at the rows that they act on."""
+        return self.frame.columns * self._sizes
 
     @cached_property
     def _spanned(self) -> tuple[Roots, Reals]:

@@ -1,8 +1,7 @@
 """The most probable hyperparameters of a fit, its parameters moving along in a straight line.
 
-A quasi-Newton descent between bounds, slopes by differences (Nocedal and Wright 2006, Numerical Optimization,
-chapter 6 and section 18.3). Fits of one search differ little in their curvature, so each begins with that of the
-fit that it came from.
+A quasi-Newton descent between bounds (Nocedal and Wright 2006, Numerical Optimization, chapter 6 and section
+18.3). Fits of one search differ little in their curvature, so each begins with that of the fit that it came from.
 """
 
 from __future__ import annotations
@@ -16,6 +15,7 @@ from scipy import linalg
 from permway.arrays import Reals
 from permway.posterior.fit import Fit
 from permway.posterior.hyper import Hyper
+from permway.posterior.hyper_slope import hyper_slope
 
 SETTLED = 0.1
 """Of minus two log posterior, that a step is predicted to gain if it is taken: a twentieth of a nat."""
@@ -23,8 +23,8 @@ SETTLED = 0.1
 MOST_STEPS, HALVED = 25, 5
 """Steps at most, and how often each is halved until it descends."""
 
-DIFFERENCE, CURVING = 1e-3, 0.2
-"""Of a logarithm, for slopes, and for curvatures where none is known."""
+CURVING = 0.2
+"""Of a logarithm, by which the objective is differenced for curvatures where none is known."""
 
 LEAST_BEND, LONGEST = 0.2, 1.5
 """Curvature at least, that of a prior with a factor of 9 for a standard deviation; longest step of a logarithm."""
@@ -32,11 +32,11 @@ LEAST_BEND, LONGEST = 0.2, 1.5
 
 def estimated(fit: Fit) -> Fit:
     """With its most probable hyperparameters."""
-    objective = _objective(fit)
+    objective = least_objective(fit)
     low, high = fit.hyper.bounds()
     x = np.clip(fit.hyper.log, low, high)
     value = objective(x)
-    slope = _slope(objective, x, value, high)
+    slope = _slope(fit, x)
     bend = _curvature(objective, x, value, low, high) if fit.bend is None else fit.bend
     for _ in range(MOST_STEPS):
         shift = _step(slope, bend, x, low, high)
@@ -51,7 +51,7 @@ def estimated(fit: Fit) -> Fit:
         else:
             break
         gained, x, value = value - new, x + shift, new
-        after = _slope(objective, x, value, high)
+        after = _slope(fit, x)
         bend = _updated(bend, shift, after - slope)
         slope = after
         if gained < 0.5 * SETTLED:
@@ -59,7 +59,8 @@ def estimated(fit: Fit) -> Fit:
     return replace(fit, hyper=fit.hyper.moved(x), bend=bend)
 
 
-def _objective(fit: Fit) -> Callable[[Reals], float]:
+def least_objective(fit: Fit) -> Callable[[Reals], float]:
+    """Minus two log posterior of logarithms of hyperparameters, the parameters where it is least for them."""
     columns = np.column_stack([fit.state.residuals, fit.jacobian])
 
     def objective(log: Reals) -> float:
@@ -80,14 +81,8 @@ def _objective(fit: Fit) -> Callable[[Reals], float]:
     return objective
 
 
-def _slope(objective: Callable[[Reals], float], x: Reals, value: float, high: Reals) -> Reals:
-    found = np.empty(x.size)
-    for index in range(x.size):
-        step = DIFFERENCE if x[index] + DIFFERENCE <= high[index] else -DIFFERENCE
-        moved = x.copy()
-        moved[index] += step
-        found[index] = (objective(moved) - value) / step
-    return found
+def _slope(fit: Fit, x: Reals) -> Reals:
+    return hyper_slope(fit, fit.frame.covariance(fit.hyper.moved(x)))
 
 
 def _curvature(objective: Callable[[Reals], float], x: Reals, value: float, low: Reals, high: Reals) -> Reals:
