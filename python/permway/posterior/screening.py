@@ -28,9 +28,9 @@ from permway.posterior.journal import kept_table
 BATCH = 64
 """Cells whose residuals are held at once."""
 
-EACH_FORM = 12
-"""Changes of the line of one form, the best by hammer tests, that are scored by all records: twice as many as are
-fitted."""
+EACH_FORM, EACH_SMALL = 12, 4
+"""Changes of the line of one form, the best by hammer tests, that are scored by all records, and of small ones:
+twice as many as are fitted."""
 
 ROUNDED = 1e-16
 """Square of a change, in standard deviations, that residuals are rounded to."""
@@ -166,7 +166,7 @@ def _looked(
     for index in (of_line[at] for at in np.argsort(score).tolist()):
         form = cells[index].hypothesis.form
         count[form] += 1
-        if count[form] <= EACH_FORM:
+        if count[form] <= (EACH_SMALL if small else EACH_FORM):
             chosen.add(index)
     again, done = sorted(chosen), len(of_line)
     rest = _scored(fit, [cells[i] for i in again], lambda n: progress(min(done + n, len(cells))), others)

@@ -33,7 +33,7 @@ from permway.posterior.ordering import LEFT, LEVELS, annealed, apart, ordered, w
 from permway.posterior.recalibrated import first_values
 from permway.posterior.screening import Scores, screened
 
-WIDTHS, PER_FORM = (96, 32, 12), (12, 3, 2)
+WIDTHS, PER_FORM = (48, 16, 6), (6, 2, 1)
 """Cells that are refined at each level, and at most so many of one form: sizes of the beam."""
 
 NEGLECTED = 0.01
