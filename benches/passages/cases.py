@@ -13,8 +13,11 @@ from permway.laws.toml import to_toml
 RATE_HZ, NOISE = 200.0, (1e-3, 1e-2)
 """Samples; noise of a sample over the largest of its sensor, at random in its logarithm."""
 
-STIFFNESS, SPEED, LOAD, ENTRY_S = 0.15, 0.02, 0.2, 0.1
+STIFFNESS, SPEED, LOAD, ENTRY_S, SPRING = 0.15, 0.02, 0.2, 0.1, 0.2
 """Two standard deviations by which stated values are off, in proportion, and s."""
+
+GRAVITY, BOUNCE_DAMPING = 9.81, 0.15
+"""m/s2; damping ratio of masses on springs."""
 
 GAIN = 0.02
 """Standard deviation of each channel's gain, and of an error that is smooth over frequency, neper and rad."""
@@ -52,8 +55,12 @@ def drawn(seed: int, folder: Path, *, sprung: bool) -> Case:
     factor = {name: float(np.exp(0.5 * sigma * random.standard_normal())) for name, sigma in off.items()}
     late = float(0.5 * ENTRY_S * random.standard_normal())
     true_loads = loads * [factor[f"P{i}"] for i in range(loads.size)]
+    bounce = 2.0 * np.pi * float(random.uniform(0.8, 3.0)) if sprung else 0.0
+    mass = float(np.mean(loads)) / GRAVITY
+    spring, damper = mass * bounce**2, 2.0 * BOUNCE_DAMPING * mass * bounce
+    factor |= {"K": float(np.exp(0.5 * SPRING * random.standard_normal()))} if sprung else {}
     train = Train(
-        true_loads, lags, speed * factor["V"], entry + late, float(random.uniform(0.8, 3.0)) if sprung else 0.0
+        true_loads, lags, speed * factor["V"], entry + late, spring * factor.get("K", 1.0), damper
     )
     beam = Beam(length, bending * factor["E"], kg_per_m, damping)
     samples = int((entry + (length + lags[-1]) / speed + 1.5) * RATE_HZ)
@@ -85,10 +92,13 @@ def drawn(seed: int, folder: Path, *, sprung: bool) -> Case:
         "loads_N": loads.tolist(),
         "lags_m": lags.tolist(),
     }
+    if sprung:
+        stated["suspension"] = {"stiffness_N_per_m": spring, "damping_Ns_per_m": damper}
     high_Hz = float(min(3.0 * first_Hz, 25.0))
     path = folder / "campaign.toml"
     path.write_text(to_toml(_campaign(sensors, stated, high_Hz)), "utf-8")
     true = {"E": 3.4e10 * factor["E"], "V": train.speed, "t0": late}
+    true |= {"K": spring * factor["K"]} if sprung else {}
     return Case(path, true | {f"P{i}": float(load) for i, load in enumerate(true_loads)})
 
 
@@ -127,6 +137,9 @@ def _campaign(sensors: dict[str, Sensor], stated: dict[str, Any], high_Hz: float
         | {"absolute": True},
         *loads,
     ]
+    if "suspension" in stated:
+        spring = f"{axles}.suspension.stiffness_N_per_m"
+        parameters.append({"name": "K", "unit": "N/m", "paths": spring, "tolerance_2sigma": SPRING})
     condition = {"name": "train", "kind": "passage", "speed_m_per_s": stated.pop("speed_m_per_s")}
     record = {"name": "run", "file": "run.csv", "condition": "train", "statistic": "passage"}
     return {

@@ -37,15 +37,15 @@ class Beam:
 class Train:
     """Axles: loads, N; distances behind the first, m; speed, m/s; when the first enters, s.
 
-    With `sprung_Hz` all of a load is a mass on a spring, of that frequency and damping ratio.
+    With a spring, N/m, and a damper, N s/m, of each axle all of its load is a mass on them.
     """
 
     loads_N: np.ndarray
     lags_m: np.ndarray
     speed: float
     entry_s: float
-    sprung_Hz: float = 0.0
-    sprung_damping: float = 0.15
+    spring: float = 0.0
+    damper: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def histories(beam: Beam, train: Train, sensors: list[Sensor], rate_Hz: float, s
     number = np.arange(1, MODES + 1)
     omega = 2.0 * np.pi * beam.first_Hz * number**2
     force = np.where(on, train.loads_N[:, None], 0.0)
-    if train.sprung_Hz > 0.0:
+    if train.spring > 0.0:
         force = _sprung(beam, train, omega, place, on, step)
     q, u, a = _modal(beam, omega, _driven(beam, place, force, number), step)
     held = omega < 0.9 * np.pi / step
@@ -126,7 +126,6 @@ def _sprung(
     """Forces under masses on springs, shape (axles, samples)."""
     number = np.arange(1, omega.size + 1)
     mass = train.loads_N / 9.81
-    w0 = 2.0 * np.pi * train.sprung_Hz
     shapes = np.where(on, np.sin(number[:, None, None] * np.pi * place / beam.length_m), 0.0)
     force = np.where(on, train.loads_N[:, None], 0.0)
     for _ in range(TURNS):
@@ -136,10 +135,11 @@ def _sprung(
         new = force.copy()
         for i, m in enumerate(mass):
             # Of the mass, down from rest: the spring stands on the beam, which is level before and behind it.
-            pushed = w0**2 * under[i] + 2.0 * train.sprung_damping * w0 * rises[i]
-            z, v = _oscillator(w0, train.sprung_damping, pushed, step)
-            spring = w0**2 * (z - under[i]) + 2.0 * train.sprung_damping * w0 * (v - rises[i])
-            new[i] = np.where(on[i], train.loads_N[i] + m * spring, 0.0)
+            w0 = np.sqrt(train.spring / m)
+            pushed = (train.spring * under[i] + train.damper * rises[i]) / m
+            z, v = _oscillator(w0, 0.5 * train.damper / (m * w0), pushed, step)
+            more = train.spring * (z - under[i]) + train.damper * (v - rises[i])
+            new[i] = np.where(on[i], train.loads_N[i] + more, 0.0)
         moved = np.abs(new - force).max() / train.loads_N.max()
         force = new
         if moved < SETTLED:

@@ -1,7 +1,6 @@
 """What passages say of loads and speed, and how surely: `python benches/passages/run.py FOLDER [FIRST COUNT]`.
 
-Small campaigns at random, five of six of constant forces, the others of masses on springs, which permway's model
-of a passage has not; made by an integration in time that shares no code with it. Each is recalibrated as
+Small campaigns at random, five of six of constant forces, the others of masses on springs; made by an integration in time that shares no code with it. Each is recalibrated as
 `permway compare` does. FOLDER keeps a line of JSON a case, and what is there is not run again; the summary of all
 goes to passages.json beside this file.
 """
@@ -57,7 +56,7 @@ def summary(cases: list[dict[str, Any]]) -> dict[str, object]:
     off = np.abs([v for c in cases for v in c["deviations"].values()])
     held = {
         what: float(np.mean([abs(v) < Z90 for c in cases for n, v in c["deviations"].items() if n[0] == what[0]]))
-        for what in ("E", "V", "P", "t0")
+        for what in ("E", "V", "P", "t0", "K")
     }
     return {
         "cases": len(cases),

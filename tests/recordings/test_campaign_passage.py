@@ -22,7 +22,9 @@ from permway.campaign.predict import predict
 from permway.errors import InputError
 from permway.model.line import Line
 from permway.model.place import Place
-from permway.response.passby import Axles, passby
+from permway.model.vehicle import STANDARD_GRAVITY
+from permway.response.passby import Axles, couple, passby
+from permway.response.passby.sprung import SprungMass
 from scipy.interpolate import CubicSpline
 
 LEFT = {"w": 3e-4, "v": 2e-3, "a": 3e-3, "e": 1.5e-3, "M": 1.5e-3}
@@ -276,3 +278,66 @@ def test_strain_of_a_timoshenko_beam_is_refused(tmp_path: Path) -> None:
     campaign = read_campaign(passages.write(tmp_path, {"e": values}, **shear))
     with pytest.raises(InputError, match="of Euler beams"):
         predict(campaign, campaign.load(), threads=1)
+
+
+def sprung(folder: Path, eta: float, direction: str) -> tuple[np.ndarray, np.ndarray]:
+    """Predicted less marched in time, and how much the springs do, over the largest of the spectrum.
+
+    A sixth of the beam's mass, whose bounce is near the beam's own frequency.
+    """
+    mass, unsprung, entry = 4e4, 4e3, passages.ENTRY_S
+    spring = {"stiffness_N_per_m": 2.5e7, "damping_Ns_per_m": 4e5}
+    contact, window_s = 4e8, 1.2 / eta
+    x = 8.0 if direction == "forward" else passages.LENGTH_M - 8.0
+    data = couple(
+        Line.model_validate(passages.model(eta)["line"]),
+        SprungMass(mass_kg=mass, wheel_mass_kg=unsprung, **spring),
+        speed_m_per_s=passages.SPEED,
+        contact_N_per_m=contact,
+        step_s=0.0015,
+        sensors=[Place(body="deck", x_m=x)],
+        body="deck",
+        after_s=3.0,
+        window_s=window_s,
+    )
+    time = passages.time_s()
+    spline = CubicSpline(data["time"].values + entry, data["displacement"].values[0])
+    read = np.where(time < entry, 0.0, spline(np.maximum(time, entry)))
+    table = passages.campaign("w")
+    table["sensors"][0]["x_m"] = 8.0
+    axles = {"loads_N": [(mass + unsprung) * STANDARD_GRAVITY], "lags_m": [0.0], "direction": direction}
+    table["conditions"][0]["axles"] |= axles
+    table["parameters"] = []
+    table["records"][0]["window_s"] = window_s
+    found = []
+    for name, more in (
+        ("springs", {"suspension": spring | {"unsprung_kg": unsprung, "contact_N_per_m": contact}}),
+        ("none", {}),
+    ):
+        table["conditions"][0]["axles"] |= more
+        place = folder / f"{name}-{eta}"
+        campaign = read_campaign(passages.write(place, {"w": noisy(1e3 * read)}, table=table, loss_factor=eta))
+        (dataset,) = campaign.load()
+        found.append(predict(campaign, [dataset], threads=1)[0]["spectrum"].values[0])
+        table["conditions"][0]["axles"].pop("suspension", None)
+    measured = dataset.data["spectrum"].values[0]
+    size = np.abs(measured).max()
+    return (found[0] - measured) / size, (found[1] - found[0]) / size
+
+
+@pytest.mark.parametrize("direction", ["forward", "backward"])
+def test_an_axle_on_springs_is_what_is_marched_in_time(direction: str, tmp_path: Path) -> None:
+    (coarse, change), (fine, _) = (sprung(tmp_path, eta, direction) for eta in (0.04, 0.02))
+    assert np.abs(coarse).max() < 1.5 * 0.04
+    assert np.abs(2.0 * fine - coarse).max() < 3e-4
+    assert np.abs(change).max() > 0.1
+
+
+def test_an_axle_heavier_than_its_load_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"suspension\.unsprung_kg"):
+        changed(tmp_path, suspension={"stiffness_N_per_m": 1e6, "damping_Ns_per_m": 1e4, "unsprung_kg": 2e5})
+
+
+def test_axles_that_bounce_on_beyond_the_window_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"suspension\.damping_Ns_per_m.*window_s [0-9.]+ s longer"):
+        changed(tmp_path, suspension={"stiffness_N_per_m": 1e6, "damping_Ns_per_m": 1e3})

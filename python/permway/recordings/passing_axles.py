@@ -1,21 +1,63 @@
-"""The train of a passage: axles with constant loads, when they come, and which way they run."""
+"""The train of a passage: axles with their loads, when they come, and which way they run."""
 
 from __future__ import annotations
 
 from typing import Literal
 
 import numpy as np
-from pydantic import Field, PositiveFloat, model_validator
+from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
-from permway.arrays import Reals
+from permway.arrays import Complexes, Reals
+from permway.errors import InputError
 from permway.model.bodies import Metres
 from permway.model.faults import fault
+from permway.model.vehicle import STANDARD_GRAVITY
 from permway.records import FloatTuple, FrozenModel, Number
 from permway.response.passby.loads import check_axles
 
 
+class Suspension(FrozenModel):
+    """What lies between each axle and the mass above it.
+
+    Parameters
+    ----------
+    stiffness_N_per_m, damping_Ns_per_m : float
+        Of all springs and dampers of one axle, of what the model carries.
+    unsprung_kg : float
+        Of the axle itself; its load less this weight is what the springs carry.
+    contact_N_per_m : float, optional
+        Spring between the axle and what it runs on; without one it is rigid.
+    """
+
+    stiffness_N_per_m: PositiveFloat
+    damping_Ns_per_m: PositiveFloat
+    unsprung_kg: NonNegativeFloat = 0.0
+    contact_N_per_m: PositiveFloat | None = None
+
+    def answer(self, loads_N: Reals, omega: Reals) -> Complexes:
+        """Force on the line per displacement of the line under the axle, N/m, shape (axles, F)."""
+        spring = self.stiffness_N_per_m + 1j * omega * self.damping_Ns_per_m
+        inertia = omega**2 * self._sprung_kg(loads_N)[:, None]
+        of_axle = spring * inertia / (spring - inertia) + omega**2 * self.unsprung_kg
+        return np.asarray(of_axle / (1.0 - of_axle / (self.contact_N_per_m or np.inf)))
+
+    def decay_per_s(self, loads_N: Reals) -> float:
+        """Rate at which the slowest mass comes to rest behind the line."""
+        return float(0.5 * self.damping_Ns_per_m / max(self._sprung_kg(loads_N).max(), 1e-12))
+
+    def _sprung_kg(self, loads_N: Reals) -> Reals:
+        sprung = loads_N / STANDARD_GRAVITY - self.unsprung_kg
+        if (sprung < 0.0).any():
+            raise InputError(
+                f"weighs more than a load of {loads_N.min():g} N",
+                where="axles.suspension.unsprung_kg",
+                value=self.unsprung_kg,
+            )
+        return np.asarray(sprung)
+
+
 class PassingAxles(FrozenModel):
-    """Axles that carry constant loads along a body at the condition's speed.
+    """Axles that carry their loads along a body at the condition's speed.
 
     Parameters
     ----------
@@ -48,6 +90,7 @@ class PassingAxles(FrozenModel):
     from_m: Metres | None = None
     to_m: Metres | None = None
     ramp_m: float | None = Field(default=None, ge=0.0)
+    suspension: Suspension | None = None
 
     @model_validator(mode="after")
     def _check(self) -> PassingAxles:

@@ -1,7 +1,7 @@
-"""What fixed sensors read while axles pass: constant loads that move over the line, statically and dynamically.
+"""What fixed sensors read while axles pass: loads that move over the line, statically and dynamically.
 
 The equation is that of :mod:`permway.response.passby.carry`. Speed, loads and times act on receptances that are
-solved once.
+solved once. Axles with a suspension push harder or less hard where the line moves under them.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.parts import Condition
 from permway.campaign.passage import offset_m, path_under, points_of, spectrum_of
+from permway.campaign.predictions.suspended import suspended
 from permway.campaign.predictions.sweeps import Location, Request
 from permway.errors import InputError
 from permway.model.bodies import Beam
@@ -42,6 +43,8 @@ def request(
     path = path_under(campaign.model, condition, sensors, _highest(data))
     rows = dict.fromkeys((str(s.body), x) for s in sensors for x in points_of(campaign.model, s))
     columns = tuple((path.body, float(x)) for x in path.nodes.ravel())
+    if condition.axles is not None and condition.axles.suspension is not None:
+        rows |= dict.fromkeys(columns)
     frequency = _lines(data)
     frequency[0] = STATIC_SHARE * frequency[1]
     return Request(temperature_C, frequency, tuple(rows), columns)
@@ -73,7 +76,8 @@ def predicted(
     held[0] = held[0].real
     frequency = _lines(data)
     read = _read(campaign.model, sensors, request.rows)
-    spectrum = _carried(condition, path, frequency, np.einsum("sr,frp->fsp", read, held))
+    moments = _moments(condition, path, frequency, request, held)
+    spectrum, _ = carried(path.coefficients(np.einsum("sr,frp->fsp", read, held)), moments)
     share = np.arange(frequency.size) / max(frequency.size - 1, 1)
     low_pass = 0.5 * (1.0 + np.cos(np.pi * np.clip((share - FLAT) / (1.0 - FLAT), 0.0, 1.0)))
     turned = spectrum.T * low_pass * np.stack([s.transfer(frequency) for s in sensors])
@@ -142,8 +146,10 @@ def check_seam(record: str, data: xr.Dataset, seam: float) -> None:
         )
 
 
-def _carried(condition: Condition, path: Path, frequency_Hz: Reals, values: Complexes) -> Complexes:
-    """Spectra of unit sensors, (F, sensors), on the clock of the records."""
+def _moments(
+    condition: Condition, path: Path, frequency_Hz: Reals, request: Request, receptance: Complexes
+) -> Complexes:
+    """Of all loads on the clock of the records, (F, panels, order)."""
     axles, speed = condition.axles, condition.speed_m_per_s
     assert axles is not None
     assert speed is not None
@@ -151,10 +157,12 @@ def _carried(condition: Condition, path: Path, frequency_Hz: Reals, values: Comp
     sign = 1.0 if axles.direction == "forward" else -1.0
     # Along -x the same integral over x, whose element is then negative.
     moments = sign * harmonic_moments(path, omega, sign * speed)
-    at_origin = axles.arrivals_s(speed, path.start, path.stop)
-    loads = arrivals(omega, axles.loads, at_origin)
-    found, _ = carried(path.coefficients(values), moments * loads[:, None, None])
-    return found
+    loads = arrivals(omega, axles.loads, axles.arrivals_s(speed, path.start, path.stop))
+    found = moments * loads[:, None, None]
+    if axles.suspension is None:
+        return np.asarray(found)
+    nodes = [request.rows.index((path.body, float(x))) for x in path.nodes.ravel()]
+    return suspended(axles, speed, path, frequency_Hz, path.coefficients(receptance[:, nodes]), found)
 
 
 def _recorded(
