@@ -264,6 +264,7 @@ class Fitter:
         """
         problem = Problem(self.frame.observations, start.model.build, start.model.free)
         low, high = start.model.limits
+        ends = [index for centre, length, _ in start.model.stretches for index in (centre, length)]
         fit, damping, fresh, exact = start, 1e-3, True, not fixed
         for _ in range(steps):
             slope = fit.slope(fit.state.residuals) + fit.z
@@ -281,8 +282,14 @@ class Fitter:
                     break
                 moved, damping = None, max(10.0 * damping, 1e-4)
             if moved is None:
-                if predicted < ENOUGH or (fresh and exact):
+                if predicted < ENOUGH or (fresh and exact and not ends):
                     break
+                if fresh and exact:
+                    # Ends of stretches change nothing up to the next joint, and then much: they keep the rest from
+                    # moving, which does so without them.
+                    low[ends] = high[ends] = fit.z[ends]
+                    ends, damping = [], 1e-3
+                    continue
                 # Where slopes that were kept lead nowhere, all are taken anew.
                 exact = exact or fresh
                 fit, fresh, damping = self.sloped(problem, fit, 0 if exact else fixed), True, 1e-3

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from permway.arrays import Reals
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.errors import InputError, SolveError
 from permway.posterior.beam import SAME, STEPS, Member, finished
-from permway.posterior.fit import Fit, Fitter, Model, extended
+from permway.posterior.cells import coordinate
+from permway.posterior.fit import STRETCH, Fit, Fitter, Model, extended
 from permway.posterior.idealised import idealised
 
 LEVELS = (1.0, 0.2, 0.04)
@@ -55,32 +57,56 @@ def weighed(
 def _pruned(fitter: Fitter, members: list[Member], nominal: Model) -> list[Member]:
     """With the best set's subsets, each begun where the set has it, as long as one is better.
 
-    What came first may have stood in for what came after it.
+    What came first may have stood in for what came after it; and of two stretches of one form, one over both.
     """
     while True:
         best = members[0]
         found = []
-        for index in range(len(best.amendments) if len(best.amendments) > 1 else 0):
-            kept = [i for i in range(len(best.amendments)) if i != index]
-            fit = _without(fitter, best, kept, nominal)
+        for own, z in _smaller(best):
+            fit = _begun(fitter, best, own, z, nominal)
             if fit is not None:
-                own = tuple(best.amendments[i] for i in kept)
-                found.append(Member(own, finished(fitter, fit, own), tuple(best.log_priors[i] for i in kept)))
+                amendments = tuple(best.amendments[i] for i in own)
+                priors = tuple(best.log_priors[i] for i in own)
+                found.append(Member(amendments, finished(fitter, fit, amendments), priors))
         members = sorted([*members, *found], key=lambda m: -m.log_mass)
         if members[0] is best:
             return members
 
 
-def _without(fitter: Fitter, member: Member, kept: Sequence[int], nominal: Model) -> Fit | None:
-    """The set of some of a member's amendments, at the values that they have in it; the discrepancy falls anew."""
-    fit = member.fit
-    z = fit.z[: len(nominal.free)]
-    model = nominal
-    for number, index in enumerate(kept, start=1):
+def _smaller(member: Member) -> Iterator[tuple[list[int], list[Reals]]]:
+    """Sets of one amendment less: which of a member's they have, and the parameters of each."""
+    count = len(member.amendments)
+    own = [member.fit.z[member.own(index)] for index in range(count)]
+    for gone in range(count if count > 1 else 0):
+        kept = [index for index in range(count) if index != gone]
+        yield kept, [own[index] for index in kept]
+        for index in kept:
+            both = _over_both(member, index, gone)
+            if index < gone and both is not None:
+                yield kept, [both if i == index else own[i] for i in kept]
+
+
+def _over_both(member: Member, index: int, other: int) -> Reals | None:
+    """Parameters of an amendment whose stretch has that of another of its form; None if there are no such."""
+    amendment, values = member.amendments[index], [member.values(i) for i in (index, other)]
+    if amendment.form != member.amendments[other].form or not set(STRETCH) <= set(values[0]):
+        return None
+    centre, length = STRETCH
+    low = min(v[centre] - 0.5 * v[length] for v in values)
+    high = max(v[centre] + 0.5 * v[length] for v in values)
+    new = values[0] | {centre: 0.5 * (low + high), length: high - low}
+    z = [coordinate(free, new[free.name]) for free in amendment.free]
+    return None if None in z else np.array(z, dtype=np.float64)
+
+
+def _begun(fitter: Fitter, member: Member, own: Sequence[int], z: Sequence[Reals], nominal: Model) -> Fit | None:
+    """A set of some of a member's amendments, at these parameters; the discrepancy falls anew."""
+    fit, model = member.fit, nominal
+    for number, index in enumerate(own, start=1):
         model = extended(model, member.amendments[index], f"{number}.", fitter.frame.observations.campaign)
-        z = np.concatenate([z, fit.z[member.own(index)]])
+    whole = np.concatenate([fit.z[: len(nominal.free)], *z])
     try:
-        found = fitter.begin(model, z, fit.hyper.with_discrepancy(LEVELS[1]), bend=fit.bend)
+        found = fitter.begin(model, whole, fit.hyper.with_discrepancy(LEVELS[1]), bend=fit.bend)
         found = fitter.fit(found, steps=STEPS[1])
         return fitter.fit(replace(found, hyper=found.hyper.with_discrepancy(LEVELS[2])), steps=STEPS[2])
     except (InputError, SolveError):
