@@ -20,8 +20,7 @@ def test_a_verdict_is_whole(path: Path) -> None:
         assert effect.name is None or effect.name in known
         assert {member.name for member in effect.class_} <= known
     if verdict.status in ("named", "ambiguous", "described"):
-        assert verdict.evidence.bic_gain is not None
-        assert verdict.evidence.false_alarm_threshold is not None
-        assert verdict.evidence.bic_gain > verdict.evidence.false_alarm_threshold
+        assert verdict.evidence.log10_bayes_factor is not None
+        assert verdict.evidence.log10_bayes_factor > 1.0
         assert verdict.held_out
     assert verdict.recalibrated.before

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -11,18 +10,17 @@ from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import with_factors
 from permway.diagnosis.catalogue._roles import laws_of, pads
-from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free, log_free
+from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free
 from permway.model.joints import GROUND
 
 ID = "support_scatter"
 DOMAIN: Domain = "path"
 FAMILY = "uneven support"
 SUMMARY = (
-    "The logarithm of the pads' stiffness is a share times a sum of cosines of 1 to 4, or to 10, half waves over "
-    "the structure."
+    "The logarithm of the pads' stiffness is a sum of cosines of 1 to 4, or to 10, half waves over the structure."
 )
-PARAMETERS = {"share": "1, 0.0001 to 0.4: how much of their stiffness pads differ by"} | {
-    f"wave{order}": f"1, -3 to 3: coefficient of {order} half wave{'s' if order > 1 else ''}"
+PARAMETERS = {
+    f"wave{order}": f"1, -1.2 to 1.2: coefficient of {order} half wave{'s' if order > 1 else ''}"
     for order in range(1, 11)
 }
 SIGNATURE = "Responses of the rail differ from place to place as of softer and stiffer pads, with no place apart."
@@ -34,12 +32,12 @@ SOURCE = "Wu and Thompson (2000), Acta Acustica 86, 313-321; Oscarsson (2002), V
 FEW, MANY = tuple(range(1, 5)), tuple(range(1, 11))
 """Half waves: of what changes slowly along the structure, and of what changes within some metres."""
 
-SHARE, FACTOR = 0.1, 4.0
-"""Of pads of one kind and age, and the factor of one standard deviation: coefficients are of one size, unknown."""
+SPREADS = (0.25, 0.03, 0.004)
+"""Standard deviation of coefficients: they are of one size, unknown. At most it is a factor of 3 from one of these,
+so that a coefficient loses 1 nat."""
 
-LARGEST, MOST = 0.4, 3.0
-"""Share, and standard deviations of a coefficient, at most: ten that are as large as can be make a factor of e to
-the power of twelve."""
+MOST = 8.0
+"""Standard deviations of a coefficient, at most; and 1.2 where there are ten: a factor of e to the power of 12."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
@@ -52,10 +50,11 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         for orders in (FEW, MANY):
             # Of as many waves as there are pads some are the others again.
             if x.size > len(orders):
-                yield _of(law, x, orders)
+                for spread in SPREADS:
+                    yield _of(law, x, orders, spread)
 
 
-def _of(law: str, at: Reals, orders: tuple[int, ...]) -> Hypothesis:
+def _of(law: str, at: Reals, orders: tuple[int, ...], spread: float) -> Hypothesis:
     """Over the stations at some places, begun from one wave at a time, up and down."""
     low, high = float(at[0]), float(at[-1])
 
@@ -64,23 +63,22 @@ def _of(law: str, at: Reals, orders: tuple[int, ...]) -> Hypothesis:
             along = np.pi * (x - low) / (high - low)
             inside = (x >= low - 1e-6) & (x <= high + 1e-6)
             waves = sum(values[f"wave{order}"] * np.cos(order * along) for order in orders)
-            return np.asarray(np.where(inside, np.exp(values["share"] * waves), 1.0))
+            return np.asarray(np.where(inside, np.exp(waves), 1.0))
 
         return with_factors(campaign, law, factors)
 
-    starts = tuple((0.0, *(sign * float(o == k) for o in orders)) for k in orders for sign in (1.5, -1.5))
-    share = log_free("share", "1", SHARE, FACTOR)
-    share = replace(share, limits=(share.limits[0], float(np.log(LARGEST / SHARE) / np.log(FACTOR))))
+    starts = tuple(tuple(sign * float(o == order) for o in orders) for order in orders for sign in (1.5, -1.5))
+    most = min(MOST * spread, 2.0 if orders is FEW else 1.2)
     return Hypothesis(
         entry=ID,
         domain=DOMAIN,
         family=FAMILY,
-        free=(share, *(linear_free(f"wave{order}", "1", 0.0, 1.0, -MOST, MOST) for order in orders)),
+        free=tuple(linear_free(f"wave{order}", "1", 0.0, spread, -most, most) for order in orders),
         amend=amend,
         locate=lambda _: Where(what=law, x_m=(low, high)),
         starts=starts,
-        variant="" if orders is FEW else "many waves",
-        law=lambda v: _words([v["share"] * v[f"wave{order}"] for order in orders]),
+        variant=f"{len(orders)} waves of {spread:g}",
+        law=lambda v: _words([v[f"wave{order}"] for order in orders]),
     )
 
 
