@@ -33,11 +33,8 @@ FEW, MANY = tuple(range(1, 5)), tuple(range(1, 11))
 """Half waves: of what changes slowly along the structure, and of what changes within some metres."""
 
 SPREADS = (0.25, 0.03, 0.004)
-"""Standard deviation of coefficients: they are of one size, unknown. At most it is a factor of 3 from one of these,
-so that a coefficient loses 1 nat."""
-
-MOST = 8.0
-"""Standard deviations of a coefficient, at most; and 1.2 where there are ten: a factor of e to the power of 12."""
+"""Standard deviation of coefficients: they are of one size, unknown, at most a factor of 3 from one of these. So a
+coefficient loses 1 nat at most."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
@@ -68,7 +65,8 @@ def _of(law: str, at: Reals, orders: tuple[int, ...], spread: float) -> Hypothes
         return with_factors(campaign, law, factors)
 
     starts = tuple(tuple(sign * float(o == order) for o in orders) for order in orders for sign in (1.5, -1.5))
-    most = min(MOST * spread, 2.0 if orders is FEW else 1.2)
+    # Ten that are as large as can be make a factor of e to the power of twelve.
+    most = 2.0 if orders is FEW else 1.2
     return Hypothesis(
         entry=ID,
         domain=DOMAIN,
