@@ -64,7 +64,8 @@ deviations), chains err by 2 %.
 PASSAGES_NOTES = """
 Asked: loads within 3 %, speeds within 0.3 %, intervals 85 to 95 %. Five fits of constant forces rest at another
 optimum, stiffness 12 to 30 % off; each says that something is missing. Entries come out 0.4 ms early,
-for the model's constant loss, which lags at rest (the other code's is viscous). So intervals hold the truth less often than stated.
+for the model's constant loss, which lags at rest (the other code's is viscous). So intervals hold the truth less
+often than stated.
 """
 
 

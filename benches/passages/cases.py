@@ -59,9 +59,7 @@ def drawn(seed: int, folder: Path, *, sprung: bool) -> Case:
     mass = float(np.mean(loads)) / GRAVITY
     spring, damper = mass * bounce**2, 2.0 * BOUNCE_DAMPING * mass * bounce
     factor |= {"K": float(np.exp(0.5 * SPRING * random.standard_normal()))} if sprung else {}
-    train = Train(
-        true_loads, lags, speed * factor["V"], entry + late, spring * factor.get("K", 1.0), damper
-    )
+    train = Train(true_loads, lags, speed * factor["V"], entry + late, spring * factor.get("K", 1.0), damper)
     beam = Beam(length, bending * factor["E"], kg_per_m, damping)
     samples = int((entry + (length + lags[-1]) / speed + 1.5) * RATE_HZ)
     read = histories(beam, train, list(sensors.values()), RATE_HZ, samples)

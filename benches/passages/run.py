@@ -1,8 +1,9 @@
 """What passages say of loads and speed, and how surely: `python benches/passages/run.py FOLDER [FIRST COUNT]`.
 
-Small campaigns at random, five of six of constant forces, the others of masses on springs; made by an integration in time that shares no code with it. Each is recalibrated as
-`permway compare` does. FOLDER keeps a line of JSON a case, and what is there is not run again; the summary of all
-goes to passages.json beside this file.
+Small campaigns at random, five of six of constant forces, the others of masses on springs; made by an
+integration in time that shares no code with it. Each is recalibrated as `permway compare` does. FOLDER keeps a
+line of JSON a case, and what is there is not run again; the summary of all goes to passages.json beside this
+file.
 """
 
 from __future__ import annotations
