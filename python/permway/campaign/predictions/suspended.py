@@ -90,17 +90,17 @@ def suspended(
         """From spectra of each axle at each point, (F, points), to what is there as it passes, (axles, points)."""
         return np.asarray((late.conj().T @ (line * along.conj() * spectra)).real)
 
-    def felt(of: Complexes) -> Reals:
+    def pushed_back(of: Complexes) -> Reals:
         """What suspensions make of the line's motion by forces of these moments, (axles, points)."""
         moved = carried(coefficients, of)[0]
         under = at_points(np.einsum("gk,fgk->fg", between, moved[:, nodes]))
         pushed = answer * late * (along @ (under * seconds).T)
         return np.asarray(((late.conj() * line * pushed).T @ along.conj()).real)
 
-    more = felt(constant)
+    more = pushed_back(constant)
     left = LinearOperator(
         (more.size, more.size),
-        matvec=lambda f: f - felt(moments(f.reshape(more.shape))).ravel(),
+        matvec=lambda f: f - pushed_back(moments(f.reshape(more.shape))).ravel(),
         dtype=np.float64,
     )
     forces, failed = gmres(left, more.ravel(), rtol=SETTLED, restart=TURNS, maxiter=1)
