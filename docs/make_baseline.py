@@ -47,8 +47,8 @@ Of 200 other campaigns (seed 9760001) the version before had 81 of 97 right in a
 false names, 0 of 40 called, 74 of 83 names of 0.9 true. Seven misses and three false names were scattered pads:
 one unknown size of their waves had been a parameter. With three sizes five of these seven are right.
 
-Whole campaigns by today's version: the sealed ones, in `tests/sealed`. Against the first method's verdicts below
-it adds an effect in `-d`, `-f`, `-g` and `-j`.
+Whole campaigns by the second method, some changes ago: the sealed ones, in `tests/sealed`. Against the first
+method's verdicts below it adds an effect in `-d`, `-f`, `-g` and `-j`.
 """
 
 

@@ -34,7 +34,8 @@ AFTER, LEAST_S, MOST_S = 1.0, 4.0, 120.0
 """Times the passage that the line has after it to come to rest, and seconds at least and at most."""
 
 DECAYS = 6.0
-"""Times the slowest mode falls by e in that rest, to a 400th: unless `window_s` states how long it is."""
+"""Times the slowest mode, and the bounce of axles, fall by e in that rest, to a 400th: unless `window_s` states
+how long it is."""
 
 LOWEST = 0.02
 """Share of the highest frequency from which modes are looked for."""
@@ -95,6 +96,8 @@ def passage(campaign: Campaign, record: Record) -> xr.Dataset:
         what = f"the train is on the stretch from {axles.entry_s:.3g} to {leaves:.3g} s, and the record is over"
         raise InputError(what, where="axles.entry_s", value=(start, stop), remedy="count from its first sample")
     rest = max(AFTER * crossing, _decay_s(campaign.model, condition, sensors, high))
+    if axles.suspension is not None:
+        rest = max(rest, min(DECAYS / axles.suspension.decay_per_s(axles.loads), MOST_S))
     rest = rest if record.window_s is None else 0.0
     reach = max(stop, leaves + rest) - min(start, axles.entry_s)
     if record.window_s is not None:

@@ -18,11 +18,13 @@ from permway.recordings.passing_axles import PassingAxles
 from permway.response.passby.carry import carried, points_needed
 from permway.response.passby.path import Path
 
-SETTLED, TURNS = 1e-6, 200
-"""Share of what forces are more than loads at which the solution ends, and products at most."""
+SETTLED, TURNS = 1e-12, 200
+"""Share of what forces are more than loads at which the solution ends, and products at most: fits difference
+predictions at parameters that are 1e-5 apart."""
 
 AT_REST = 0.01
-"""Share of its motion that a mass may still have when the periodic window begins anew."""
+"""Share of its motion that a mass may still have when the periodic window begins anew. Windows are made for a
+400th (:data:`permway.campaign.passage.DECAYS`), so that loads may grow by a quarter in a fit."""
 
 
 def suspended(
@@ -58,14 +60,15 @@ def suspended(
         If forces and motion do not settle.
     """
     assert axles.suspension is not None
-    rest = 1.0 / float(frequency_Hz[1]) - (path.stop - path.start) / speed_m_per_s
+    window = 1.0 / float(frequency_Hz[1])
+    rest = window - (path.stop - path.start) / speed_m_per_s
     rate = axles.suspension.decay_per_s(axles.loads)
     if np.exp(-rate * rest) > AT_REST:
         raise InputError(
             f"lets axles bounce on for longer than the {rest:.3g} s that the window has",
             where="axles.suspension.damping_Ns_per_m",
             value=axles.suspension.damping_Ns_per_m,
-            remedy=f"give the record a window_s {-np.log(AT_REST) / rate - rest:.3g} s longer, or more damping",
+            remedy=f"give the record window_s = {window - np.log(AT_REST) / rate - rest:.3g}, or more damping",
         )
     omega, step_Hz = 2.0 * np.pi * frequency_Hz, float(frequency_Hz[1])
     run = speed_m_per_s if axles.direction == "forward" else -speed_m_per_s

@@ -33,8 +33,8 @@ FEW, MANY = tuple(range(1, 5)), tuple(range(1, 11))
 """Half waves: of what changes slowly along the structure, and of what changes within some metres."""
 
 SPREADS = (0.25, 0.03, 0.004)
-"""Standard deviation of coefficients: they are of one size, unknown, at most a factor of 3 from one of these. So a
-coefficient loses 1 nat at most."""
+"""Standard deviation of coefficients, which are of one unknown size. By one that is half of it, or four times as
+much, a coefficient loses 1 nat: that is as far as any between 0.003 and 0.5 is from one of these."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
