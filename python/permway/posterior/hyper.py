@@ -26,9 +26,9 @@ LENGTH, LENGTH_FACTOR = 0.8, 2.5
 SHORTEST, LONGEST = 0.15, 4.0
 """Octaves: bounds of the length, as measured of real chains and of hammers that sit badly."""
 
-EXACT, EXACT_FACTOR = 0.003, 2.0
-"""Discrepancy of a model that lacks nothing, neper: of its idealisation (0.026 dB), and the factor of one standard
-deviation."""
+EXACT, EXACT_FACTOR = 0.003, 3.0
+"""Discrepancy of a model that lacks nothing, neper: median (0.026 dB), and the factor of one standard deviation.
+Of 26 measured states that were recalibrated or rightly amended it is 0.001 to 0.019."""
 
 IDEALISATION = "idealisation"
 
