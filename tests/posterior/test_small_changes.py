@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -23,12 +24,17 @@ def fitted(folder: Path, seed: int, index: int) -> Fit:
     return recalibrated(gather(read_campaign(folder / name / "campaign.toml"), threads=1))
 
 
-def norm(fit: Fit, cell: Cell) -> float:
-    """Of what a cell changes in the residuals."""
+def change(fit: Fit, cell: Cell) -> np.ndarray:
+    """What a cell changes in the residuals."""
     model = grown(fit, cell.hypothesis, "1.")
     state = Problem(fit.frame.observations, model.build, model.free).at(np.concatenate([fit.z, cell.z]))
     assert state is not None
-    return float(np.sqrt(fit.covariance.square(state.residuals - fit.state.residuals)))
+    return state.residuals - fit.state.residuals
+
+
+def norm(fit: Fit, cell: Cell) -> float:
+    """Of the same, in standard deviations."""
+    return float(np.sqrt(fit.covariance.square(change(fit, cell))))
 
 
 def off(cell: Cell) -> float:
@@ -53,3 +59,38 @@ def test_a_quarter_of_a_small_change_does_a_quarter_or_less(tmp_path: Path, inde
         if whole > SHOWS and part > 0.4 * whole:
             far.append((cell.hypothesis.form, cell.values, whole, part))
     assert not far
+
+
+def alike(fit: Fit, one: np.ndarray, other: np.ndarray) -> float:
+    """Share of what one direction gains that another finds."""
+
+    def square(values: np.ndarray) -> float:
+        return float(fit.covariance.square(values))
+
+    both = 0.25 * (square(one + other) - square(one - other))
+    return both**2 / (square(one) * square(other))
+
+
+@pytest.mark.parametrize("index", [0, 1, 2, 3])
+def test_an_element_half_way_between_two_starts_is_seen_by_one(tmp_path: Path, index: int) -> None:
+    """A spring, dashpot or inertance of no catalogue, from a body to another or the ground."""
+    fit = fitted(tmp_path, 5150002, index)
+    forms: dict[tuple[str, ...], list[Cell]] = {}
+    for cell in small(cells(fit)):
+        if cell.hypothesis.entry == "novel" and cell.hypothesis.form[2].startswith(
+            ("spring +", "dashpot", "inerter")
+        ):
+            forms.setdefault(cell.hypothesis.form, []).append(cell)
+    seen = 0
+    for form, starts in forms.items():
+        starts.sort(key=lambda cell: cell.values["x_m"])
+        for one, other in list(pairwise(starts))[::6]:
+            at = [f.name for f in one.hypothesis.free].index("x_m")
+            between = Cell(one.hypothesis, one.z.copy(), one.log_prior)
+            middle = 0.5 * (other.values["x_m"] + one.values["x_m"])
+            per_z = one.hypothesis.free[at].value(1.0) - one.hypothesis.free[at].value(0.0)
+            between.z[at] += (middle - one.values["x_m"]) / per_z
+            sizes = [change(fit, cell) for cell in (between, one, other)]
+            seen += 1
+            assert max(alike(fit, sizes[0], sizes[1]), alike(fit, sizes[0], sizes[2])) > 0.3, form
+    assert seen > 3

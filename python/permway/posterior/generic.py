@@ -29,10 +29,14 @@ PRIOR = 0.05
 """Share of what is missing that no catalogue holds: as of the discrepancy."""
 
 SPACING_M = 2.0
-"""Between places where an element is begun, and the standard deviation of its place, m."""
+"""Standard deviation of an element's place, m; and how far apart places are where an element is begun, unless
+joints are nearer: between two that are, an element shows no farther than to the next."""
 
 AT_HZ = 50.0
 """Where the stiffness of a layer is taken for a typical one."""
+
+SIMPLE = ("spring", "dashpot", "inerter")
+"""Elements that are begun between any two joints."""
 
 SIZE, SIZE_FACTOR = 0.1, 3.0
 """Of an element over what a joint beside it has: median, and the factor of one standard deviation, before
@@ -49,33 +53,36 @@ def everywhere(situation: Situation) -> Iterator[Hypothesis]:
     typical = {layer.law: float(np.abs(line.laws[layer.law].complex(AT_HZ, temperature))) for layer in carrying}
     stiffest = max(typical.values())
     for _, segment in line.beams():
-        for x in _places(segment, carrying):
-            yield from _elements(segment, GROUND, x, stiffest)
+        yield from _along(segment, GROUND, carrying, stiffest)
     for layer in carrying:
         if layer.lower == GROUND or not isinstance(line.bodies.get(layer.lower), Beam):
             continue
         for segment in (s for _, s in line.beams() if s.body == layer.upper):
-            for x in _places(segment, [layer]):
-                yield from _elements(segment, layer.lower, x, typical[layer.law])
+            yield from _along(segment, layer.lower, [layer], typical[layer.law])
 
 
 hypotheses = everywhere
 
 
-def _places(segment: Segment, carrying: list[Layer]) -> np.ndarray:
+def _along(segment: Segment, lower: str, carrying: list[Layer], typical: float) -> Iterator[Hypothesis]:
+    """Each element along a beam; what hangs on it by one spring is in the catalogue."""
+    under = [np.diff(np.unique(layer.x)) for layer in carrying if layer.upper == segment.body]
+    joints_m = [float(np.median(steps)) for steps in under if steps.size]
+    for element in (*ELEMENTS, *(STANDING if lower == GROUND else ())):
+        # A springpot or Maxwell pair shows as a spring or dashpot there, and is then tried in its place.
+        apart = min([SPACING_M, *joints_m]) if element.name in SIMPLE else SPACING_M
+        for x in _places(segment, carrying, apart):
+            if element.name == "spring":
+                yield _of(segment, lower, x, typical, element, -1.0)
+            yield _of(segment, lower, x, typical, element, 1.0)
+
+
+def _places(segment: Segment, carrying: list[Layer], apart: float) -> list[float]:
     """Along a beam, where joints are."""
     low = max(segment.start, min(float(layer.x.min()) for layer in carrying))
     high = min(segment.stop, max(float(layer.x.max()) for layer in carrying))
-    count = max(1, round((high - low) / SPACING_M))
-    return low + (np.arange(count) + 0.5) * (high - low) / count
-
-
-def _elements(segment: Segment, lower: str, x: float, typical: float) -> Iterator[Hypothesis]:
-    """Each element; what hangs on a body by one spring is in the catalogue."""
-    for element in (*ELEMENTS, *(STANDING if lower == GROUND else ())):
-        if element.name == "spring":
-            yield _of(segment, lower, x, typical, element, 1.0)
-        yield _of(segment, lower, x, typical, element, -1.0 if element.name == "spring" else 1.0)
+    count = max(1, round((high - low) / apart))
+    return [low + (index + 0.5) * (high - low) / count for index in range(count)]
 
 
 def _of(segment: Segment, lower: str, x: float, typical: float, element: Element, sign: float) -> Hypothesis:
