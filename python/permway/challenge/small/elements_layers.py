@@ -223,7 +223,9 @@ def pier(random: np.random.Generator, layout: Layout, _: float) -> Concealed | N
     if layout.name not in ("deck", "slab"):
         return None
     stiffness = layout.line["laws"]["bearing"]["stiffness"]
-    values = {"compliance": log_between(random, 0.5, 4.0), "mass_kg": log_between(random, 2.0e4, 2.0e5)}
+    values = {"compliance": log_between(random, 0.5, 4.0)}
+    mass_kg = log_between(random, 2.0e4, 2.0e5)
+    values["frequency_Hz"] = float(np.sqrt(stiffness / (values["compliance"] * mass_kg)) / (2.0 * np.pi))
     values |= {"loss_factor": log_between(random, 0.05, 0.4)}
 
     def apply(line: Line, at: Mapping[str, float]) -> None:
@@ -231,7 +233,7 @@ def pier(random: np.random.Generator, layout: Layout, _: float) -> Concealed | N
 
         def changed(f: Reals, t: float) -> Complexes:
             soil = stiffness / at["compliance"] * (1.0 + 1j * at["loss_factor"])
-            below = soil - at["mass_kg"] * (2.0 * np.pi * f) ** 2
+            below = soil - stiffness / at["compliance"] * (f / at["frequency_Hz"]) ** 2
             bearing = before(f, t)
             return np.asarray(bearing * below / (bearing + below))
 

@@ -24,7 +24,7 @@ FAMILY = "bearing and pier"
 SUMMARY = "Below every bearing, or those of two girders together, a mass on a spring with loss: pier and soil."
 PARAMETERS = {
     "compliance": "1, 0.002 to 120: of the soil's spring, over that of one bearing at 10 Hz",
-    "mass_kg": "kg, 1e3 to 1e7: of pier and foundation, the model's share",
+    "frequency_Hz": "Hz, 1 to 2000: at which pier and foundation would ring on the soil alone",
     "loss_factor": "1, 0.005 to 5: of the soil's spring",
     "radiation": "1, 0 to 25: loss factor at 10 Hz of the dashpot that radiation into the soil is",
 }
@@ -43,12 +43,12 @@ AT_HZ = 10.0
 SHARED_M = 1.5
 """Ends of two girders no farther apart may stand on one pier."""
 
-COMPLIANCE, MASS_KG = (0.5, 3.0), (1e5, 2.5)
-"""Usual, and the factor of one standard deviation."""
+COMPLIANCE, PIER_HZ = (0.5, 3.0), (40.0, 2.5)
+"""Usual, and the factor of one standard deviation: of the soil, over a bearing's; and where the pier would ring on
+the soil alone. With that frequency what a stiff soil changes is in proportion to its compliance."""
 
 COMPLIANCES = (0.1, 0.4, 1.6)
-PIER_HZ = (10.0, 16.0, 25.0, 40.0, 63.0, 100.0, 160.0, 250.0, 400.0)
-"""Begun from: of the soil, over a bearing's; and where the pier on the soil alone would ring."""
+"""Begun from."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
@@ -77,15 +77,11 @@ def _soil(stiffness: float, loss_factor: float, radiation: float) -> Law:
 def _below(layer: Layer, stiffness: float, *, shared: bool = False) -> Hypothesis:
     free = (
         log_free("compliance", "1", *COMPLIANCE),
-        log_free("mass_kg", "kg", *MASS_KG),
+        log_free("frequency_Hz", "Hz", *PIER_HZ),
         log_free("loss_factor", "1", 0.15, 2.0),
         log_free("radiation", "1", 0.1, 3.0),
     )
-    starts = tuple(
-        (coordinate(c, *COMPLIANCE), coordinate(stiffness / (c * (2.0 * np.pi * f) ** 2), *MASS_KG), 0.0, 0.0)
-        for c in COMPLIANCES
-        for f in PIER_HZ
-    )
+    starts = tuple((coordinate(c, *COMPLIANCE), 0.0, 0.0, 0.0) for c in COMPLIANCES)
     whose = "under neighbouring girders' bearings together" if shared else "under each bearing"
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
@@ -93,7 +89,10 @@ def _below(layer: Layer, stiffness: float, *, shared: bool = False) -> Hypothesi
             return campaign
         bearing = _stiffness(campaign.model.line, layer, campaign.model.temperature_C)
         soil = _soil(bearing / values["compliance"], values["loss_factor"], values["radiation"])
-        return (_on_shared if shared else _on_own)(campaign, layer, soil, values["mass_kg"])
+        return (_on_shared if shared else _on_own)(campaign, layer, soil, mass_kg(bearing, values))
+
+    def mass_kg(bearing: float, values: Mapping[str, float]) -> float:
+        return bearing / (values["compliance"] * (2.0 * np.pi * values["frequency_Hz"]) ** 2)
 
     return Hypothesis(
         entry=ID,
@@ -104,8 +103,9 @@ def _below(layer: Layer, stiffness: float, *, shared: bool = False) -> Hypothesi
         locate=lambda _: Where(what=layer.law),
         starts=starts,
         law=lambda v: (
-            f"{v['mass_kg']:.3g} kg {whose} on a spring of {1.0 / v['compliance']:.3g} times a bearing's, "
-            f"loss factor {v['loss_factor']:.2g}, and {v['radiation']:.2g} more at {AT_HZ:g} Hz by a dashpot"
+            f"{mass_kg(stiffness, v):.3g} kg {whose} on a spring of {1.0 / v['compliance']:.3g} times a "
+            f"bearing's, loss factor {v['loss_factor']:.2g}, and {v['radiation']:.2g} more at {AT_HZ:g} Hz "
+            f"by a dashpot"
         ),
         size="compliance",
         none=0.0,
