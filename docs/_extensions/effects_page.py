@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import groupby
 
 from permway.diagnosis.catalogue import entries
@@ -14,6 +15,9 @@ TITLES = {
     "vehicle": "Vehicle",
     "measurement": "Measurement",
 }
+
+MARKER = re.compile(r"^% effects.*$", re.MULTILINE)
+"""The line of the page that the effects replace."""
 
 
 def _section(entry: Entry) -> list[str]:
@@ -39,11 +43,12 @@ def page(source: str) -> str:
         lines += [f"## {TITLES[domain]}", ""]
         for entry in group:
             lines += _section(entry)
-    return source.replace("% effects", "\n".join(lines)).replace("% count", str(len(known)))
+    # The rest of the marker's line is for readers of the source, where the list is not.
+    return MARKER.sub(lambda _: "\n".join(lines), source).replace("% count", str(len(known)))
 
 
 def _read(app: Sphinx, docname: str, source: list[str]) -> None:
-    if "% effects" not in source[0]:
+    if not MARKER.search(source[0]):
         return
     app.env.note_reread()
     source[0] = page(source[0])

@@ -95,7 +95,8 @@ def input_error(error: ValidationError, table: object, place: str, words: Words 
     if others:
         each = [f"{place_in(table, one['loc'], place)}: {words(one)[0]}" for one in others[:MOST_TOLD]]
         reported = "; ".join(dict.fromkeys(each)) + ("; ..." if len(others) > MOST_TOLD else "")
-        remedy = f"{len(others)} further fault(s) in the same table: {reported}"
+        faults = "fault" if len(others) == 1 else "faults"
+        remedy = f"{len(others)} further {faults} in the same {'table' if place else 'file'}: {reported}"
     return InputError(what, where=place_in(table, first["loc"], place), value=value, remedy=remedy)
 
 

@@ -138,8 +138,20 @@ def test_frequencies_in_radians_per_second_are_asked_of(tmp_path: Path) -> None:
     size = re.search(r"scatter by (\d+) dB: the model does not resemble", found.what)
     assert size is not None
     assert int(size[1]) >= 10
+    assert "-0 dB" not in found.what
     for asked in ("rad/s", "stiffness", "places", "which model"):
         assert asked in found.remedy
+
+
+def test_a_stiffness_in_another_unit_is_not_called_a_fault_of_the_records(tmp_path: Path) -> None:
+    path = tabled(tmp_path)
+    model = tomllib.loads((path.parent / "model.toml").read_text("utf-8"))
+    model["line"]["laws"]["pad"]["stiffness"] *= 1e-6
+    (path.parent / "model.toml").write_text(to_toml(model))
+    found = checked(path)
+    assert found[0].kind == "model"
+    assert "stiffness" in found[0].remedy
+    assert all(one.asked and one.log_odds is None for one in found)
 
 
 def test_a_model_that_fits_is_not_asked_of(tmp_path: Path) -> None:

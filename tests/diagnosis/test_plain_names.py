@@ -78,4 +78,7 @@ def test_what_would_have_been_seen_is_a_change_or_a_size_with_its_unit() -> None
 
 def test_a_stretch_is_said_to_the_decimetre() -> None:
     assert stretch(5.7254, 7.6214) == "5.7 to 7.6 m"
-    assert stretch(6.005, 6.05) == "6.00 to 6.05 m"
+    assert stretch(6.0052, 6.0504) == "6.01 to 6.05 m"
+    # Joints: the second would lie outside the rounded stretch.
+    assert stretch(14.3, 14.950000000000001) == "14.3 to 14.95 m"
+    assert stretch(-0.625, 6.0) == "−0.625 to 6.0 m"

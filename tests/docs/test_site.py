@@ -77,7 +77,7 @@ def test_the_readme_and_the_page_of_small_campaigns_say_the_same() -> None:
         return f"{row[column][0]:g}/{row[column][1]:g}"
 
     for what, part, group, name, column in (
-        ("nothing missing: called", "posterior", "all", "", "called"),
+        ("nothing missing: a false alarm", "posterior", "all", "", "called"),
         ("deviance above 200", "posterior", "deviance", "over 200", "class"),
         ("deviance 50 to 200", "posterior", "deviance", "50 to 200", "class"),
         ("a false name", "posterior", "all", "", "false_name"),

@@ -173,7 +173,7 @@ def test_records_that_are_all_at_fault_are_not_called_none(tmp_path: Path) -> No
         read_campaign(write(tmp_path, campaign))
     assert "at least 1 item" not in str(caught.value)
     assert caught.value.remedy == (
-        "1 further fault(s) in the same table: records[1].avrages: unknown key; did you mean 'averages'?"
+        "1 further fault in the same file: records[1].avrages: unknown key; did you mean 'averages'?"
     )
     campaign["records"] = []
     with pytest.raises(InputError, match="at least 1 item"):

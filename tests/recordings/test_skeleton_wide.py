@@ -2,13 +2,57 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 
 import permway
+import pytest
 from permway.laws.toml import to_toml
+from permway.recordings.readers import read_frf
+from permway.recordings.readers.hints import Hints
 from permway.recordings.skeleton import write_skeleton
 from simulated import BLOWS, CAMPAIGN, FREQUENCY, MODEL, simulate
+
+
+@pytest.mark.parametrize(
+    ("label", "body", "x_m"),
+    [
+        ("A1 rail 9,10 m", '"rail"', "9.1"),
+        ("A4 Sleeper 11.70", '"sleeper"', "11.7"),
+        ("mobility_rail_7.8", '"rail"', "7.8"),
+        ("Hit 07.80m", '"rail"', "7.8"),
+        ("A1 -2.5 m", '"rail"', "-2.5"),
+        # A number that may count sensors, another unit, a part of a larger number.
+        ("A1 rail 2", '"rail"', "0.0"),
+        ("gauge 10 mm", '"rail"', "0.0"),
+        ("run_144m", '"rail"', "0.0"),
+    ],
+)
+def test_a_place_in_a_label_is_proposed(tmp_path: Path, label: str, body: str, x_m: str) -> None:
+    (tmp_path / "a.csv").write_text(
+        f"f [Hz];{label} Real [(m/s2)/N];{label} Imag [(m/s2)/N]\n1;1;2\n2;3;4\n3;5;6\n"
+    )
+    write_skeleton(tmp_path)
+    sensor = (tmp_path / "campaign.toml").read_text("utf-8").partition("[[forces]]")[0]
+    assert re.findall(r"^# (?:body|x_m) = (\S+)", sensor, re.MULTILINE) == [body, x_m]
+
+
+@pytest.mark.parametrize("name", ["", "rail@9 "])
+def test_files_of_one_response_each_have_points_of_their_own(tmp_path: Path, name: str) -> None:
+    for point in ("p10.5", "p12"):
+        head = f"Frequency [Hz],{name}Real [(m/s2)/N],{name}Imag [(m/s2)/N],{name}Coherence"
+        (tmp_path / f"{point}.csv").write_text(f"{head}\n1,1,2,0.9\n2,3,4,0.9\n3,5,6,0.9\n")
+    stated = write_skeleton(tmp_path)
+    table = tomllib.loads((tmp_path / "campaign.toml").read_text("utf-8"))
+    assert [one["name"] for one in table["forces"]] == ["hit p10.5", "hit p12"]
+    # One sensor where the columns name it; where nothing does, it may be another in each file.
+    assert [one["name"] for one in table["sensors"]] == ([name.strip()] if name else ["p10.5", "p12"])
+    assert stated["records"] == 2
+    for record in table["records"]:
+        hints = Hints(pairs={name: (read, struck) for name, (read, struck) in record["pairs"].items()})
+        read = read_frf(tmp_path / record["file"], hints=hints)
+        assert ([*read.responses], [*read.references]) == (record["responses"], [*record["references"]])
 
 
 def test_a_file_of_one_hit_point_names_it(tmp_path: Path) -> None:

@@ -87,7 +87,7 @@ def test_what_to_act_on_comes_first_and_what_it_rests_on_is_folded(pages: dict[s
     text = text_of(pages["lost"])
     assert "Lost fasteners at pad from 5.4 to 6.6 m" in text
     assert "probability above 0.99" in text
-    assert "Look at the pad from 5.4 to 6.6 m" in text
+    assert "Inspect on site: pad from 5.4 to 6.6 m" in text
     assert re.search(r"3 joints have lost (69|70|71) % of their stiffness", text)
 
 
@@ -171,7 +171,7 @@ def test_each_status_says_what_to_do(found: dict[str, Diagnosis]) -> None:
     )
     advised = unsure.model_copy(update={"next": (advice,)})
     assert next_steps(replace(fine, verdict=advised)) == [
-        "Measure: a blow on the deck at 7.5 m. It tells lost fasteners from nothing missing."
+        "Measure: a blow on the deck at 7.5 m. It distinguishes lost fasteners from nothing missing."
     ]
     doubt = Doubt(kind="sign", where="records.blows", what="has the other sign", remedy='sign = "-"')
     doubted = fine.verdict.model_copy(update={"blunders": (doubt,)})
@@ -192,12 +192,12 @@ SURE = ClassMember(name=NOVEL, probability=0.95)
         (
             "described",
             {"name": None, "class_": (SURE,), "law": Mechanics(words="spring of 3 MN/m")},
-            ("acts what the catalogue does not hold", "expect something the catalogue does not hold"),
+            ("acts what the catalogue does not hold", "Expected: something the catalogue does not hold"),
         ),
         (
             "located",
             {"name": None, "class_": (SURE,), "parameters": {}, "size": None, "law": Mechanics()},
-            ("physics is missing that these records cannot describe", "Look at the pad from 5.4 to 6.6 m"),
+            ("physics is missing that these records cannot describe", "Inspect on site: pad from 5.4 to 6.6 m"),
         ),
         (
             "measurement",
@@ -212,7 +212,7 @@ SURE = ClassMember(name=NOVEL, probability=0.95)
         (
             "named",
             {"domain": "vehicle", "name": "air_spring", "place": Place()},
-            ("Air spring", "Look at the vehicle"),
+            ("Air spring", "Check: vehicle. Expected: air spring."),
         ),
     ],
 )

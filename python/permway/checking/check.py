@@ -19,7 +19,7 @@ from permway.checking.noise import noise_floors
 from permway.checking.reading import Reading, read
 from permway.checking.search import reported
 from permway.checking.stated import places, same_places, tolerances
-from permway.checking.unlike import unlike
+from permway.checking.unlike import is_unlike, questioned, unlike
 from permway.checking.words import blunder_of
 from permway.errors import InputError, SolveError
 
@@ -86,15 +86,16 @@ def check(campaign: Campaign, *, threads: int | None = None) -> Checked:
         records.append((dataset, given, right))
         sized = any(one.change.kind in ("factor", "quantity") for one in changes)
         of_file = file_units(campaign, dataset.record) if sized else {}
-        blunders += [blunder_of(one, dataset.record, given, sensors, points, of_file) for one in changes]
+        found = [blunder_of(one, dataset.record, given, sensors, points, of_file) for one in changes]
+        blunders += [questioned(one) for one in found] if is_unlike(dataset, right) else found
     blunders += angles(campaign)
     beside = {dataset.record.name: right for dataset, _, right in records}
     blunders += noise_floors(campaign, reading.whole, beside)
     blunders += tolerances(campaign)
     blunders += places(campaign)
     blunders += same_places(campaign)
-    blunders += unlike([(dataset, right) for dataset, _, right in records])
-    blunders = _together(blunders)
+    # The first of the questions: what follows rests on the model.
+    blunders = _together([*unlike([(dataset, right) for dataset, _, right in records]), *blunders])
     blunders.sort(key=lambda one: (one.asked, one.log_odds is not None, -(one.log_odds or 0.0)))
     return Checked(campaign, reading, tuple(records), tuple(blunders))
 

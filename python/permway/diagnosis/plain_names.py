@@ -56,6 +56,9 @@ MOST, MOST_OF_SHARE, SHARE = 3, 2, 0.5
 """Significant digits, at most; of an effect's ratio below a half fewer, for no model is right to a hundredth of
 what is left. A ratio near 1, as of a gain or a speed, needs all."""
 
+PLACE_M = 1e-6
+"""Within which a place is one of whole millimetres."""
+
 
 def name_of(identifier: str) -> str:
     """Of an effect of the catalogue, or of several that are joined by " and "."""
@@ -108,9 +111,20 @@ def ends(one: Estimate | Moved) -> str:
 
 
 def stretch(low: float, high: float) -> str:
-    """From and to along the line, to the decimetre, or to the centimetre where that is known."""
+    """From and to along the line, to the decimetre, or to the centimetre where that is known.
+
+    Places to the millimetre are those of joints, and stand as they are: rounded, the last might lie outside.
+    """
     decimals = 2 if high - low < 0.2 else 1
-    return f"{low:.{decimals}f} to {high:.{decimals}f} m".replace("-", "−")
+    exact = all(abs(x - round(x, 3)) < PLACE_M for x in (low, high))
+    ends = (_decimal(x, decimals, 3) if exact else f"{x:.{decimals}f}" for x in (low, high))
+    return f"{' to '.join(ends)} m".replace("-", "−")
+
+
+def _decimal(value: float, least: int, most: int) -> str:
+    """With so many decimals at least, and up to the most without noughts at the end."""
+    whole, _, rest = f"{value:.{most}f}".partition(".")
+    return f"{whole}.{rest.rstrip('0').ljust(least, '0')}"
 
 
 def seen(one: Smallest) -> str:

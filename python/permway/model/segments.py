@@ -142,7 +142,7 @@ def find(segments: Sequence[Segment], body: str, x_m: Reals, where: Callable[[in
             f"off the {body}, which {_extent(starts, stops)}",
             where=where(int(bad[0])),
             value=float(x_m[bad[0]]),
-            remedy="move it onto the body",
+            remedy="move it onto the body; x is in metres",
         )
     bad = np.flatnonzero((last > 0) & (x_m <= stops[last - 1] + reach))
     if bad.size:

@@ -12,6 +12,7 @@ from typing import Any
 from permway.errors import InputError
 from permway.recordings.look import Asked, look
 from permway.recordings.readers import read_frf
+from permway.recordings.readers.text_frf_wide import ALONE, names_of
 
 LEFT_ALONE = {
     ".toml",
@@ -141,6 +142,9 @@ def _export(folder: Path, path: Path) -> Export:
 def looked(path: Path, asked: Asked | None = None) -> dict[str, Any]:
     """A look; of a table whose names do not say what was struck, the file's name does: one point a file.
 
+    A table of one response needs no name. Without one its labels would be the same in every file of a folder, and
+    so its sensor and its point.
+
     Parameters
     ----------
     path : Path
@@ -149,9 +153,13 @@ def looked(path: Path, asked: Asked | None = None) -> dict[str, Any]:
     """
     asked = asked or Asked()
     seen = look(path, asked)
-    if seen["format"] != "text" or "responses" in seen or "columns" not in seen or asked.hints.pairs:
+    if seen["format"] != "text" or asked.hints.pairs:
         return seen
     pairs: dict[str, tuple[str, str]] = {}
+    if _unnamed(seen):
+        pairs = {name: (name or path.stem, path.stem) for name in names_of(path, asked.hints)}
+    elif "responses" in seen or "columns" not in seen:
+        return seen
     while len(pairs) < MOST_COLUMNS:
         hints = replace(asked.hints, pairs=pairs or None)
         try:
@@ -168,6 +176,12 @@ def looked(path: Path, asked: Asked | None = None) -> dict[str, Any]:
     found = look(path, replace(asked, hints=replace(asked.hints, pairs=pairs)))
     note = f"what was struck stands in no column, and is taken from the file's name: {path.stem!r}"
     return found | {"notes": [*found.get("notes", ()), note]}
+
+
+def _unnamed(seen: Mapping[str, Any]) -> bool:
+    """Whether the reader made up the labels of a table's only response."""
+    found = seen.get("responses", {})
+    return (found.get("read"), found.get("struck")) == ([ALONE[0]], [ALONE[1]])
 
 
 def _short(seen: Mapping[str, Any]) -> bool:

@@ -22,12 +22,24 @@ NO_SAYING = "question: the file does not say it"
 
 _NUMBER = r"(?P<x>[-+]?\d+(?:[.,]\d+)?)"
 
+BODIES = ("rail", "sleeper", "slab", "base", "deck", "girder")
+
+_BODY = f"(?P<body>{'|'.join(BODIES)})"
+
 NAMED = (
     re.compile(rf"(?:.*\s)?(?P<body>[^\W\d]\w*) ?@ ?(?:x ?= ?)?{_NUMBER} ?m?"),
-    re.compile(r"(?:hit )?(?P<body>rail|slab|base|deck|girder)[ _-]*(?P<x>\d+(?:\.\d+)?) ?m?"),
+    re.compile(rf"(?:hit )?{_BODY}[ _-]*(?P<x>\d+(?:\.\d+)?) ?m?"),
+    re.compile(
+        rf"(?:.*[\W_])?{_BODY}[ _-]*(?P<x>\d+[.,]\d+(?= ?m?$)|\d+(?= ?m$)) ?m?",
+        re.IGNORECASE,
+    ),
     re.compile(rf".*?(?<![^\W_])x ?= ?{_NUMBER} ?m?(?:[^\w.,].*)?"),
+    re.compile(rf"(?:.*[^\w.,+-])?{_NUMBER} ?m"),
 )
-"""Labels that seem to hold a place, and all but the last the body: "beam@2.5", "hit deck 4.5 m", "Acc x=2.5m"."""
+"""Labels that seem to hold a place, some without the body: "beam@2.5", "A1 rail 9,10 m", "x=2.5m", "Hit 7.80m".
+
+Behind other words a number alone, as in "A1 rail 2", may count sensors: it needs decimals or the unit.
+"""
 
 
 def write_skeleton(folder: Path) -> dict[str, Any]:
@@ -165,6 +177,7 @@ def _place(name: str, table: Mapping[str, Any], key: str) -> list[str]:
     match = next((found for found in (one.fullmatch(name) for one in NAMED) if found), None)
     held = match.groupdict() if match else {}
     body = held.get("body") or "rail"
+    body = body.lower() if body.lower() in BODIES else body
     at = f"{float(held['x'].replace(',', '.')):.9g}" if "x" in held else "0.0"
     on, where = "on which body of the model?", "where on it, m?"
     if "body" in held:

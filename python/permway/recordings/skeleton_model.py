@@ -19,7 +19,7 @@ second_moment_m4 = 3.038e-5
 density_kg_per_m3 = 7850.0
 area_m2 = 7.67e-3
 loss_factor = 0.01
-# intervals_m = [[0.0, 36.0]]        # option: has it ends? By default it goes on for ever
+# intervals_m = [[0.0, 36.0]]        # option: has it ends? By default it goes on for ever, free beyond the pads
 
 [line.laws.pad]
 type = "hysteretic"                  # with a dashpot: "kelvin_voigt", and damping in N s/m for loss_factor
@@ -27,8 +27,10 @@ type = "hysteretic"                  # with a dashpot: "kelvin_voigt", and dampi
 # loss_factor = 0.15                 # question: of one pad?
 
 [[line.joints]]
-between = ["rail", "ground"]         # question: what is below the pads? Sleepers, slabs, girders are bodies, too
+# Sleepers (examples/sleepers.toml), slabs and girders are bodies, too
+between = ["rail", "ground"]         # question: what is below the pads?
 law = "pad"
+# Let the pads reach 6 m beyond all that was struck or read
 # at = { from_m = 0.0, to_m = 36.0, spacing_m = 0.6 }    # question: where are the pads?
 
 [[forces]]

@@ -60,17 +60,21 @@ def draw_check(checked: Checked, folder: Path, *, dpi: int = 130) -> Path | None
     _coloured(axes, checked, plan.level)
     axes.set_xlabel("x, m", fontsize=FONT)
     axes.tick_params(axis="x", labelsize=FONT)
-    axes.set_title("sensors and points by level, measured over predicted", fontsize=FONT + 0.5, loc="left")
+    axes.set_title(
+        "median level, measured over predicted: circles are sensors, triangles are hammer points",
+        fontsize=FONT + 0.5,
+        loc="left",
+    )
     for panel, (name, one) in zip(panels, records, strict=True):
         left, right = panel.subplots(1, 2)
         level = _map(left, one, levels_dB(one), one.levelled, MOST_DB)
-        left.set_title(f"{name}: level, dB over the model", fontsize=FONT + 0.5, loc="left")
+        left.set_title(f"{name}: level, dB above the model", fontsize=FONT + 0.5, loc="left")
         panel.colorbar(level, ax=left, pad=0.01).ax.tick_params(labelsize=FONT - 1)
         if not one.phased.any():
             right.set_visible(False)
             continue
         phase = _map(right, one, phases_deg(one), one.phased, 180.0)
-        right.set_title("phase, degrees before the model", fontsize=FONT + 0.5, loc="left")
+        right.set_title("phase, degrees ahead of the model", fontsize=FONT + 0.5, loc="left")
         phase.set_cmap(colormaps["twilight_shifted"].with_extremes(bad="0.8"))
         panel.colorbar(phase, ax=right, pad=0.01, ticks=[-180, -90, 0, 90, 180]).ax.tick_params(labelsize=FONT - 1)
     prepare_folder(folder, (PICTURE,))

@@ -135,6 +135,14 @@ def read_frf(
     )
 
 
+def names_of(source: Path, hints: Hints = NO_HINTS) -> list[str]:
+    """Names of the responses of a table, as its columns have them; "" of one that has none."""
+    names, units, rows = _head(lines_of(source, hints))
+    at = _frequency(names, units)
+    columns = [] if at is None else _columns(names, units, rows, at)
+    return list(dict.fromkeys(column.stem for column in columns if column.part != "coherence"))
+
+
 def _head(lines: list[Line]) -> tuple[list[str], list[str | None], list[Line]]:
     """Names and units of the columns, from one to four lines above the numbers."""
     first = next(

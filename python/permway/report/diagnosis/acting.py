@@ -102,7 +102,7 @@ def next_steps(diagnosis: Diagnosis) -> list[str]:
     for effect in verdict.effects:
         if verdict.status != "insufficient":
             steps.append(_look(effect))
-    steps += [f"Measure: {one.measurement}. It tells {_apart(one.separates)}." for one in verdict.next[:2]]
+    steps += [f"Measure: {one.measurement}. It distinguishes {_apart(one.separates)}." for one in verdict.next[:2]]
     match verdict.status:
         case "recalibrated":
             steps.append(
@@ -129,10 +129,10 @@ def _look(effect: Effect) -> str:
         )
     if effect.name == STATED:
         return f"Check what was stated of {label}: drawing, data sheet, temperature of the test."
-    where = label or DOMAIN[effect.domain]
+    # What has a place is gone to; what acts everywhere, as a law of all pads, is found in documents and tests.
+    verb = "Check" if effect.place.x is None else "Inspect on site"
     reach = "" if within is None else f" (90 %: {stretch(*within)})"
-    what = _title(effect)
-    return f"Look at the {where}{reach}: expect {what}."
+    return f"{verb}: {label or DOMAIN[effect.domain]}{reach}. Expected: {_title(effect)}."
 
 
 def _apart(names: tuple[str, str]) -> str:
