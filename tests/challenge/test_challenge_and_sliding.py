@@ -77,7 +77,7 @@ def off_dB(campaign: Campaign) -> list[dict[str, np.ndarray]]:
 @pytest.mark.parametrize(
     ("force_N", "v0", "alone"), [(300.0, 0.01, False), (250.0, 0.02, True)], ids=["friction", "blow-off"]
 )
-def test_the_generators_balance_is_foretold(tmp_path: Path, force_N: float, v0: float, alone: bool) -> None:
+def test_the_generators_balance_is_predicted(tmp_path: Path, force_N: float, v0: float, alone: bool) -> None:
     case = replace(small_case(clean=True), effects=(Rubbing(force_N, v0, alone),))
     write(case, tmp_path / "folder")
     plain = import_sheet(tmp_path / "folder", tmp_path / "imported")

@@ -122,7 +122,7 @@ def test_a_gap_closes_under_a_train_that_stands_on_it_and_no_other() -> None:
     np.testing.assert_allclose(still, hollow, rtol=1e-9)
 
 
-def test_supports_that_never_settle_are_said() -> None:
+def test_supports_that_never_settle_are_reported() -> None:
     plan = small_plan(small_site())
     turns = iter(range(1000))
 

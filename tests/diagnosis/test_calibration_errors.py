@@ -20,7 +20,7 @@ def correlation(x: Reals, length: float) -> Reals:
 
 
 @pytest.mark.parametrize("length", [SHORTEST, 1.0, 1.4, 2.0, 2.8, 4.0])
-def test_a_wander_has_the_correlation_that_it_says(length: float) -> None:
+def test_a_calibration_error_has_the_correlation_that_it_states(length: float) -> None:
     """The covariance of the functions' sum is squared-exponential, but for a rough percent."""
     frequency = np.geomspace(2.0, 400.0, 90)
     process = GaussianProcess(2.0, 400.0)

@@ -55,8 +55,8 @@ def test_lost_fasteners_are_named_and_proved(hung_loose: Diagnosis) -> None:
 
 
 def test_the_folder_holds_verdict_and_a_model_that_loads(hung_loose: Diagnosis, tmp_path: Path) -> None:
-    said = write_diagnosis(hung_loose, tmp_path / "d", page=False)
-    assert said["status"] == "named"
+    written = write_diagnosis(hung_loose, tmp_path / "d", page=False)
+    assert written["status"] == "named"
     assert hung_loose.amended is not None
     assert read_model(tmp_path / "d" / "amended.toml") == hung_loose.amended.campaign.model
 
@@ -80,7 +80,7 @@ def test_nothing_missing_is_called_recalibrated_and_again_the_same(
 def test_a_gain_that_would_have_been_seen_is_seen_on_every_channel(
     tmp_path: Path, nothing_missing: tuple[Path, Diagnosis]
 ) -> None:
-    """Half as far again from 1 as said, for the size is known to first order; a third as far is not seen."""
+    """Half as far again from 1 as stated, for the size is known to first order; a third as far is not seen."""
     smallest = nothing_missing[1].verdict.detectable["sensor_gain"]
     assert smallest.value is not None
     for name, times in (("rail@6", 1.5), ("deck@3", 1.5), ("rail@6", 0.33), ("deck@3", 0.33)):

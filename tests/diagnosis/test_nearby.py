@@ -38,7 +38,7 @@ def test_slopes_are_those_of_solves(tmp_path: Path, kind: str) -> None:
     z = np.random.default_rng(8).uniform(-0.5, 0.5, len(problem.free))
     state = problem.at(z)
     assert state is not None
-    nearby, spared = Nearby(observations, state.solved), 0
+    nearby, not_solved = Nearby(observations, state.solved), 0
     for index, free in enumerate(problem.free):
         moved = z.copy()
         moved[index] += STEP
@@ -46,11 +46,11 @@ def test_slopes_are_those_of_solves(tmp_path: Path, kind: str) -> None:
         found = nearby.predicted(campaign.with_values(values))
         if found is None:
             continue
-        spared += 1
+        not_solved += 1
         slope = (observations.residuals(found.datasets) - state.residuals) / STEP
         solved = (problem.residuals(moved)[0] - state.residuals) / STEP
         assert np.linalg.norm(slope - solved) < 5e-3 * np.linalg.norm(solved), free.name
-    assert spared >= len(problem.free) // 2
+    assert not_solved >= len(problem.free) // 2
 
 
 def test_a_line_of_another_shape_is_solved(tmp_path: Path) -> None:
@@ -82,9 +82,9 @@ def test_a_speed_noted_wrongly_is_found(tmp_path: Path) -> None:
         acts="scales",
         tolerance_2sigma=0.005,
     )
-    said = owner.stated.model_copy(update={"parameters": (*owner.stated.parameters, speed)})
-    parameters = ParameterSet(said.parameters, owner.model, {}, said, owner.folder)
-    owner = Campaign(said, owner.model, owner.folder, parameters)
+    stated = owner.stated.model_copy(update={"parameters": (*owner.stated.parameters, speed)})
+    parameters = ParameterSet(stated.parameters, owner.model, {}, stated, owner.folder)
+    owner = Campaign(stated, owner.model, owner.folder, parameters)
     noted = owner.condition("fast").speed_m_per_s
     assert noted is not None
     observations = gather(owner, drawn(owner.with_values({"speed.fast": 0.996 * noted}), 6), threads=1)

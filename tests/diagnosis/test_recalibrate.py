@@ -53,7 +53,7 @@ def test_intervals_hold_the_truth(cases: list[tuple[Simulated, Observations, Fit
     assert np.mean(held) >= fewest
 
 
-def test_the_records_say_much_more_than_the_priors(cases: list[tuple[Simulated, Observations, Fit]]) -> None:
+def test_the_records_state_much_more_than_the_priors(cases: list[tuple[Simulated, Observations, Fit]]) -> None:
     for _, _, fit in cases:
         assert (np.sqrt(np.diag(fit.covariance)) < 0.25).all()
 
@@ -105,7 +105,7 @@ def test_what_is_left_knows_nothing_of_its_neighbours(cases: list[tuple[Simulate
 
 
 def test_nothing_is_learnt_of_what_no_record_sees(tmp_path: Path) -> None:
-    """With noise far above every resonance the priors stay as they were, and are said not to be informed."""
+    """With noise far above every resonance the priors stay as they were, and are reported as not informed."""
     made = simulate(tmp_path / "loud", 3, noise=5000.0)
     observations = gather(made.campaign, threads=1)
     found = assemble(observations, recalibrated_base(observations))
@@ -180,6 +180,6 @@ def test_practice_2_after_recalibration(tmp_path: Path) -> None:
 @needs_shared
 def test_practice_1_with_its_true_amendment(tmp_path: Path) -> None:
     campaign, datasets, truth = practice("practice-1", tmp_path)
-    told = amended(campaign, truth)
-    observations = gather(told, datasets, threads=1)
+    amended_campaign = amended(campaign, truth)
+    observations = gather(amended_campaign, datasets, threads=1)
     check_practice(assemble(observations, recalibrated_base(observations)))

@@ -116,7 +116,7 @@ def diagnosed(path: Path) -> Verdict:
 
 
 @pytest.mark.parametrize("name", STRUCK)
-def test_blunders_are_told_and_nothing_else_is_called_one(name: str, path: Callable[[str], Path]) -> None:
+def test_blunders_are_reported_and_nothing_else_is_called_one(name: str, path: Callable[[str], Path]) -> None:
     found = checked(path(name)).blunders
     if name not in BLUNDERS:
         assert found == ()
@@ -134,7 +134,7 @@ def test_a_noise_floor_that_was_not_given_is_asked_for(name: str, path: Callable
     assert asked == (set(NOISE) if name == "no noise floors" else set())
 
 
-def test_a_train_that_rolls_is_foretold(path: Callable[[str], Path]) -> None:
+def test_a_train_that_rolls_is_predicted(path: Callable[[str], Path]) -> None:
     """Marched in time over the finite elements' fasteners: the line of their passing is in the prediction."""
     campaign = read_campaign(path("nothing missing"))
     pads = float(np.exp(0.5 * np.log1p(0.25) * np.random.default_rng([SEED, 470]).standard_normal()))
@@ -173,11 +173,11 @@ def test_pads_softer_than_stated(percent: int, path: Callable[[str], Path]) -> N
 
 @pytest.mark.injection
 @pytest.mark.parametrize("percent", [5, 25])
-def test_the_sentence_says_the_value_that_the_table_says(percent: int, path: Callable[[str], Path]) -> None:
+def test_the_sentence_states_the_value_that_the_table_states(percent: int, path: Callable[[str], Path]) -> None:
     verdict = diagnosed(path(f"soft at {percent} %"))
-    (said,) = re.findall(r"(?:about|at) ([\d.]+) MN/m", verdict.sentence)
+    (stated,) = re.findall(r"(?:about|at) ([\d.]+) MN/m", verdict.sentence)
     found = (verdict.recalibrated.after or verdict.recalibrated.before)["pad.k"]
-    assert float(said) == pytest.approx(found.value / 1e6, abs=0.06)
+    assert float(stated) == pytest.approx(found.value / 1e6, abs=0.06)
 
 
 @pytest.mark.injection

@@ -163,7 +163,7 @@ def test_given_places_give_shapes_there() -> None:
 
 
 @pytest.mark.parametrize(
-    ("act", "says"),
+    ("act", "message"),
     [
         (lambda: modes(Line(bodies={"beam": beam()}), 5.0, 5.0), "from low to high"),
         (lambda: modes(Line(bodies={"beam": beam()}), "low", 5.0), "from low to high"),
@@ -172,8 +172,8 @@ def test_given_places_give_shapes_there() -> None:
         (lambda: modes(Line(bodies={"beam": beam("free", intervals=None)}), 1.0, 5.0), "give places"),
     ],
 )
-def test_what_is_asked_wrongly_is_refused(act, says: str) -> None:
-    with pytest.raises(InputError, match=says):
+def test_what_is_asked_wrongly_is_refused(act, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         act()
 
 

@@ -155,7 +155,7 @@ def carry(order, *, speed=50.0, moments=None):
     return carried(path.coefficients(values), chosen)
 
 
-def test_quadrature_converges_and_says_how_far_it_is():
+def test_quadrature_converges_and_states_how_far_it_is():
     """Two polynomials more are worth a factor of ten at least; the stated share bounds the error."""
     best, _ = carry(12)
     errors, stated = [], []

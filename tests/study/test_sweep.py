@@ -108,9 +108,9 @@ def test_a_manifest_that_is_none(table, tmp_path):
     study, folder = study_from_dict(table), tmp_path / "out"
     run_study(study, folder, threads=1)
     whole = (folder / "study.json").read_text(encoding="utf-8")
-    for text, says in [("{", "is not JSON"), ("[]", "is no manifest")]:
+    for text, message in [("{", "is not JSON"), ("[]", "is no manifest")]:
         (folder / "study.json").write_text(text, encoding="utf-8")
-        with pytest.raises(InputError, match=says):
+        with pytest.raises(InputError, match=message):
             run_study(study, folder, threads=1)
     (folder / "study.json").write_text(whole.replace("20000000.0", "30000000.0"), encoding="utf-8")
     with pytest.raises(InputError, match="was changed"):
@@ -214,7 +214,7 @@ def test_a_process_that_dies_is_replaced(times, fails, table, tmp_path, monkeypa
         assert "died, 3 times (exit code -9)" in answers[2].error
 
 
-def test_notes_are_said_once(table, tmp_path):
+def test_notes_are_reported_once(table, tmp_path):
     table["model"]["train"] = {
         "vehicle": {"preset": "crh380a", "share": 0.5},
         "centre_m": 0.9,

@@ -18,7 +18,7 @@ MOST_DIGITS = 7
 """Of an interval's ends."""
 
 INCOMPLETE = 1.5
-"""Misfit from which an amended model is said not to be all of it."""
+"""Misfit from which an amended model is called incomplete."""
 
 MOST_OUTSIDE = 2
 """Parameters outside their tolerance that a sentence names, at most."""

@@ -16,7 +16,7 @@ from trains import ON_BOARD, campaign_in, drawn
 MISSING = "floor"
 
 
-def test_every_effect_is_offered_and_the_other_run_tells_of_the_channel(tmp_path: Path) -> None:
+def test_every_effect_is_offered_and_the_other_run_constrains_the_channel(tmp_path: Path) -> None:
     owner = campaign_in(tmp_path)
     datasets = drawn(owner, 5)
     left = [name for name in ON_BOARD if name != MISSING]

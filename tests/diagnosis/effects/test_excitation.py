@@ -347,7 +347,7 @@ def test_a_line_without_a_train_has_none_of_it(tmp_path: Path) -> None:
         assert count == (2 if entry in of_sensors else 0), entry
 
 
-def test_every_entry_says_what_it_is() -> None:
+def test_every_entry_states_what_it_is() -> None:
     for entry in MINE:
         module = entries()[entry]
         assert entry == module.ID

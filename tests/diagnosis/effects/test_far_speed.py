@@ -34,8 +34,8 @@ def owner(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
         }
         for name, speed in (("slow", 50.0), ("fast", 71.0))
     ]
-    said = {**CAMPAIGN, "parameters": [*CAMPAIGN["parameters"], *speeds]}
-    (folder / "campaign.toml").write_text(to_toml(said))
+    stated = {**CAMPAIGN, "parameters": [*CAMPAIGN["parameters"], *speeds]}
+    (folder / "campaign.toml").write_text(to_toml(stated))
     return read_campaign(folder / "campaign.toml")
 
 
@@ -57,7 +57,7 @@ def test_a_speed_far_off_is_found_and_measured(owner: Campaign) -> None:
     assert best.fit.hyper.novel < 0.5
     values = best.fit.values()
     for name, noted in (("slow", 50.0), ("fast", 71.0)):
-        # Each run's speed is told by phases; how much of it all have in common, by priors alone.
+        # Each run's speed is constrained by phases; how much of it all have in common, by priors alone.
         assert values["1.factor"] * values[f"speed.{name}"] == pytest.approx(0.94 * OWN[name] * noted, rel=2e-4)
     common = np.exp(np.mean(np.log(list(OWN.values()))))
     assert values["1.factor"] == pytest.approx(0.94 * common, rel=1e-3)

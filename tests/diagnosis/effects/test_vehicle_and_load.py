@@ -105,7 +105,7 @@ def test_an_effect_is_named_and_sized(name: str, sound: Callable[[bool], Fit]) -
         assert abs(values[free.name] - truth[free.name]) < allowed, free.name
 
 
-def test_pads_that_shift_with_temperature_are_told_from_pads_that_only_stiffen(
+def test_pads_that_shift_with_temperature_are_distinguished_from_pads_that_only_stiffen(
     sound: Callable[[bool], Fit],
 ) -> None:
     """Their springpot, and by how much ten kelvin move it."""

@@ -1,6 +1,6 @@
 """Dips of one shape that do not repeat evenly: welds, squats, soft spots.
 
-The contact is taken never to open: where wheels take off, the depth said is one that would shake as much.
+The contact is taken never to open: where wheels take off, the depth stated is one that would shake as much.
 """
 
 from __future__ import annotations

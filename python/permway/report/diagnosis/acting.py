@@ -102,7 +102,7 @@ def next_steps(diagnosis: Diagnosis) -> list[str]:
     for effect in verdict.effects:
         if verdict.status != "insufficient":
             steps.append(_look(effect))
-    steps += [f"Measure: {one.measurement}. It tells {_apart(one.separates)}." for one in verdict.next[:2]]
+    steps += [f"Measure: {one.measurement}. It separates {_apart(one.separates)}." for one in verdict.next[:2]]
     match verdict.status:
         case "recalibrated":
             steps.append(
