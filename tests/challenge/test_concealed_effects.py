@@ -34,8 +34,8 @@ def drawn(kind: type[Effect], strength: str = "strong", seed: int = 1) -> Effect
 
 
 def receptance(plan: Plan, temperature_C: float = -15.0) -> np.ndarray:
-    spots = list(dict.fromkeys([*plan.tests.sensors, ("rail", 1.28), ("girder", 4.8)]))
-    return Mesh(plan.track, spots).receptance(FREQUENCY, temperature_C, spots, spots)
+    locations = list(dict.fromkeys([*plan.tests.sensors, ("rail", 1.28), ("girder", 4.8)]))
+    return Mesh(plan.track, locations).receptance(FREQUENCY, temperature_C, locations, locations)
 
 
 @pytest.fixture(scope="module")

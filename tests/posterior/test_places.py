@@ -74,7 +74,7 @@ def test_a_place_that_is_constrained_exactly_holds_all_of_its_probability(campai
 
 
 def test_a_place_that_is_hardly_constrained_is_spread_as_the_normal_distribution(campaign: Campaign) -> None:
-    point = member(campaign, ("hung", lambda x: Where("deck", (x, x)), 6.0, 1.5), nats=90.0)
+    point = member(campaign, ("attached", lambda x: Where("deck", (x, x)), 6.0, 1.5), nats=90.0)
     (one,) = weighed(Masses.of([member(campaign), point])).along
     assert not one.joints
     assert float(one.probability.sum()) == pytest.approx(1.0, abs=1e-3)

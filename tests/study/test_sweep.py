@@ -12,7 +12,7 @@ from permway.errors import InputError
 from permway.formats.model_file import model_from_dict
 from permway.problem.solve import solve
 from permway.study import local, open_study, run_study, study_from_dict
-from permway.study.answer import Answer
+from permway.study.answer import CaseResult
 
 PAD = "line.laws.pad."
 
@@ -208,7 +208,7 @@ def test_a_process_that_dies_is_replaced(times, fails, table, tmp_path, monkeypa
     study = _Dies(study_from_dict(table), times, (os.getpid(), tmp_path))
     answers = dict(local.solve_locally(study, range(6), 2))
     assert sorted(answers) == list(range(6))
-    assert all(isinstance(got, Answer) and got.content for i, got in answers.items() if i != 2)
+    assert all(isinstance(got, CaseResult) and got.content for i, got in answers.items() if i != 2)
     assert bool(answers[2].error) == fails
     if fails:
         assert "died, 3 times (exit code -9)" in answers[2].error

@@ -13,7 +13,7 @@ from permway.campaign.checks import check_campaign
 from permway.campaign.excitation import About
 from permway.campaign.parameters import Parameter
 from permway.campaign.parts import Condition, HeldOut, IrregularityKnown, Record
-from permway.campaign.rolls import how_trains_run, rolling_said
+from permway.campaign.rolls import how_trains_run, rolling_stated
 from permway.campaign.values import ParameterSet
 from permway.errors import InputError
 from permway.formats.model_file import read_model
@@ -241,7 +241,7 @@ def campaign_from_dict(table: Mapping[str, Any], *, folder: Path, allow_outside:
             if name is not None and not beside(name, folder, where, outside=allow_outside).is_file():
                 raise InputError("there is no such file", where=where, value=name)
     check_campaign(stated, model)
-    stated = rolling_said(stated, model)
+    stated = rolling_stated(stated, model)
     raw = read_toml(model_path, "name a model file (TOML)")
     read = Campaign(stated, model, folder, ParameterSet(stated.parameters, model, raw, stated, model_path.parent))
     return read.rolling_about(read)

@@ -129,14 +129,14 @@ def passage(campaign: Campaign, record: Record) -> xr.Dataset:
 
 def _decay_s(model: Model, condition: Condition, sensors: list[Sensor], highest_Hz: float) -> float:
     """How long the line's slowest mode of the band takes to decay, s; the least where it has none."""
-    spots = dict.fromkeys((str(s.body), float(s.x_m or 0.0)) for s in sensors)
+    locations = dict.fromkeys((str(s.body), float(s.x_m or 0.0)) for s in sensors)
     temperature = model.temperature_C if condition.temperature_C is None else condition.temperature_C
     try:
         found = poles_between(
             model.line,
             LOWEST * highest_Hz,
             highest_Hz,
-            places=[Place(body=body, x_m=x) for body, x in spots],
+            places=[Place(body=body, x_m=x) for body, x in locations],
             temperature_C=temperature,
             formulation=model.formulation,
         )

@@ -31,7 +31,7 @@ much 2 and 41 %."""
 WHERE = "irregularity.rolling"
 
 
-def rolling_said(stated: CampaignFile, model: Model) -> CampaignFile:
+def rolling_stated(stated: CampaignFile, model: Model) -> CampaignFile:
     """A campaign file with what its trains roll over, where it leaves that to the model.
 
     Raises
