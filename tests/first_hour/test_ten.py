@@ -20,7 +20,6 @@ from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.predict import predict
 from permway.challenge.small.elements_line import Line, scaled
 from permway.checking.check import Checked, check
-from permway.diagnosis.doubts import doubted
 from permway.diagnosis.verdict import Verdict
 from permway.posterior.diagnose import diagnose
 from ridden import NOISE, PAD_N_PER_M, SPACING_M, SPEED_M_PER_S, ridden, run
@@ -112,7 +111,7 @@ def checked(path: Path) -> Checked:
 def diagnosed(path: Path) -> Verdict:
     """What is stated of a campaign; two tests may ask, and it takes minutes."""
     campaign = read_campaign(path)
-    return doubted(diagnose(campaign, threads=1), check(campaign, threads=1)).verdict
+    return diagnose(campaign, threads=1).with_blunders(check(campaign, threads=1)).verdict
 
 
 @pytest.mark.parametrize("name", STRUCK)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from campaigns import tables, write
 from permway.campaign.campaign import Campaign, read_campaign
-from permway.diagnosis.thinning import thinned
+from permway.diagnosis.frf_lines import thinned
 from permway.errors import InputError
 from permway.recordings.line_scatter import FREEDOM, scatter_variance
 

@@ -11,13 +11,10 @@ import xarray as xr
 from permway.arrays import Complexes, Reals
 from permway.campaign.compare import flat
 from permway.campaign.load import Dataset
-from permway.diagnosis.blocks import SURE, Basis, Rows
+from permway.diagnosis.blocks import FLOOR, SURE, Basis, Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PairColumns, as_complex, as_parts
+from permway.diagnosis.frf_lines import noise_variance, widened
 from permway.diagnosis.gaussian_process import GaussianProcess
-from permway.diagnosis.line_noise import noise_variance, widened
-
-FLOOR = 0.003
-"""Relative error that no record is free of: rounding, discretisation, the last decimals (0.026 dB)."""
 
 REACH = 2
 """Lines to either side over which the variance of noise is taken together."""

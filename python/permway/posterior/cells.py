@@ -15,8 +15,7 @@ from permway.diagnosis.catalogue import entries
 from permway.diagnosis.fit import Fit as Base
 from permway.diagnosis.fit import Free, free_parameters
 from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
-from permway.diagnosis.location import Location
-from permway.diagnosis.stretches import stretches
+from permway.diagnosis.location import Location, stretches
 from permway.posterior import generic, stated
 from permway.posterior.fit import Fit
 from permway.posterior.spans import BEYOND, spread_out, tuned, widened, with_starts

@@ -15,13 +15,13 @@ from permway.diagnosis.clock import Clock, Progress
 from permway.diagnosis.compare import RECALIBRATED, assemble
 from permway.diagnosis.fit import WIDTH
 from permway.diagnosis.fit import Fit as Base
+from permway.diagnosis.frf_lines import LINES_PER_FREQUENCY
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.labels import mislabelled
 from permway.diagnosis.observations import Observations
 from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.side_by_side import one_thread_of_blas
-from permway.diagnosis.thinning import LINES_PER_FREQUENCY
 from permway.diagnosis.verdict import RIGHT, Verdict
 from permway.diagnosis.verdict_parts import Moved, NextMeasurement
 from permway.diagnosis.verdict_records import mixed_up, with_bad_channels

@@ -8,8 +8,9 @@ from permway.campaign.campaign import Campaign
 from permway.campaign.parameters import Known
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where
+from permway.diagnosis.verdict_words import STATED
 
-ID = "owner_value"
+ID = STATED
 DOMAIN: Domain = "path"
 FAMILY = "stated value"
 SUMMARY = "A nominal parameter is farther from its stated value than its tolerance says."
