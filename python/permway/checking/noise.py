@@ -40,7 +40,7 @@ def noise_floors(
         Beside the model, put right by what was found.
     """
     for dataset in datasets:
-        if dataset.record.statistic not in ("csd", "psd"):
+        if not dataset.record.spectral:
             continue
         beside = compared.get(dataset.record.name)
         for name, (density, unshared_share) in quietest(dataset).items():

@@ -29,9 +29,11 @@ class PowerSpectra(RecordKind):
 
     name = "spectra"
     statistics = ("csd", "psd")
+    title = "spectra of runs"
     variable = "psd"
     dimensions = ("channel", "frequency")
     power = True
+    noise = "by the effective number of averages"
 
     def load(self, campaign: Campaign, record: Record) -> xr.Dataset:
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""
