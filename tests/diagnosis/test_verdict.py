@@ -345,7 +345,7 @@ def unmet(*names: Condition, **changed: Any) -> Weight:
         ),
         (
             verdict("insufficient", effects=(LOST,), evidence=unmet("held_out")),
-            "; records that were left out are not foretold better by it",
+            "; records that were left out are not predicted better by it",
         ),
         (verdict("insufficient", evidence=unmet("placebo")), "as many parameters elsewhere gain half as much"),
         (

@@ -108,9 +108,11 @@ def run(random: np.random.Generator, pads: float) -> Reals:
         beams_at_Hz={"rail": VISCOUS_AT_HZ},
         gamma=UNDAMPED,
     )
-    felt = np.fft.irfft(np.fft.rfft(done.on_board[start:], axis=0)[: samples // 2 + 1] / FINER, n=samples, axis=0)
+    measured = np.fft.irfft(
+        np.fft.rfft(done.on_board[start:], axis=0)[: samples // 2 + 1] / FINER, n=samples, axis=0
+    )
     own = np.sqrt(0.5 * RATE_HZ * np.array(list(NOISE.values())))
-    return np.asarray(felt + own * random.standard_normal(felt.shape))
+    return np.asarray(measured + own * random.standard_normal(measured.shape))
 
 
 def hammer(random: np.random.Generator, pads: float, lost: tuple[float, ...]) -> tuple[Complexes, Reals]:
@@ -238,7 +240,7 @@ def ridden(
     labels = {"sensor": np.array(names["responses"]), "hammer": np.array(names["references"])}
     write_arrays(folder / "blows.npz", content | labels)
     if rides is not None:
-        felt = rides(random, pads)
-        content = {"fs": RATE_HZ, "acceleration": felt.astype(np.float32), "channels": np.array(list(NOISE))}
+        measured = rides(random, pads)
+        content = {"fs": RATE_HZ, "acceleration": measured.astype(np.float32), "channels": np.array(list(NOISE))}
         write_arrays(folder / "ride.npz", content)
     return path

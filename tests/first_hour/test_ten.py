@@ -142,8 +142,8 @@ def test_a_train_that_rolls_is_predicted(path: Callable[[str], Path]) -> None:
     lines = np.abs(ridden_by.frequency_Hz - SPEED_M_PER_S / SPACING_M) < 1.0
     off = {}
     for rolls in (True, False):
-        (foretold,) = predict(true if rolls else _standing(true), [ridden_by], threads=1)
-        ratio = ridden_by.data["psd"].values[:, lines] / foretold["psd"].values[:, lines]
+        (predicted,) = predict(true if rolls else _standing(true), [ridden_by], threads=1)
+        ratio = ridden_by.data["psd"].values[:, lines] / predicted["psd"].values[:, lines]
         off[rolls] = 10.0 * np.log10(ratio).mean(axis=1)
     assert np.abs(off[True]).max() < 1.0
     assert off[False].min() > 2.0

@@ -1,4 +1,4 @@
-"""Which changes of a record the levels and phases speak for."""
+"""Which changes of a record the levels and phases support."""
 
 from __future__ import annotations
 

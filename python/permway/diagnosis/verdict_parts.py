@@ -142,7 +142,7 @@ Condition = Literal["bic_gain", "e_value", "held_out", "placebo", "explained_gap
 
 
 class Weight(VerdictPart):
-    """How strongly the records speak for the effects together, against the recalibrated base."""
+    """How strongly the records support the effects together, against the recalibrated base."""
 
     bic_gain: Number | None = None
     """Gain of BIC."""

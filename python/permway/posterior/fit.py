@@ -332,7 +332,7 @@ class Fitter:
         return new
 
     def _corrected(self, problem: Problem, fit: Fit, tried: Fit, damping: float) -> Fit | None:
-        """A step again, with the part of the residuals' change that slopes did not foretell."""
+        """A step again, with the part of the residuals' change that slopes did not predict."""
         bent = tried.state.residuals - fit.jacobian @ (tried.z - fit.z)
         slope = fit.slope(bent) + fit.z
         low, high = fit.model.limits

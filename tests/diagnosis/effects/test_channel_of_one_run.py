@@ -1,4 +1,4 @@
-"""A channel that one run has and another has not, as where screening found one of its records spoilt."""
+"""A channel that one run has and another has not, as where screening found one of its records bad."""
 
 from __future__ import annotations
 
