@@ -100,14 +100,7 @@ class FrfBlock:
         own_errors = self._relative[..., None] * fine.values(self.frequency)
         self._directions, self._singular, _ = np.linalg.svd(own_errors, full_matrices=False)
         self._sized(pair)
-        names = [data["sensor"].values.astype(str), data["force"].values.astype(str)]
-        sensor, force, frequency = (
-            np.broadcast_to(v, self.measured.shape).reshape(-1)
-            for v in (names[0][:, None, None], names[1][None, :, None], self.frequency)
-        )
-        label = np.char.add(np.char.add(sensor, " < "), force)
-        columns = (label, sensor, force, frequency, decibels.reshape(-1))
-        self.rows = Rows(*(np.tile(v, 2) for v in columns))
+        self.rows = self._labelled(decibels)
 
     @property
     def relative(self) -> Reals:
@@ -118,6 +111,17 @@ class FrfBlock:
     def phase(self) -> Complexes:
         """Of what is there, as a factor of modulus 1, shape (sensors, points, F)."""
         return self._phase
+
+    def _labelled(self, decibels: Reals) -> Rows:
+        """Labels of the rows: all real parts, then all imaginary parts."""
+        names = [self.dataset.data[key].values.astype(str) for key in ("sensor", "force")]
+        sensor, force, frequency = (
+            np.broadcast_to(v, self.measured.shape).reshape(-1)
+            for v in (names[0][:, None, None], names[1][None, :, None], self.frequency)
+        )
+        label = np.char.add(np.char.add(sensor, " < "), force)
+        columns = (label, sensor, force, frequency, decibels.reshape(-1))
+        return Rows(*(np.tile(v, 2) for v in columns))
 
     def _sized(self, pair: float) -> None:
         """Take a size of the pairs' errors, and let go of what came of another."""
