@@ -74,7 +74,7 @@ def test_splines_hold_straight_lines(per_octave: float) -> None:
 
 def test_a_speed_noted_wrongly_is_found(tmp_path: Path) -> None:
     """0.4 % off, with phases between wheelsets turned by more than a quarter: slopes alone would not get there."""
-    owner = campaign_in(tmp_path)
+    nominal_campaign = campaign_in(tmp_path)
     speed = Parameter(
         name="speed.fast",
         unit="m/s",
@@ -82,12 +82,16 @@ def test_a_speed_noted_wrongly_is_found(tmp_path: Path) -> None:
         acts="scales",
         tolerance_2sigma=0.005,
     )
-    stated = owner.stated.model_copy(update={"parameters": (*owner.stated.parameters, speed)})
-    parameters = ParameterSet(stated.parameters, owner.model, {}, stated, owner.folder)
-    owner = Campaign(stated, owner.model, owner.folder, parameters)
-    noted = owner.condition("fast").speed_m_per_s
+    stated = nominal_campaign.stated.model_copy(
+        update={"parameters": (*nominal_campaign.stated.parameters, speed)}
+    )
+    parameters = ParameterSet(stated.parameters, nominal_campaign.model, {}, stated, nominal_campaign.folder)
+    nominal_campaign = Campaign(stated, nominal_campaign.model, nominal_campaign.folder, parameters)
+    noted = nominal_campaign.condition("fast").speed_m_per_s
     assert noted is not None
-    observations = gather(owner, drawn(owner.with_values({"speed.fast": 0.996 * noted}), 6), threads=1)
+    observations = gather(
+        nominal_campaign, drawn(nominal_campaign.with_values({"speed.fast": 0.996 * noted}), 6), threads=1
+    )
     fit = recalibrate(observations)
     low, high = fit.intervals()["speed.fast"]
     assert fit.values()["speed.fast"] == pytest.approx(0.996 * noted, rel=5e-4)

@@ -64,7 +64,7 @@ def test_compare_holds_each_against_the_model(tmp_path: Path, which: str) -> Non
     (record,) = found.records
     pairs = set(zip(record["sensor"].values.tolist(), record["force"].values.tolist(), strict=True))
     assert pairs == {(s, p) for s, _, _ in sensors for p, _, _ in points}
-    # Records of the owner's own values: the recalibrated ones stay there.
+    # Records of the nominal values: the recalibrated ones stay there.
     assert (found.parameters["value"] / found.parameters["nominal"]).values == pytest.approx(1.0, abs=0.1)
 
 

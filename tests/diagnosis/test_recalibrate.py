@@ -58,7 +58,7 @@ def test_the_records_state_much_more_than_the_priors(cases: list[tuple[Simulated
         assert (np.sqrt(np.diag(fit.covariance)) < 0.25).all()
 
 
-def test_the_owners_values_deviate_and_the_found_ones_do_not(
+def test_nominal_values_deviate_and_recalibrated_ones_do_not(
     cases: list[tuple[Simulated, Observations, Fit]],
 ) -> None:
     for _, observations, fit in cases:
@@ -99,7 +99,7 @@ def test_what_is_left_knows_nothing_of_its_neighbours(cases: list[tuple[Simulate
         chance = left["chance"].values / 1.96
         assert (left["correlation"].values < 4.0 * chance).all()
         assert (left["correlation"].values > -4.0 * chance - 1.0 / 7.0).all()
-        # The owner's values leave what no noise would, in gain or in phase of every sensor.
+        # The nominal values leave what no noise would, in gain or in phase of every sensor.
         raw = lag_correlation(z.sel(model=RAW), lags=4)["correlation"].values[..., 0]
         assert (raw > 3.0 * chance[..., 0]).any(axis=0).all()
 
@@ -132,7 +132,7 @@ def practice(name: str, folder: Path) -> tuple[Campaign, list[Dataset], dict[str
 def amended(campaign: Campaign, truth: dict[str, Any]) -> Campaign:
     """The true amendment of practice-1: a spring with a springpot beside it, k (r0 + r1 (i w/w0)^alpha).
 
-    The parameter `pad.k` goes on to scale the spring, and its owner's value is put there; the springpot is the
+    The parameter `pad.k` goes on to scale the spring, and the nominal value is put there; the springpot is the
     amendment's own, and true.
     """
     line, effect = campaign.model.line, truth["fx"][0]

@@ -29,7 +29,7 @@ def forms(situation: Situation) -> dict[str, Hypothesis]:
 
 
 @pytest.fixture(scope="module")
-def owner(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
+def nominal_campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
     return campaign_in(tmp_path_factory.mktemp("rolls"))
 
 
@@ -39,9 +39,9 @@ def rolling(campaign: Campaign) -> Campaign:
 
 
 @pytest.fixture(scope="module")
-def rolls(owner: Campaign) -> Situation:
+def rolls(nominal_campaign: Campaign) -> Situation:
     """What is measured when the train rolls, and the base does not."""
-    return situation_of(owner, 21, amend=rolling)
+    return situation_of(nominal_campaign, 21, amend=rolling)
 
 
 @pytest.fixture(scope="module")
@@ -54,13 +54,15 @@ def rolling_by_file(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
     return read_campaign(folder / "campaign.toml")
 
 
-def test_a_campaign_file_lets_its_train_roll(owner: Campaign, rolling_by_file: Campaign) -> None:
+def test_a_campaign_file_lets_its_train_roll(nominal_campaign: Campaign, rolling_by_file: Campaign) -> None:
     """Lines of its weight at V over the spacing, and little else far below."""
     known = rolling_by_file.stated.irregularity.rolling
     assert known is not None
     assert known.model_copy(update={"about": None}) == Rolling(spacing_m=SPACING_M)
-    runs = [one for one in blank(owner) if one.record.statistic == "csd"]
-    for dataset, still, rolling in zip(runs, predict(owner, runs), predict(rolling_by_file, runs), strict=True):
+    runs = [one for one in blank(nominal_campaign) if one.record.statistic == "csd"]
+    for dataset, still, rolling in zip(
+        runs, predict(nominal_campaign, runs), predict(rolling_by_file, runs), strict=True
+    ):
         passing = dataset.condition.speed_m_per_s / SPACING_M  # type: ignore[operator]
         louder = 10.0 * np.log10(rolling["psd"] / still["psd"]).sel(channel=["axle1", "axle2", "axle3"])
         assert (louder.sel(frequency=passing, method="nearest") > 2.0).all()
@@ -113,7 +115,7 @@ def test_speeds_and_temperatures_that_differ_little_ask_for_nothing_new(
     assert made == pytest.approx([54.0, 76.68])
 
 
-def test_a_line_of_its_own_is_not_for_files(owner: Campaign, tmp_path: Path) -> None:
+def test_a_line_of_its_own_is_not_for_files(nominal_campaign: Campaign, tmp_path: Path) -> None:
     rolling = {"spacing_m": SPACING_M, "about": {"bodies": {}}}
     campaign_in(tmp_path)
     (tmp_path / "campaign.toml").write_text(
@@ -123,13 +125,13 @@ def test_a_line_of_its_own_is_not_for_files(owner: Campaign, tmp_path: Path) -> 
         read_campaign(tmp_path / "campaign.toml")
 
 
-def test_it_is_looked_for_where_supports_are_seen_to_pass(owner: Campaign, rolls: Situation) -> None:
-    assert set(forms(situation_of(owner, 22))) == {""}
+def test_it_is_looked_for_where_supports_are_seen_to_pass(nominal_campaign: Campaign, rolls: Situation) -> None:
+    assert set(forms(situation_of(nominal_campaign, 22))) == {""}
     assert set(forms(rolls)) == {"", "rolling"}
 
 
-def test_its_share_is_measured_and_lines_alone_state_less(owner: Campaign) -> None:
-    found = searched(observations_of(owner, 21, amend=rolling), "parametric_support")
+def test_its_share_is_measured_and_lines_alone_state_less(nominal_campaign: Campaign) -> None:
+    found = searched(observations_of(nominal_campaign, 21, amend=rolling), "parametric_support")
     best = found.best()
     assert best is not None
     assert best.amendments[0].variant == "rolling"
@@ -145,14 +147,14 @@ def test_every_share_of_its_range_can_be(rolls: Situation) -> None:
             assert amended.stated.irregularity.rolling is not None
 
 
-def test_a_profile_that_is_not_as_stated_is_reported_beside_it(owner: Campaign) -> None:
+def test_a_profile_that_is_not_as_stated_is_reported_beside_it(nominal_campaign: Campaign) -> None:
     """Which shifts power between frequencies as it rolls: no other effect has to."""
     shape = ((0.4, 1.0), (0.8, -1.0), (1.6, 1.0), (3.2, -1.0))
 
     def amend(campaign: Campaign) -> Campaign:
         return with_irregularity(campaign, rolling=Rolling(spacing_m=SPACING_M), shape_dB=shape)
 
-    best = searched(observations_of(owner, 23, amend=amend), "parametric_support").best()
+    best = searched(observations_of(nominal_campaign, 23, amend=amend), "parametric_support").best()
     assert best is not None
     found = best.fit.values()
     assert found["1.share"] == pytest.approx(1.0, abs=0.1)
@@ -160,10 +162,10 @@ def test_a_profile_that_is_not_as_stated_is_reported_beside_it(owner: Campaign) 
         assert found[f"1.shape_{wavelength:g}_m_dB"] == pytest.approx(true, abs=0.7)
 
 
-def test_what_its_owner_states_of_a_profile_stays(rolls: Situation, owner: Campaign) -> None:
+def test_what_is_stated_of_a_profile_stays(rolls: Situation, nominal_campaign: Campaign) -> None:
     """A shape is added to his own, and differs from a spectrum that he knows by next to nothing."""
     rolling = forms(rolls)["rolling"]
-    his = with_irregularity(owner, shape_dB=((0.3, 2.0), (0.5, -1.0)))
+    his = with_irregularity(nominal_campaign, shape_dB=((0.3, 2.0), (0.5, -1.0)))
     shaped = rolling.amend(his, {"share": 1.0, "shape_0.4_m_dB": 0.5}).stated.irregularity
     at_m = np.array([0.1, 0.3, 0.4, 0.5, 0.8, 20.0])
     between = np.interp(np.log(0.4), np.log([0.3, 0.5]), [2.0, -1.0])

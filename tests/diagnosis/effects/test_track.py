@@ -153,8 +153,8 @@ def situations(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tupl
 
     @cache
     def made(line: str) -> tuple[Situation, Campaign]:
-        owner = read(tmp_path_factory.mktemp("line"), line)
-        fit = recalibrate(of(owner, 7))
+        nominal_campaign = read(tmp_path_factory.mktemp("line"), line)
+        fit = recalibrate(of(nominal_campaign, 7))
         return Situation(fit, tuple(places(fit))), fit.campaign
 
     return made
@@ -166,9 +166,9 @@ def read(folder: Path, line: str) -> Campaign:
 
 
 def of(
-    owner: Campaign, seed: int, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
+    nominal_campaign: Campaign, seed: int, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
 ) -> Observations:
-    return gather(owner, measured(owner, seed, amend), threads=1)
+    return gather(nominal_campaign, measured(nominal_campaign, seed, amend), threads=1)
 
 
 def _put(inject: Amend, values: Values, base: Campaign) -> Campaign:
@@ -221,12 +221,12 @@ def test_what_is_put_in_is_named_and_measured(
     line, levels, near = INJECTED[entry]
     offered = entries()[entry].hypotheses(situations(line)[0])
     inject = next(h.amend for h in offered if set(levels[0]) <= {f.name for f in h.free})
-    owner, gains = read(tmp_path, line), []
+    nominal_campaign, gains = read(tmp_path, line), []
     family = entries()[entry].FAMILY
     rivals = {*entries()[entry].CONFUSED_WITH, "fastener_loss", "pad_frequency", "deck_attachment", "sensor_gain"}
     rivals = {rival for rival in rivals & set(entries()) if family != entries()[rival].FAMILY}
     for values in levels:
-        found = searched(of(owner, 3, partial(_put, inject, values)), entry, *sorted(rivals))
+        found = searched(of(nominal_campaign, 3, partial(_put, inject, values)), entry, *sorted(rivals))
         gains.append(found.gain(found.best(entry)))
     assert gains[0] < gains[1] < gains[2]
     best = found.best()

@@ -33,13 +33,17 @@ def test_a_spectrum_that_turns_is_off_its_line_by_the_slope_of_the_windows_corre
 @pytest.mark.parametrize("channel", ["axle2", "axle3", "floor"])
 def test_a_chain_that_is_late_alters_what_channels_share_as_its_slope_states(tmp_path: Path, channel: str) -> None:
     """A delay's phase grows from line to line. Predicted anew with it, parts change as their answers to it say."""
-    owner = campaign_in(tmp_path)
-    observations = gather(owner, drawn(owner, 5), threads=1)
-    observations = weighed_by(observations, owner)
+    nominal_campaign = campaign_in(tmp_path)
+    observations = gather(nominal_campaign, drawn(nominal_campaign, 5), threads=1)
+    observations = weighed_by(observations, nominal_campaign)
     late = observations.predicted(
-        with_chain(owner, channel, owner.sensor(channel).chain.model_copy(update={"delay_s": DELAY_S}))
+        with_chain(
+            nominal_campaign,
+            channel,
+            nominal_campaign.sensor(channel).chain.model_copy(update={"delay_s": DELAY_S}),
+        )
     )
-    before = observations.predicted(owner)
+    before = observations.predicted(nominal_campaign)
     seen = 0
     for block, old, new in zip(observations.blocks, before.datasets, late.datasets, strict=True):
         if not isinstance(block, SpectraBlock):
