@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -26,6 +26,7 @@ from permway.records import FrozenModel
 
 if TYPE_CHECKING:
     from permway.campaign.load import Dataset
+    from permway.recordings.record import TimeRecord
 
 
 class CampaignFile(FrozenModel):
@@ -102,6 +103,20 @@ class Campaign(Shown):
     def path(self, record: Record) -> Path:
         """Where the file of a record lies."""
         return self.folder / record.file
+
+    def samples(self, record: Record) -> Iterator[TimeRecord]:
+        """The samples of a record over time, in blocks, in the units that its sensors state."""
+        from permway.recordings.readers import time_blocks
+
+        return time_blocks(
+            self.path(record),
+            channels=list(record.channels),
+            units={label: self.sensor(name).unit for label, name in record.channels.items()},
+            sampling_Hz=record.sampling_Hz,
+            format=record.format,
+            part=record.part,
+            hints=record.hints,
+        )
 
     def model_with(self, values: Mapping[str, float]) -> Model:
         """The model with other values of parameters; those not named keep their nominal.
