@@ -25,7 +25,7 @@ NEAR = 4.0
 
 @dataclass(frozen=True)
 class Reported:
-    """A change that the record speaks for.
+    """A change that the record supports.
 
     Attributes
     ----------
