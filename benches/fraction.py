@@ -102,7 +102,7 @@ def mix(binary: Path, table: dict[int, set[str]], layout: str) -> dict[str, floa
     return row
 
 
-def said(binary: Path, *words: object) -> dict:
+def printed(binary: Path, *words: object) -> dict:
     """What a program of the benches prints."""
     command = [str(binary), *map(str, words)]
     return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout)
@@ -125,9 +125,9 @@ def measure(peak: Path, line: Path, rounds: int) -> tuple[dict, dict[tuple, floa
     sweeps = [(layout, "wheels", 512) for layout in LAYOUTS] + list(WORKING_SETS)
     reports, times = [], {}
     for _ in range(rounds):
-        reports.append(said(peak))
+        reports.append(printed(peak))
         for layout, points, n in sweeps:
-            us = said(line, layout, "chain", n, "--points", points, "--repeat", 7)["us_per_frequency"]
+            us = printed(line, layout, "chain", n, "--points", points, "--repeat", 7)["us_per_frequency"]
             times[layout, points] = min(us, times.get((layout, points), us))
     return best(reports), times
 

@@ -36,7 +36,7 @@ class Part:
     """Something to wait for; `own` is the key and the format of what it measures of itself."""
 
     name: str
-    says: str
+    title: str
     words: tuple[tuple[str, ...], ...]
     """Arguments after `python`; further ones are tried where a side lacks the first."""
     own: tuple[str, str] | None = None
@@ -111,11 +111,11 @@ class Side:
                     own = json.loads(text) if SIDE.name in words[0] else {}
                     return {**spent, **{f"own_{key}": value for key, value in own.items()}}
                 log.seek(0)
-                said = log.read()
+                printed = log.read()
                 # Usage (2) is a command or a key of a file that this side does not know.
-                if status not in (2, MISSING) and "InputError" not in said:
-                    raise SystemExit(f"{part.name}: status {status}\n{said}")
-                print(f"{part.name}: lacks {' '.join(words[:3])}: {said.strip()[-200:]}", file=sys.stderr)
+                if status not in (2, MISSING) and "InputError" not in printed:
+                    raise SystemExit(f"{part.name}: status {status}\n{printed}")
+                print(f"{part.name}: lacks {' '.join(words[:3])}: {printed.strip()[-200:]}", file=sys.stderr)
         return None
 
 
@@ -183,7 +183,7 @@ def table(report: dict[str, Any]) -> str:
             key, form = f"own_{part.own[0]}", part.own[1]
             cells = _cells(middle(before, key), middle(after, key), form, part.larger_is_better)
             cells = [*cells, "", "", ""] if part.name == "threads" else ["", "", "", *cells]
-        lines.append(f"| {part.says} | {' | '.join(cells)} |")
+        lines.append(f"| {part.title} | {' | '.join(cells)} |")
     return "\n".join(lines)
 
 

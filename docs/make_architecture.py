@@ -49,20 +49,20 @@ def draw() -> Figure:
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(0.1, 13.9), ylim=(2.1, 7.9))
     axes.axis("off")
-    for name, (x, y, width, said) in BOXES.items():
+    for name, (x, y, width, text) in BOXES.items():
         colour = "#f3d9cf" if name == "rust/core" else "#e8eef4"
         style = "round,pad=0.02,rounding_size=0.12"
         box = FancyBboxPatch((x - width / 2, y - HEIGHT / 2), width, HEIGHT, boxstyle=style, fc=colour, ec="0.35")
         axes.add_patch(box)
         axes.text(x, y + 0.4, name, ha="center", va="center", fontsize=10, fontweight="bold")
-        axes.text(x, y - 0.15, said, ha="center", va="center", fontsize=7.6, linespacing=1.15)
-    for start, end, said, (right, up) in ARROWS:
+        axes.text(x, y - 0.15, text, ha="center", va="center", fontsize=7.6, linespacing=1.15)
+    for start, end, text, (right, up) in ARROWS:
         tail, head = _edges(start, end)
         axes.add_patch(
             FancyArrowPatch(tail, head, arrowstyle="-|>", mutation_scale=11, color="0.3", linewidth=1.1)
         )
         middle = 0.5 * (tail[0] + head[0]) + right, 0.5 * (tail[1] + head[1]) + up
-        axes.text(*middle, said, ha="center", va="center", fontsize=7.4, color="0.25")
+        axes.text(*middle, text, ha="center", va="center", fontsize=7.4, color="0.25")
     return figure
 
 

@@ -31,14 +31,14 @@ def diagnose(folder: Path) -> dict[str, Any]:
     """
     run(folder, threads=1)
     campaign = folder / "campaign" / "campaign.toml"
-    said = tomllib.loads(campaign.read_text("utf-8"))
+    stated = tomllib.loads(campaign.read_text("utf-8"))
     (record,) = read_campaign(campaign).load()
     models = {"before": folder / "campaign" / "model.toml", "after": folder / "diagnosis" / "amended.toml"}
     return {
         "verdict": json.loads((folder / "diagnosis" / "verdict.json").read_text("utf-8")),
-        "campaign": said,
+        "campaign": stated,
         "measured": record.data,
-        **{name: predicted(permway.read_model(path), said, record.data) for name, path in models.items()},
+        **{name: predicted(permway.read_model(path), stated, record.data) for name, path in models.items()},
     }
 
 

@@ -17,7 +17,7 @@ COLUMNS = {
     "pair": "pair",
     "concealed": "concealed",
     "expected": "expected",
-    "said": "said",
+    "verdict": "verdict",
     "class": "class",
     "before": "dB before",
     "after": "dB after",
@@ -83,9 +83,7 @@ def passages() -> str:
             ", ".join(f"{100 * one['held_each'][name]:.0f}" for name in ("P", "V", "E", "t0"))
             for one in found.values()
         ],
-        "said to lack something, %": [
-            f"{100 * one['said_to_lack_something']:.0f} of {one['of_cases']}" for one in found.values()
-        ],
+        "called missing, %": [f"{100 * one['called_missing']:.0f} of {one['of_cases']}" for one in found.values()],
     }
     lines = [_line(["", *found]), _line(["---"] * (1 + len(found)))]
     lines += [_line([name, *values]) for name, values in rows.items()]

@@ -11,11 +11,11 @@ settings.load_profile("permway")
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Say what tests tell beyond that they passed: what came of seeds that were drawn anew."""
+    """Print what tests recorded beyond that they passed: the outcomes of seeds that were drawn anew."""
     for reports in terminalreporter.stats.values():
         for report in reports:
             for name, value in getattr(report, "user_properties", ()):
-                if name == "told" and report.when == "call":
+                if name == "outcome" and report.when == "call":
                     terminalreporter.write_line(str(value))
 
 

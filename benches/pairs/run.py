@@ -58,7 +58,7 @@ MADE: dict[str, Callable[[Path], dict[str, Path]]] = {
 }
 
 
-def said(verdict: Verdict) -> str:
+def line_of(verdict: Verdict) -> str:
     """One line."""
     effects = []
     for effect in verdict.effects:
@@ -97,7 +97,7 @@ def main() -> None:
                     print(f"{name}: status {done.returncode}, {_processor_s() - before:.0f} s: {last}", flush=True)
                     continue
             verdict = Verdict.read(into / "verdict.json")
-            print(f"{name} ({_processor_s() - before:.0f} s) {said(verdict)}", flush=True)
+            print(f"{name} ({_processor_s() - before:.0f} s) {line_of(verdict)}", flush=True)
 
 
 def _processor_s() -> float:

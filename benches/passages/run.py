@@ -50,7 +50,7 @@ def fitted(seed: int) -> dict[str, object]:
 
 
 def summary(cases: list[dict[str, Any]]) -> dict[str, object]:
-    """Of all cases of a kind; the first were run before it was kept whether something is said to be missing."""
+    """Of all cases of a kind; the first were run before it was kept whether something is called missing."""
     lacking = [c["lacking"] for c in cases if "lacking" in c]
     loads = [abs(v) for c in cases for name, v in c["missed"].items() if name.startswith("P")]
     speeds = [abs(c["missed"]["V"]) for c in cases]
@@ -61,7 +61,7 @@ def summary(cases: list[dict[str, Any]]) -> dict[str, object]:
     }
     return {
         "cases": len(cases),
-        "said_to_lack_something": float(np.mean(lacking)),
+        "called_missing": float(np.mean(lacking)),
         "of_cases": len(lacking),
         "loads_missed_median": float(np.median(loads)),
         "loads_missed_90": float(np.quantile(loads, 0.9)),

@@ -23,9 +23,9 @@ MARKER = re.compile(r"^% effects.*$", re.MULTILINE)
 def _section(entry: Entry) -> list[str]:
     lines = [f"({entry.ID})=", f"### `{entry.ID}`", "", entry.SUMMARY, ""]
     lines += ["| parameter | unit, range, meaning |", "|---|---|"]
-    lines += [f"| `{name}` | {_cell(said)} |" for name, said in entry.PARAMETERS.items()]
+    lines += [f"| `{name}` | {_cell(text)} |" for name, text in entry.PARAMETERS.items()]
     lines += ["", f"- **Signature.** {entry.SIGNATURE}"]
-    lines += [f"- **Confused with** `{other}`: {_cell(said)}." for other, said in entry.CONFUSED_WITH.items()]
+    lines += [f"- **Confused with** `{other}`: {_cell(text)}." for other, text in entry.CONFUSED_WITH.items()]
     lines += [f"- **Family** {entry.FAMILY}. **Source**: {entry.SOURCE}.", ""]
     return lines
 

@@ -31,11 +31,11 @@ def _turned(match: re.Match[str]) -> str:
 
 
 def _read(app: Sphinx, docname: str, source: list[str]) -> None:
-    said = re.fullmatch(r"% of (\S+)\s*", source[0])
-    if said is None:
+    pointer = re.fullmatch(r"% of (\S+)\s*", source[0])
+    if pointer is None:
         return
-    text = (ROOT / said[1]).read_text("utf-8")
-    app.env.note_dependency(str(ROOT / said[1]))
+    text = (ROOT / pointer[1]).read_text("utf-8")
+    app.env.note_dependency(str(ROOT / pointer[1]))
     text = _LINK.sub(_turned, text)
     source[0] = re.sub(r"\[([^\]]*)\]\(#file\)", r"`\1`", text)
 

@@ -88,13 +88,12 @@ def diagnose(
         If no record can be used, or what is ruled out is not in the catalogue.
     """
     from permway.checking.check import check as run_check
-    from permway.diagnosis.doubts import doubted
     from permway.posterior.diagnose import diagnose as run
 
     read = _campaign(campaign)
     checked = run_check(read, threads=threads)
     found = run(read, ruled_out=ruled_out, threads=threads, progress=progress)
-    return doubted(found, checked)
+    return found.with_blunders(checked)
 
 
 def _campaign(given: Campaign | str | Path) -> Campaign:

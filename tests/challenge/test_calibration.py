@@ -13,7 +13,7 @@ ONE = Scored(
     tier="single",
     status="named",
     truth=("fastener_loss",),
-    said=("fastener_loss",),
+    named=("fastener_loss",),
     found=True,
     placed=True,
     family=True,
@@ -24,11 +24,11 @@ ONE = Scored(
     seconds=1.0,
     deviance=100.0,
     concealed_family="local loss",
-    said_family="local loss",
+    named_family="local loss",
 )
 
 
-def test_power_is_told_by_deviance() -> None:
+def test_power_is_counted_by_deviance() -> None:
     missed = replace(ONE, found=False, placed=False, family=False, deviance=20.0)
     null = replace(ONE, found=None, deviance=None)
     rows = power([ONE, replace(ONE, family=False), missed, null, replace(ONE, deviance=-5.0)])
@@ -53,15 +53,15 @@ def test_probabilities_are_held_against_what_is_so() -> None:
     assert rows[0.0]["true"]["count"] == 0
 
 
-def test_families_are_told_with_what_is_said_for_them() -> None:
+def test_families_are_counted_with_what_is_named_for_them() -> None:
     cases = [
         ONE,
         ONE,
-        replace(ONE, said_family="insufficient"),
-        replace(ONE, concealed_family="", said_family="described"),
-        replace(ONE, found=None, said_family="recalibrated"),
+        replace(ONE, named_family="insufficient"),
+        replace(ONE, concealed_family="", named_family="described"),
+        replace(ONE, found=None, named_family="recalibrated"),
     ]
     assert confusion(cases) == [
-        {"concealed": "local loss", "cases": 3, "said": {"local loss": 2, "insufficient": 1}},
-        {"concealed": "no name", "cases": 1, "said": {"described": 1}},
+        {"concealed": "local loss", "cases": 3, "named": {"local loss": 2, "insufficient": 1}},
+        {"concealed": "no name", "cases": 1, "named": {"described": 1}},
     ]

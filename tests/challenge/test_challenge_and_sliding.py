@@ -77,7 +77,7 @@ def off_dB(campaign: Campaign) -> list[dict[str, np.ndarray]]:
 @pytest.mark.parametrize(
     ("force_N", "v0", "alone"), [(300.0, 0.01, False), (250.0, 0.02, True)], ids=["friction", "blow-off"]
 )
-def test_the_generators_balance_is_foretold(tmp_path: Path, force_N: float, v0: float, alone: bool) -> None:
+def test_the_generators_balance_is_predicted(tmp_path: Path, force_N: float, v0: float, alone: bool) -> None:
     case = replace(small_case(clean=True), effects=(Rubbing(force_N, v0, alone),))
     write(case, tmp_path / "folder")
     plain = import_sheet(tmp_path / "folder", tmp_path / "imported")
@@ -89,8 +89,8 @@ def test_the_generators_balance_is_foretold(tmp_path: Path, force_N: float, v0: 
     # The generator has the half of a vehicle, the solver's numbers are of the whole.
     slider = Slider(suspension="primary", force_N=force_N / car.share, velocity_m_per_s=v0, alone=alone)
     sliding = plain.with_model(with_vehicle(plain.model, Vehicle(**{**car.model_dump(), "additions": (slider,)})))
-    foretold, linear = off_dB(sliding), off_dB(plain)
+    predicted, linear = off_dB(sliding), off_dB(plain)
     for channel in ("bogie1", "carbody"):
         # By octave from 8 to 256 Hz; the averages of 8 s know their means to some tenths.
-        assert max(np.abs(run[channel]).max() for run in foretold) < 1.0
+        assert max(np.abs(run[channel]).max() for run in predicted) < 1.0
         assert min(np.abs(run[channel]).max() for run in linear) > 10.0

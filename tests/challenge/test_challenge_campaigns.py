@@ -126,7 +126,7 @@ def test_draws_lie_within_tolerances_and_repeat(tier: str) -> None:
         case.plan()
 
 
-def test_faults_of_use_are_told(tmp_path: Path) -> None:
+def test_faults_of_use_are_reported(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="is no tier"):
         draw(1, "easy")  # type: ignore[arg-type]
     with pytest.raises(InputError, match="below zero"):
@@ -137,7 +137,7 @@ def test_faults_of_use_are_told(tmp_path: Path) -> None:
     assert make(1, 0, "null", tmp_path) == []
 
 
-def test_coherence_tells_the_noise_put_in() -> None:
+def test_coherence_states_the_noise_put_in() -> None:
     random = np.random.default_rng(11)
     response = np.full((20, 2, 200), 3.0 - 4.0j)
     noise = np.tile([0.5, 2.5], (20, 1))
@@ -148,15 +148,15 @@ def test_coherence_tells_the_noise_put_in() -> None:
         assert coherence[:, sensor].mean() == pytest.approx(expected, abs=0.003)
 
 
-def test_scatter_of_h1_is_what_its_coherence_says() -> None:
+def test_scatter_of_h1_is_what_its_coherence_states() -> None:
     random = np.random.default_rng(12)
     response = np.full((20, 1, 1000), 1.0 + 0j)
     frf, _ = struck(random, response, np.full((20, 1), 0.3), blows=8, cell=0.0)
     _, settled = struck(random, response, np.full((20, 1), 0.3), blows=300, cell=0.0)
     coherence = settled.mean()
-    said = (1.0 - coherence) / (2.0 * 8.0 * coherence)
-    assert np.var(np.log(np.abs(frf))) == pytest.approx(said, rel=0.1)
-    assert np.var(np.angle(frf)) == pytest.approx(said, rel=0.1)
+    stated = (1.0 - coherence) / (2.0 * 8.0 * coherence)
+    assert np.var(np.log(np.abs(frf))) == pytest.approx(stated, rel=0.1)
+    assert np.var(np.angle(frf)) == pytest.approx(stated, rel=0.1)
 
 
 def test_smooth_errors_have_their_size_and_length() -> None:
@@ -175,13 +175,13 @@ def test_profile_is_of_the_sheets_spectrum_and_not_gaussian() -> None:
         spectrum = profile(random, deviation(random), samples=samples, sampling_Hz=rate, speed=speed)
         frequency = np.fft.rfftfreq(samples, 1.0 / rate)
         per_hertz = 2.0 * np.abs(spectrum) ** 2 / (samples * rate)
-        said = density(2.0 * np.pi * np.maximum(frequency, 1e-3) / speed) * 2.0 * np.pi / speed
+        stated = density(2.0 * np.pi * np.maximum(frequency, 1e-3) / speed) * 2.0 * np.pi / speed
         for centre in (4.0, 10.0, 25.0, 63.0, 160.0, 400.0):
             band = (frequency > 0.8 * centre) & (frequency < 1.2 * centre)
-            off.append(10.0 * np.log10((per_hertz[band] / said[band]).mean()))
+            off.append(10.0 * np.log10((per_hertz[band] / stated[band]).mean()))
             # A level that wanders by 3 dB leaves 1 / 1.6 of the lines independent; three standard errors.
             assert abs(off[-1]) < WITHIN_DB + 3.0 * 4.34 * np.sqrt(1.6 / band.sum())
-        whitened = np.fft.irfft(np.where(said > 0.0, spectrum / np.sqrt(said), 0.0))
+        whitened = np.fft.irfft(np.where(stated > 0.0, spectrum / np.sqrt(stated), 0.0))
         tails.append(np.mean(whitened**4) / np.mean(whitened**2) ** 2)
     assert np.std(off) > 0.3
     assert min(tails) > 3.5

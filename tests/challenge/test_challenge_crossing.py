@@ -54,28 +54,28 @@ def test_five_spans_under_two_cars_move_as_the_solver_s_do(tmp_path: Path) -> No
     values = with_loss(0.02, 0.12)
     light = {**values["vehicle"], "Mw": 10.0, "kp": 2e5, "cp": 1e3, "Mc": values["vehicle"]["Mc"] + 4 * 1770.0}
     train = Consist({**values, "vehicle": light}, cars=2, car_m=25.0, speed_m_per_s=60.0)
-    spots = [("girder", FIVE.station(10)), ("girder", FIVE.station(50)), ("rail", FIVE.station(50))]
+    locations = [("girder", FIVE.station(10)), ("girder", FIVE.station(50)), ("rail", FIVE.station(50))]
     ours = cross(
-        Mesh(assemble(FIVE, values), spots),
+        Mesh(assemble(FIVE, values), locations),
         train,
         from_m=-5.0,
         to_m=FIVE.length_m + 5.0,
         leaves=False,
-        sensors=spots,
+        sensors=locations,
         viscous_at_Hz=VISCOUS_HZ,
     )
     load = wheel_load(train.values)
     assert np.abs(ours.contact_force - load).max() < 0.04 * load
     line = viscous(FIVE, values, tmp_path, VISCOUS_HZ).line
     axles = Axles(lags_m=tuple(train.behind_m), loads_N=(load,) * 8, speed_m_per_s=60.0, body="rail")
-    places = [permway.Place(body=body, x_m=x) for body, x in spots]
+    places = [permway.Place(body=body, x_m=x) for body, x in locations]
     data = passby(line, axles, sensors=places, highest_Hz=60.0, quantity="displacement")
     entered_m = data.attrs["path_m"][0]
     for index, allowed in enumerate((0.012, 0.012, 0.03)):
         history = data["history"].values[0, index]
         solved = np.interp((ours.front_m - entered_m) / 60.0, data["time"].values, history)
         off = np.abs(solved - ours.displacement[:, index]).max()
-        assert off < allowed * ours.displacement[:, index].max(), spots[index]
+        assert off < allowed * ours.displacement[:, index].max(), locations[index]
 
 
 def test_a_dip_presses_wheels_as_the_solver_s_coupling_in_time_has_it(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ from short_deck import small_case
 )
 @pytest.mark.filterwarnings("ignore:axlebox3.*times the noise of the other channels:UserWarning")
 @pytest.mark.parametrize("channel", ["carbody", "axlebox3"])
-def test_clipping_is_said_and_nothing_else(tmp_path: Path, channel: str) -> None:
+def test_clipping_is_reported_and_nothing_else(tmp_path: Path, channel: str) -> None:
     case = replace(small_case(), effects=(Clipping(channel, 1.5),))
     write(case, tmp_path / "folder")
     found = diagnose(import_sheet(tmp_path / "folder", tmp_path / "imported"), threads=1)

@@ -34,8 +34,8 @@ def drawn(kind: type[Effect], strength: str = "strong", seed: int = 1) -> Effect
 
 
 def receptance(plan: Plan, temperature_C: float = -15.0) -> np.ndarray:
-    spots = list(dict.fromkeys([*plan.tests.sensors, ("rail", 1.28), ("girder", 4.8)]))
-    return Mesh(plan.track, spots).receptance(FREQUENCY, temperature_C, spots, spots)
+    locations = list(dict.fromkeys([*plan.tests.sensors, ("rail", 1.28), ("girder", 4.8)]))
+    return Mesh(plan.track, locations).receptance(FREQUENCY, temperature_C, locations, locations)
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def base() -> np.ndarray:
 
 
 @pytest.mark.parametrize("kind", [kind for kind in EVERY if kind.DOMAIN == "path"], ids=lambda kind: kind.KIND)
-def test_path_effect_is_reciprocal_passive_and_felt(kind: type[Effect], base: np.ndarray) -> None:
+def test_path_effect_is_reciprocal_passive_and_seen(kind: type[Effect], base: np.ndarray) -> None:
     plan = small_plan(small_site())
     drawn(kind).apply(plan)
     moved = receptance(plan)
@@ -69,7 +69,7 @@ FELT = [kind for kind in EVERY if kind.DOMAIN == "vehicle" and kind is not above
 
 
 @pytest.mark.parametrize("kind", FELT, ids=lambda kind: kind.KIND)
-def test_vehicle_effect_is_felt_on_board(kind: type[Effect]) -> None:
+def test_vehicle_effect_is_seen_on_board(kind: type[Effect]) -> None:
     changed, plain = small_plan(small_site()), small_plan(small_site())
     drawn(kind).apply(changed)
     track = np.broadcast_to(np.eye(4) * (1e-8 - 2e-9j), (FREQUENCY.size, 4, 4)).copy()
@@ -81,9 +81,11 @@ def test_vehicle_effect_is_felt_on_board(kind: type[Effect]) -> None:
 
 
 @pytest.mark.parametrize("kind", EVERY, ids=lambda kind: kind.KIND)
-def test_truth_of_an_effect_says_what_where_and_how_much(kind: type[Effect]) -> None:
+def test_truth_of_an_effect_states_what_where_and_how_much(kind: type[Effect]) -> None:
     truth = json.loads(json.dumps(drawn(kind).truth()))
-    assert {"id", "kind", "family", "domain", "place", "parameters", "mechanical", "twins", "words"} == set(truth)
+    assert {"id", "kind", "family", "domain", "place", "parameters", "mechanical", "alternatives", "words"} == set(
+        truth
+    )
     # What screening finds has a name of its own.
     named = {*entries(), *(("clipping",) if kind is recorders.Clipping else ())}
     assert truth["id"] in named if kind in CATALOGUE else truth["id"] in (None, *named)
@@ -95,13 +97,13 @@ def test_truth_of_an_effect_says_what_where_and_how_much(kind: type[Effect]) -> 
 @pytest.mark.parametrize(
     "kind", [k for k in EVERY if k.DOMAIN == "path" and k not in ONLY_UNDER_TRAIN], ids=lambda kind: kind.KIND
 )
-def test_strength_orders_what_is_felt(kind: type[Effect], base: np.ndarray) -> None:
-    felt = []
+def test_strength_orders_what_is_seen(kind: type[Effect], base: np.ndarray) -> None:
+    change = []
     for strength in STRENGTHS:
         plan = small_plan(small_site())
         drawn(kind, strength).apply(plan)
-        felt.append(np.sqrt(np.mean(np.abs(np.log(np.abs(receptance(plan) / base))) ** 2)))
-    assert felt[0] < felt[2]
+        change.append(np.sqrt(np.mean(np.abs(np.log(np.abs(receptance(plan) / base))) ** 2)))
+    assert change[0] < change[2]
 
 
 @pytest.mark.parametrize("kind", EVERY, ids=lambda kind: kind.KIND)

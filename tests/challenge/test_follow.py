@@ -86,15 +86,15 @@ def verdict(status: str, *classes: list[str], advised: tuple[str, str] | None = 
     return {"status": status, "effects": effects, "next": more}
 
 
-def say(folder: Path, name: str, said: dict[str, Any]) -> None:
+def write_verdict(folder: Path, name: str, verdict: dict[str, Any]) -> None:
     path = folder / "verdicts" / name / "verdict.json"
     path.parent.mkdir(parents=True)
-    path.write_text(json.dumps(said))
+    path.write_text(json.dumps(verdict))
 
 
 def test_verdicts_that_advise_are_followed_once(tmp_path: Path) -> None:
-    say(tmp_path, "sparse-301", verdict("ambiguous", ["a", "b"], advised=("a", "b")))
-    say(tmp_path, "sparse-302", verdict("named", ["a"]))
+    write_verdict(tmp_path, "sparse-301", verdict("ambiguous", ["a", "b"], advised=("a", "b")))
+    write_verdict(tmp_path, "sparse-302", verdict("named", ["a"]))
     for name in ("sparse-301", "sparse-302"):
         (tmp_path / "truth").mkdir(exist_ok=True)
         (tmp_path / "truth" / f"{name}.json").write_text("{}")
@@ -116,7 +116,7 @@ def test_verdicts_that_advise_are_followed_once(tmp_path: Path) -> None:
 
 
 def test_what_was_faded_is_measured_again_as_it_was(tmp_path: Path) -> None:
-    say(tmp_path, "graded-301", verdict("insufficient", ["a"], advised=("a", "recalibrated")))
+    write_verdict(tmp_path, "graded-301", verdict("insufficient", ["a"], advised=("a", "recalibrated")))
     faded = draw(301, "graded").faded(0.2)
     (tmp_path / "truth").mkdir()
     write_truth(faded, tmp_path / "truth" / "graded-301.json")
@@ -127,13 +127,13 @@ def test_what_was_faded_is_measured_again_as_it_was(tmp_path: Path) -> None:
 
 
 def test_without_its_truth_nothing_is_followed(tmp_path: Path) -> None:
-    say(tmp_path, "sparse-301", verdict("ambiguous", ["a", "b"], advised=("a", "b")))
+    write_verdict(tmp_path, "sparse-301", verdict("ambiguous", ["a", "b"], advised=("a", "b")))
     with pytest.raises(InputError, match=r"sparse-301.json: is not there"):
         follow(tmp_path, lambda *_: Advice("repeat", value=4.0))
 
 
 def test_where_nothing_is_advised_there_is_nothing_to_follow(tmp_path: Path) -> None:
-    say(tmp_path, "sparse-302", verdict("named", ["a"]))
+    write_verdict(tmp_path, "sparse-302", verdict("named", ["a"]))
     with pytest.raises(InputError, match="no verdict advises"):
         follow(tmp_path, lambda *_: Advice("repeat"))
 
@@ -154,7 +154,7 @@ def test_where_nothing_is_advised_there_is_nothing_to_follow(tmp_path: Path) -> 
         (["a"], ("a", "recalibrated"), verdict("insufficient", ["a"]), False, False),
     ],
 )
-def test_rivals_are_apart_when_one_is_said_and_the_other_not(
+def test_rivals_are_apart_when_one_is_reported_and_the_other_not(
     tmp_path: Path,
     truth: list[str],
     rivals: tuple[str, str],
@@ -167,7 +167,7 @@ def test_rivals_are_apart_when_one_is_said_and_the_other_not(
         (out / place).mkdir(parents=True)
     (out / ADVICE / "sparse-1.json").write_text(json.dumps({"measurement": "blows", "separates": rivals}))
     (out / "truth" / "sparse-1.json").write_text(json.dumps({"effects": [{"id": name} for name in truth]}))
-    say(out, "sparse-1", after)
+    write_verdict(out, "sparse-1", after)
     (one,) = separated(tmp_path)
     assert (one.apart, one.right) == (apart, right)
 

@@ -45,7 +45,7 @@ def test_one_that_leans_the_same_way_everywhere_is_seen(tmp_path: Path) -> None:
     assert row["leaning"] > 3.0
 
 
-def test_verdicts_without_intervals_tell_nothing(tmp_path: Path) -> None:
+def test_verdicts_without_intervals_constrain_nothing(tmp_path: Path) -> None:
     one = case(tmp_path, "null-1", true=6e7, value=5.5e7)
     path = tmp_path / "verdicts" / "null-1" / "verdict.json"
     reported = json.loads(path.read_text())

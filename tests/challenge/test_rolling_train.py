@@ -12,12 +12,12 @@ from permway.campaign.importers.sheet import import_sheet
 from permway.challenge import rolling
 from permway.challenge.assembly import assemble
 from permway.challenge.case import Case, draw, write
+from permway.challenge.closed_mesh import ClosedMesh
 from permway.challenge.layout import NOMINAL, Layout
 from permway.challenge.measure import measure
 from permway.challenge.mesh import Mesh
 from permway.challenge.newmark import line_matrices
 from permway.challenge.plan import Chain
-from permway.challenge.ring import Ring
 from permway.challenge.running import with_dashpots
 from permway.errors import InputError
 from permway.laws import KelvinVoigt
@@ -45,7 +45,7 @@ def short_case(laps: tuple[int, int] = (3, 4)) -> Case:
 def test_a_ring_is_the_deck_closed() -> None:
     """Held by its bearings alone; in its middle it yields as a straight deck with approaches does."""
     track = assemble(THREE, NOMINAL)
-    ring, deck = Ring(track), Mesh(track, ())
+    ring, deck = ClosedMesh(track), Mesh(track, ())
     mass, _, stiffness = line_matrices(ring, viscous_at_Hz=20.0)
     moved = np.zeros(ring.size)
     for body in track.beams:
@@ -65,7 +65,7 @@ def test_a_ring_is_the_deck_closed() -> None:
 
 def test_a_ring_is_the_same_from_its_end_to_its_beginning() -> None:
     """A force half a bay before the joint yields as one half a bay behind it."""
-    ring = Ring(assemble(THREE, NOMINAL), [("rail", 0.3), ("rail", 36.3)])
+    ring = ClosedMesh(assemble(THREE, NOMINAL), [("rail", 0.3), ("rail", 36.3)])
     held = splu(line_matrices(ring, viscous_at_Hz=20.0)[2])
     found = []
     for x in (0.3, 36.3):

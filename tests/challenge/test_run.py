@@ -9,7 +9,7 @@ from permway.challenge.run import FAILED, VERDICT, run
 from permway.errors import InputError
 
 
-def test_done_cases_are_left_alone_and_broken_ones_say_why(tmp_path: Path) -> None:
+def test_done_cases_are_left_alone_and_broken_ones_state_why(tmp_path: Path) -> None:
     for name in ("null-1", "null-2"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "sheet.json").write_text("{ no json")

@@ -53,10 +53,10 @@ LOST = {
 
 def folder(root: Path, cases: dict[str, tuple[dict[str, Any], dict[str, Any]]]) -> Path:
     (root / "truth").mkdir(parents=True)
-    for name, (true, said) in cases.items():
+    for name, (true, stated) in cases.items():
         (root / "truth" / f"{name}.json").write_text(json.dumps(true))
         (root / "verdicts" / name).mkdir(parents=True)
-        (root / "verdicts" / name / "verdict.json").write_text(json.dumps(said))
+        (root / "verdicts" / name / "verdict.json").write_text(json.dumps(stated))
     return root
 
 
@@ -105,10 +105,10 @@ def test_places_are_read_as_the_generator_writes_them(tmp_path: Path) -> None:
 
 def test_a_sensor_is_the_same_however_its_place_is_written(tmp_path: Path) -> None:
     wrong = {"id": "sensor_gain", "domain": "measurement", "place": {"channels": ["rail@42.0"]}}
-    said = [{**effect("sensor_gain", "sensor_gain"), "domain": "measurement"} for _ in range(2)]
-    for one, name in zip(said, ("rail@42", "rail@4.2"), strict=True):
+    gains = [{**effect("sensor_gain", "sensor_gain"), "domain": "measurement"} for _ in range(2)]
+    for one, name in zip(gains, ("rail@42", "rail@4.2"), strict=True):
         one["place"] = {"x": None, "within": None, "channels": [name]}
-    cases = {f"single-{i}": (truth(wrong), verdict("measurement", one)) for i, one in enumerate(said)}
+    cases = {f"single-{i}": (truth(wrong), verdict("measurement", one)) for i, one in enumerate(gains)}
     assert [s.placed for s in score(folder(tmp_path, cases), FAMILIES)] == [True, False]
 
 
@@ -155,13 +155,13 @@ def test_of_two_effects_of_one_name_the_one_at_the_place_is_held_against_the_tru
 
 def test_words_of_what_no_catalogue_holds(tmp_path: Path) -> None:
     hidden = {**LOST, "id": None, "family": "inertia", "words": ["inertance"]}
-    said = effect(None, "novel")
+    unnamed = effect(None, "novel")
     cases = {
-        f"outside-{i}": (truth(hidden), verdict("described", {**said, "law": {"words": words}}))
+        f"outside-{i}": (truth(hidden), verdict("described", {**unnamed, "law": {"words": words}}))
         for i, words in enumerate(("an inertance of 3 kg beside one joint", "a dashpot of 1 N s/m on the body"))
     }
     # Rivals say that something is there, and no words.
-    cases["outside-2"] = (truth(hidden), verdict("located", {k: v for k, v in said.items() if k != "law"}))
+    cases["outside-2"] = (truth(hidden), verdict("located", {k: v for k, v in unnamed.items() if k != "law"}))
     assert [s.mechanics for s in score(folder(tmp_path, cases), FAMILIES)] == [True, False, False]
 
 

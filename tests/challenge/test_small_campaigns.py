@@ -74,7 +74,7 @@ def test_the_truth_has_its_digest_and_the_campaign_can_be_read(tmp_path: Path) -
 @pytest.mark.parametrize("name", LAYOUTS)
 @pytest.mark.parametrize("seed", [21, 22])
 def test_the_two_makers_agree_where_nothing_is_concealed(tmp_path: Path, name: str, seed: int) -> None:
-    # The mesh is right to some 1e-4 of a wave; at a sharp antiresonance that is more.
+    # The mesh is right to some 1e-4 of a wave; at a narrow antiresonance that is more.
     layout, tests = drawn(name, seed)
     campaign = read_campaign(write_tables(tmp_path, tests.campaign, tests.model))
     values, beyond = true_values(campaign, generator(seed, 0, "parameters"))

@@ -15,6 +15,6 @@ def test_a_new_seed_with_nothing_concealed_comes_to_a_verdict(
     """An alarm in forty is what is allowed, so that a verdict is asked for, and which one is shown, not judged."""
     seed = secrets.randbelow(10**9)
     one = scored(tmp_path, seed, "null")
-    record_property("told", f"null {seed}, not used before: {one.status} {', '.join(one.said)}")
+    record_property("outcome", f"null {seed}, not used before: {one.status} {', '.join(one.named)}")
     assert one.found is None
     assert not one.covered

@@ -185,7 +185,7 @@ def judged_case(random: np.random.Generator, index: int) -> Judged:
         nominal=(flag, True),
         effect=(flag,),
         claims=(Claim(name, float(random.random()), flag),),
-        said="girder_local_modes|second_track|novel",
+        named="girder_local_modes|second_track|novel",
         truth="girder_local_modes, sensor_mounting",
         seconds=float(random.uniform(0.5, 119.0)),
         peak_MB=250.0,
@@ -236,11 +236,11 @@ def test_the_suite_writes_its_table(tmp_path: Path, stub: str, monkeypatch: pyte
     command = [sys.executable, "-m", "permway", "challenge", "suite", *words, "--json"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False, env=dict(os.environ))
     assert ended.returncode == 0, ended.stderr
-    said = json.loads(ended.stdout)
-    assert (said["verdicts"], said["failed"]) == (2, 0)
-    scores = json.loads(Path(said["scores"]).read_text())
+    printed = json.loads(ended.stdout)
+    assert (printed["verdicts"], printed["failed"]) == (2, 0)
+    scores = json.loads(Path(printed["scores"]).read_text())
     assert scores["rows"][0]["found"][:2] == [0, 2]
     # The other score reads such truths, too, whose parameters are not by part.
     assert pulls(tmp_path / "s", score(tmp_path / "s", {})) == []
     assert [p.inside for p in pulls(tmp_path / "s", [null_of(tmp_path / "s")])] == [True]
-    assert "| all | 2 | 0 |" in Path(said["table"]).read_text()
+    assert "| all | 2 | 0 |" in Path(printed["table"]).read_text()

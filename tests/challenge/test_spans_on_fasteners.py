@@ -26,8 +26,8 @@ def halved(layout: Layout, values: Values) -> Track:
     track = assemble(layout, values)
     links = []
     for link in track.links:
-        bodies = [body for body, _ in link.spots]
-        if len(bodies) < 2 or abs(link.spots[0][1] - PIER_M) > 1e-9 or not set(ROWS) & set(bodies):
+        bodies = [body for body, _ in link.locations]
+        if len(bodies) < 2 or abs(link.locations[0][1] - PIER_M) > 1e-9 or not set(ROWS) & set(bodies):
             links.append(link)
             continue
         for behind in (False, True):

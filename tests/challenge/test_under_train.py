@@ -8,7 +8,7 @@ from permway.challenge.beams import Complexes, Reals
 from permway.challenge.effects.under_load import PADS, ClosingGap, PadFriction, PadPreload, berg
 from permway.challenge.mesh import Mesh
 from permway.challenge.plan import Plan
-from permway.challenge.track import Spot, Track
+from permway.challenge.track import Location, Track
 from permway.challenge.under_train import Ridden, Support, Worked
 from permway.challenge.vehicle import wheel_load
 from permway.errors import SolveError
@@ -20,7 +20,7 @@ GRID_HZ = np.concatenate([np.arange(1.0, 60.0, 1.0), np.arange(60.0, 430.0, 5.0)
 
 
 def ridden(plan: Plan) -> Ridden:
-    wheels: list[Spot] = [("rail", x) for x in plan.layout.wheels_m(plan.values["vehicle"])]
+    wheels: list[Location] = [("rail", x) for x in plan.layout.wheels_m(plan.values["vehicle"])]
     return Ridden(plan.track, wheels, plan.vehicle, wheel_load(plan.values), 20.0)
 
 
@@ -62,16 +62,18 @@ def test_mean_squares_are_those_of_the_record() -> None:
     shown, under = worked(plan, [])
     lines, met = profiles(1e-5)
     force = plan.vehicle.pressed(lines, CubicSpline(GRID_HZ, under)(lines)) @ met[:, :, None]
-    mesh_spots: list[Spot] = [("rail", plan.layout.station(12)), ("slab", plan.layout.station(12))]
+    mesh_locations: list[Location] = [("rail", plan.layout.station(12)), ("slab", plan.layout.station(12))]
     one = ridden(plan)
-    spots = [*one.wheels, *mesh_spots]
-    moved = Mesh(plan.track, spots).receptance(lines, 20.0, mesh_spots, list(one.wheels))
+    locations = [*one.wheels, *mesh_locations]
+    moved = Mesh(plan.track, locations).receptance(lines, 20.0, mesh_locations, list(one.wheels))
     spectrum = np.zeros(SAMPLES // 2 + 1, dtype=np.complex128)
     bins = np.round(lines * SAMPLES / RATE_HZ).astype(int)
     spectrum[bins] = np.einsum("fw,fw->f", moved[:, 0] - moved[:, 1], force[:, :, 0])
     record = np.fft.irfft(spectrum, n=SAMPLES)
     index = next(
-        i for i, link in enumerate(plan.track.links) if link.law == "pad" and link.spots[0] == mesh_spots[0]
+        i
+        for i, link in enumerate(plan.track.links)
+        if link.law == "pad" and link.locations[0] == mesh_locations[0]
     )
     assert shown[-1].shaken[index] == pytest.approx(float(np.sqrt(np.mean(record**2))), rel=0.02)
 
@@ -122,7 +124,7 @@ def test_a_gap_closes_under_a_train_that_stands_on_it_and_no_other() -> None:
     np.testing.assert_allclose(still, hollow, rtol=1e-9)
 
 
-def test_supports_that_never_settle_are_said() -> None:
+def test_supports_that_never_settle_are_reported() -> None:
     plan = small_plan(small_site())
     turns = iter(range(1000))
 

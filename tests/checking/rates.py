@@ -99,7 +99,7 @@ def _exchanged(count: int, one: int, other: int) -> list[int]:
 
 def measure(folder: Path, count: int) -> dict[str, Any]:
     """Rates over the campaigns of a seed."""
-    false, sensors_turned, turned_told = 0, 0, 0
+    false, sensors_turned, turned_reported = 0, 0, 0
     rates: dict[str, list[int]] = {}
     for index in range(count):
         name = make_small(SEED, index, folder)
@@ -110,19 +110,21 @@ def measure(folder: Path, count: int) -> dict[str, Any]:
         found = check(campaign, threads=1).found
         right = [one for one in found if one.kind == "sign" and any(f'"{s}"' in one.remedy for s in turned)]
         false += bool(len(found) > len(right))
-        sensors_turned, turned_told = sensors_turned + bool(turned), turned_told + bool(right)
+        sensors_turned, turned_reported = sensors_turned + bool(turned), turned_reported + bool(right)
         if index % EVERY:
             continue
-        for case, told_right, told_wrong in _injected(campaign, np.random.default_rng(index), bool(turned)):
+        for case, reported_right, reported_wrong in _injected(
+            campaign, np.random.default_rng(index), bool(turned)
+        ):
             row = rates.setdefault(case, [0, 0, 0])
-            row[0], row[1], row[2] = row[0] + told_right, row[1] + told_wrong, row[2] + 1
+            row[0], row[1], row[2] = row[0] + reported_right, row[1] + reported_wrong, row[2] + 1
         print(index, false, flush=True)
     return {
         "seed": SEED,
         "campaigns": count,
         "false_alarms": false,
-        "turned": [turned_told, sensors_turned],
-        "blunders": [{"blunder": k, "told": v[0], "wrong": v[1], "of": v[2]} for k, v in rates.items()],
+        "turned": [turned_reported, sensors_turned],
+        "blunders": [{"blunder": k, "reported": v[0], "wrong": v[1], "of": v[2]} for k, v in rates.items()],
     }
 
 

@@ -65,7 +65,7 @@ WHOLE: list[tuple[str, READ, str, str]] = [
 
 
 @pytest.mark.parametrize(("read", "kind", "remedy"), [row[1:] for row in WHOLE], ids=[row[0] for row in WHOLE])
-def test_what_was_done_to_a_whole_record_is_told(tmp_path: Path, read: READ, kind: str, remedy: str) -> None:
+def test_what_was_done_to_a_whole_record_is_reported(tmp_path: Path, read: READ, kind: str, remedy: str) -> None:
     for seed in SEEDS:
         first, *others = reported(tmp_path / str(seed), seed, layout="slab", read=read)
         assert (first.kind, others) == (kind, [])
@@ -74,7 +74,7 @@ def test_what_was_done_to_a_whole_record_is_told(tmp_path: Path, read: READ, kin
         assert first.log_odds > 10.0
 
 
-def test_a_unit_that_is_stated_wrongly_is_told_with_the_right_one(tmp_path: Path) -> None:
+def test_a_unit_that_is_stated_wrongly_is_reported_with_the_right_one(tmp_path: Path) -> None:
     def in_g(table: dict[str, Any]) -> None:
         for sensor in table["sensors"]:
             sensor["unit"] = "g"
@@ -94,12 +94,12 @@ def one_sensor(of: int, factor: complex) -> READ:
 
 
 @pytest.mark.parametrize(("factor", "kind"), [(-1.0, "sign"), (1.0 / 9.80665, "factor")])
-def test_one_sensor_is_told_from_the_others(tmp_path: Path, factor: complex, kind: str) -> None:
+def test_one_sensor_is_distinguished_from_the_others(tmp_path: Path, factor: complex, kind: str) -> None:
     found = reported(tmp_path, 3, layout="slab", read=one_sensor(1, factor))
     assert [(one.kind, one.where) for one in found] == [(kind, "records.blows1: s2")]
 
 
-def test_exchanged_labels_are_told(tmp_path: Path) -> None:
+def test_exchanged_labels_are_reported(tmp_path: Path) -> None:
     def exchanged(values: Complexes, _frequency_Hz: Reals) -> Complexes:
         return values[[1, 0, *range(2, values.shape[0])]]
 

@@ -50,6 +50,6 @@ def test_channels_without_a_floor_are_asked_for_one(tmp_path: Path) -> None:
     }
     for one in asked:
         name, _, rest = one.remedy.removeprefix('sensors "').partition('"')
-        said = float(rest.partition("noise_floor = ")[2].partition(" }")[0])
+        stated = float(rest.partition("noise_floor = ")[2].partition(" }")[0])
         # The two wheelsets' noise is far below what moves them, and only bounded.
-        assert 0.6 * true[name] < said < (50.0 if name.startswith("axlebox") else 1.6) * true[name]
+        assert 0.6 * true[name] < stated < (50.0 if name.startswith("axlebox") else 1.6) * true[name]

@@ -116,7 +116,7 @@ def exchanged(sensor: str | None) -> Callable[[Rows], Rows]:
 @pytest.mark.parametrize(
     ("sensor", "where"), [(None, "records.blows"), ("d", "records.blows: deck@3"), ("r", "records.blows: rail@6")]
 )
-def test_real_and_imaginary_part_exchanged_are_told(
+def test_real_and_imaginary_part_exchanged_are_reported(
     tmp_path: Path, sensor: str | None, where: str, seed: int
 ) -> None:
     (found,) = checked(tabled(tmp_path, rows=exchanged(sensor), seed=seed))

@@ -47,7 +47,7 @@ def test_degrees_under_a_header_of_radians_are_asked_back(tmp_path: Path, unit: 
 
 
 @pytest.mark.parametrize("unit", ["g/kN", "m/N", "bananas"])
-def test_a_header_of_another_unit_is_told_with_both(tmp_path: Path, unit: str) -> None:
+def test_a_header_of_another_unit_is_reported_with_both(tmp_path: Path, unit: str) -> None:
     campaign = copy.deepcopy(CAMPAIGN)
     campaign["sensors"] = campaign["sensors"][:1]
     campaign["forces"] = campaign["forces"][:1]

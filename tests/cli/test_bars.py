@@ -16,7 +16,7 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_a_stage_says_the_time_spent_and_what_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stage_states_the_time_spent_and_what_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
     shown = Terminal()
     monkeypatch.setattr(sys, "stderr", shown)
     monkeypatch.setenv("COLUMNS", "120")

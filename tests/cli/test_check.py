@@ -32,7 +32,7 @@ def in_g(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_it_says_what_was_read_and_what_to_write(in_g: Path) -> None:
+def test_it_states_what_was_read_and_what_to_write(in_g: Path) -> None:
     done = run("check", in_g)
     assert (done.returncode, done.stderr) == (0, "")
     first, second, *_ = done.stdout.splitlines()
@@ -53,7 +53,7 @@ def test_an_honest_campaign_has_no_blunders(tmp_path: Path) -> None:
     assert not (tmp_path / "check").exists()
 
 
-def test_a_diagnosis_tells_blunders_first(in_g: Path, tmp_path: Path) -> None:
+def test_a_diagnosis_reports_blunders_first(in_g: Path, tmp_path: Path) -> None:
     done = run("diagnose", in_g, "-o", tmp_path / "out", "--no-report")
     assert done.returncode == 0
     assert done.stderr.startswith("permway: put right first: records.blows: levels are 9.80665 times")

@@ -103,7 +103,7 @@ def test_example_is_solved(model, tmp_path):
         assert data.attrs["title"] == read_model(model).title != ""
 
 
-def test_json_is_all_that_is_said(small):
+def test_json_is_all_that_is_reported(small):
     done = run("solve", small, "--json")
     assert (done.returncode, done.stderr) == (0, "")
     stated = json.loads(done.stdout)
@@ -111,7 +111,7 @@ def test_json_is_all_that_is_said(small):
     assert small.with_suffix(".nc").exists()
 
 
-def told_once(done, status):
+def stated_once(done, status):
     assert done.returncode == status, done.stderr
     assert done.stdout == ""
     assert done.stderr.count("\n") == 1
@@ -121,7 +121,7 @@ def told_once(done, status):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "says"),
+    ("old", "new", "message"),
     [
         ("x_m = 16.0\n\n[[sensors", "x_m = inf\n\n[[sensors", "forces[0].x_m: input should be a finite number"),
         ("slab_track_viaduct_32m", "viaduct", "line.preset: no such preset (got 'viaduct')"),
@@ -134,36 +134,36 @@ def told_once(done, status):
         ),
     ],
 )
-def test_bad_file_is_one_line_and_status_2(old, new, says, small):
+def test_bad_file_is_one_line_and_status_2(old, new, message, small):
     assert old in SMALL
     small.write_text(SMALL.replace(old, new, 1), encoding="utf-8")
-    text = told_once(run("solve", small), 2)
-    assert says in text
+    text = stated_once(run("solve", small), 2)
+    assert message in text
     assert str(small) in text
     assert list(small.parent.iterdir()) == [small]
 
 
 def test_missing_file(tmp_path):
-    assert "none.toml: cannot be read" in told_once(run("solve", tmp_path / "none.toml", "--json"), 2)
+    assert "none.toml: cannot be read" in stated_once(run("solve", tmp_path / "none.toml", "--json"), 2)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_singular_model_is_status_1(tmp_path):
     path = tmp_path / "singular.toml"
     path.write_text(SINGULAR, encoding="utf-8")
-    assert "at 1 Hz: block" in told_once(run("solve", path), 1)
+    assert "at 1 Hz: block" in stated_once(run("solve", path), 1)
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_folder_that_does_not_exist_is_said_before_the_sweep(small):
-    assert "there is no such folder" in told_once(run("solve", small, "-o", small.parent / "no" / "a.nc"), 2)
+def test_folder_that_does_not_exist_is_reported_before_the_sweep(small):
+    assert "there is no such folder" in stated_once(run("solve", small, "-o", small.parent / "no" / "a.nc"), 2)
 
 
 def test_the_model_is_not_overwritten(small):
-    assert "is the model file itself" in told_once(run("solve", small, "-o", small), 2)
+    assert "is the model file itself" in stated_once(run("solve", small, "-o", small), 2)
     assert small.read_text(encoding="utf-8") == SMALL
     named_as_data = small.rename(small.with_name("model.nc"))
-    assert "is the model file itself" in told_once(run("solve", named_as_data), 2)
+    assert "is the model file itself" in stated_once(run("solve", named_as_data), 2)
 
 
 def test_a_warning_is_one_line_beside_the_answer(small):

@@ -69,7 +69,7 @@ def test_every_command_teaches(path: tuple[str, ...], command: object) -> None:
     assert len(command.help.splitlines()[0]) <= 60  # type: ignore[attr-defined]
 
 
-def test_the_list_of_commands_is_not_cut_off_and_says_the_exit_status() -> None:
+def test_the_list_of_commands_is_not_cut_off_and_states_the_exit_status() -> None:
     text = run("--help", COLUMNS="80").stdout
     assert "..." not in text.partition("\n")[2]
     assert re.search(r"Exit status:\n +0 .*\n +1 .*\n +2 .*\n +130 ", text)
@@ -84,7 +84,7 @@ def test_completion(words: str, found: set[str]) -> None:
     assert "_PERMWAY_COMPLETE" in run(_PERMWAY_COMPLETE="source_bash").stdout
 
 
-def test_doctor_says_machine_threads_and_vectors() -> None:
+def test_doctor_states_machine_threads_and_vectors() -> None:
     done = run("doctor", "--json")
     assert (done.returncode, done.stderr) == (0, "")
     stated = json.loads(done.stdout)

@@ -80,15 +80,15 @@ def test_it_writes_and_draws(model: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "says"),
+    ("arguments", "message"),
     [
         (["--from", "80"], "from low to high"),
         (["-o", "modes.xlsx"], r"end the name in .csv or .nc"),
         (["-o", "/nowhere/at/all.csv"], "no such folder"),
     ],
 )
-def test_wrong_input(model: Path, arguments: list[str], says: str) -> None:
-    with pytest.raises(InputError, match=says):
+def test_wrong_input(model: Path, arguments: list[str], message: str) -> None:
+    with pytest.raises(InputError, match=message):
         run(model, *arguments)
 
 

@@ -7,7 +7,7 @@ from permway.cli.output import heading, print_result
 
 
 @pytest.mark.parametrize(
-    ("key", "said"),
+    ("key", "words"),
     [
         ("from_Hz", "from, Hz"),
         ("noise_dB_rms", "noise, dB rms"),
@@ -23,8 +23,8 @@ from permway.cli.output import heading, print_result
         ("verdict", "verdict"),
     ],
 )
-def test_a_key_is_said_in_words_with_its_unit(key: str, said: str) -> None:
-    assert heading(key) == said
+def test_a_key_is_reported_in_words_with_its_unit(key: str, words: str) -> None:
+    assert heading(key) == words
 
 
 def test_json_keeps_the_keys_and_people_get_words(capsys: pytest.CaptureFixture[str]) -> None:

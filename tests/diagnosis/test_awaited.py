@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.predict import predict
-from permway.diagnosis.catalogue._change import hung_mass, with_joints
+from permway.diagnosis.catalogue._change import attached_mass, with_joints
 from permway.diagnosis.catalogue._pads import factors, with_factors
 from permway.diagnosis.gather import gather
 from permway.diagnosis.recalibrate import UNFIT
@@ -33,7 +33,7 @@ def damped(frequency_Hz: float) -> Callable[[Campaign], Campaign]:
     """A light damper on the rail at every fastener."""
     values = {"mass_kg": 0.3, "frequency_Hz": frequency_Hz, "loss_factor": 0.05}
     masses = Joints(between=("rail", GROUND), law="damper", at=PADS)
-    return lambda campaign: with_joints(campaign, masses, laws={"damper": hung_mass(**values)})
+    return lambda campaign: with_joints(campaign, masses, laws={"damper": attached_mass(**values)})
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ DENSITY = log_free("density", "kg/m3", 2500.0, 1.05)
 """Together they are the deck's mass; the one is free in its logarithm, so what the records allow is a curve."""
 
 
-def _foretold(fit: Fit) -> float:
+def _predicted(fit: Fit) -> float:
     """What one step by the slopes at the end would lower the objective by."""
     whitener = fit.observations.whitener
     inner = whitener.reduce(fit.jacobian).T @ whitener.reduce(fit.residuals)
@@ -49,5 +49,5 @@ def test_all_starts_lead_to_the_same_place(tmp_path: Path, noise: float) -> None
         for z in ((-6.0, -0.1), (-4.0, 0.0), (0.0, -1.6), (2.0, -1.0))
     ]
     for fit in fits:
-        assert _foretold(fit) < 0.5
+        assert _predicted(fit) < 0.5
         assert fit.objective == pytest.approx(min(f.objective for f in fits), abs=0.5)

@@ -20,7 +20,7 @@ def correlation(x: Reals, length: float) -> Reals:
 
 
 @pytest.mark.parametrize("length", [SHORTEST, 1.0, 1.4, 2.0, 2.8, 4.0])
-def test_a_wander_has_the_correlation_that_it_says(length: float) -> None:
+def test_a_calibration_error_has_the_correlation_that_it_states(length: float) -> None:
     """The covariance of the functions' sum is squared-exponential, but for a rough percent."""
     frequency = np.geomspace(2.0, 400.0, 90)
     process = GaussianProcess(2.0, 400.0)
@@ -50,11 +50,11 @@ def dense(columns: PairColumns) -> Reals:
     """Column by column, from what gains and phases are."""
     sensors, points, lines, count = columns.gains.shape
     found = []
-    for owner in range(sensors + points):
+    for chain in range(sensors + points):
         for factor in (1.0, 1j):
             for k in range(count):
                 whole = np.zeros((sensors, points, lines), dtype=np.complex128)
-                mine = (owner, slice(None)) if owner < sensors else (slice(None), owner - sensors)
+                mine = (chain, slice(None)) if chain < sensors else (slice(None), chain - sensors)
                 whole[mine] = factor * (columns.gains[..., k] * columns.phase)[mine]
                 found.append(np.concatenate([whole.real.reshape(-1), whole.imag.reshape(-1)]))
     return np.stack(found, axis=1)
@@ -102,7 +102,7 @@ def test_a_whitener_is_the_inverse_of_the_covariance() -> None:
     np.testing.assert_allclose(left, np.linalg.solve(covariance, values), atol=1e-9)
 
 
-def test_a_level_takes_up_a_hump_of_what_its_owner_allows() -> None:
+def test_a_level_takes_up_a_hump_that_its_prior_allows() -> None:
     """Of 1.3 dB over two octaves, as dips of half a metre would make: no reason to name welds."""
     cycles_per_m = np.geomspace(0.02, 10.0, 400)
     power = Dips(depth_m=1.7e-4, length_m=0.47, every_m=20.0).density(2.0 * np.pi * cycles_per_m) * cycles_per_m**3

@@ -27,7 +27,7 @@ def loud(campaign: Campaign) -> Campaign:
 
 
 @pytest.fixture(scope="module")
-def hung_loose(tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
+def lost_fasteners(tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
     case = simulate(tmp_path_factory.mktemp("lost") / "c", 3, amend=lost)
     return diagnose(case.campaign, threads=1)
 
@@ -39,8 +39,8 @@ def nothing_missing(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Dia
     return case.path, diagnose(case.campaign, threads=1)
 
 
-def test_lost_fasteners_are_named_and_proved(hung_loose: Diagnosis) -> None:
-    verdict = hung_loose.verdict
+def test_lost_fasteners_are_named_and_proved(lost_fasteners: Diagnosis) -> None:
+    verdict = lost_fasteners.verdict
     assert verdict.status == "named"
     (effect,) = verdict.effects
     assert (effect.domain, effect.name, effect.place.joint) == ("path", "fastener_loss", "pad")
@@ -54,11 +54,11 @@ def test_lost_fasteners_are_named_and_proved(hung_loose: Diagnosis) -> None:
     assert all(g.gain_nats > 0.0 for g in verdict.held_out.values())
 
 
-def test_the_folder_holds_verdict_and_a_model_that_loads(hung_loose: Diagnosis, tmp_path: Path) -> None:
-    said = write_diagnosis(hung_loose, tmp_path / "d", page=False)
-    assert said["status"] == "named"
-    assert hung_loose.amended is not None
-    assert read_model(tmp_path / "d" / "amended.toml") == hung_loose.amended.campaign.model
+def test_the_folder_holds_verdict_and_a_model_that_loads(lost_fasteners: Diagnosis, tmp_path: Path) -> None:
+    written = write_diagnosis(lost_fasteners, tmp_path / "d", page=False)
+    assert written["status"] == "named"
+    assert lost_fasteners.amended is not None
+    assert read_model(tmp_path / "d" / "amended.toml") == lost_fasteners.amended.campaign.model
 
 
 def test_nothing_missing_is_called_recalibrated_and_again_the_same(
@@ -80,7 +80,7 @@ def test_nothing_missing_is_called_recalibrated_and_again_the_same(
 def test_a_gain_that_would_have_been_seen_is_seen_on_every_channel(
     tmp_path: Path, nothing_missing: tuple[Path, Diagnosis]
 ) -> None:
-    """Half as far again from 1 as said, for the size is known to first order; a third as far is not seen."""
+    """Half as far again from 1 as stated, for the size is known to first order; a third as far is not seen."""
     smallest = nothing_missing[1].verdict.detectable["sensor_gain"]
     assert smallest.value is not None
     for name, times in (("rail@6", 1.5), ("deck@3", 1.5), ("rail@6", 0.33), ("deck@3", 0.33)):

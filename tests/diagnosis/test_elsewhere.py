@@ -1,4 +1,4 @@
-"""Of two bearings the softer one, or the other that is stiffer: what records do not tell apart is said so."""
+"""Of two bearings the softer one, or the other that is stiffer; the verdict states where records leave both."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def softer_at_the_right(campaign: Campaign) -> Campaign:
     reason="the place is that of the most probable set alone: another that explains as much is not in it",
 )
 @pytest.mark.parametrize("seed", [3, 5])
-def test_the_place_holds_both_bearings_and_words_tell_of_either(tmp_path: Path, seed: int) -> None:
+def test_the_place_holds_both_bearings_and_words_name_either(tmp_path: Path, seed: int) -> None:
     case = simulate(tmp_path / "c", seed, amend=softer_at_the_right)
     (effect,) = diagnose(case.campaign, threads=1).verdict.effects
     assert effect.name == "bearing_stiffness"

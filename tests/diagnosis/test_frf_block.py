@@ -42,7 +42,7 @@ def _noisy(folder: Path, seed: int) -> Lines:
     assert isinstance(block, FrfBlock)
     block = block.with_reference(solved.datasets[0], np.zeros(block.measured.shape, dtype=np.complex128))
     block = block.with_pair(NO_ERROR).with_floor(NO_ERROR)
-    # Which lines are noisy is told by the prediction: by the measured ones noise would choose for itself.
+    # Which lines are noisy is decided by the prediction: by the measured ones noise would choose for itself.
     relative = block.sigma / np.abs(solved.datasets[0]["frf"].values)
     taken = (relative > 0.02) & (relative < 0.15)
     measured = block.measured[taken]
@@ -52,7 +52,7 @@ def _noisy(folder: Path, seed: int) -> Lines:
 def test_deviations_scatter_as_the_noise_does(lines: Lines) -> None:
     off, weight = lines
     squares = 0.5 * np.abs(off * weight) ** 2
-    # What weighs is smoothed over five lines, which differ: a few percent more than their number tells.
+    # What weighs is smoothed over five lines, which differ: a few percent more than their number gives.
     assert squares.mean() == pytest.approx(1.0, abs=0.08)
 
 

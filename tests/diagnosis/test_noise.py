@@ -111,7 +111,7 @@ def test_a_sensor_that_reads_nothing_has_no_noise_to_compare(tmp_path: Path) -> 
     assert not NoiseBlock.is_constrained(type(dataset)(dataset.record, dataset.condition, silent))
 
 
-def test_few_sensors_tell_nothing_of_each_other(tmp_path: Path) -> None:
+def test_few_sensors_constrain_nothing_of_each_other(tmp_path: Path) -> None:
     made = campaign(tmp_path, 5, 1.0)
     (dataset,) = made.load()
     few = dataset.data.isel(sensor=slice(0, FEWEST - 1))
@@ -120,7 +120,7 @@ def test_few_sensors_tell_nothing_of_each_other(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("count", [5, 9])
-def test_a_few_sensors_tell_the_scale_as_loosely_as_student_has_it(count: int, tmp_path: Path) -> None:
+def test_a_few_sensors_constrain_the_scale_as_loosely_as_student_has_it(count: int, tmp_path: Path) -> None:
     """Odds of a distance against none are those of Student's density."""
     (block,) = blocks_of(gather(campaign(tmp_path, 1, 1.0)))
     heavy = block.as_student()

@@ -26,18 +26,18 @@ NOISE = 0.01
 
 def campaign(folder: Path, sensors: Any, points: Any, *, turned: str = "") -> Campaign:
     """Records of the tool's own model, with noise; one sensor may be mounted the wrong way round."""
-    said: dict[str, Any] = copy.deepcopy(CAMPAIGN)
-    said["sensors"] = [{"name": n, "body": b, "x_m": x, "unit": "m/s2"} for n, b, x in sensors]
-    said["forces"] = [{"name": n, "body": b, "x_m": x} for n, b, x in points]
-    said["records"][0] |= {
+    stated: dict[str, Any] = copy.deepcopy(CAMPAIGN)
+    stated["sensors"] = [{"name": n, "body": b, "x_m": x, "unit": "m/s2"} for n, b, x in sensors]
+    stated["forces"] = [{"name": n, "body": b, "x_m": x} for n, b, x in points]
+    stated["records"][0] |= {
         "responses": {f"s{i}": name for i, (name, _, _) in enumerate(sensors)},
         "references": {f"p{i}": name for i, (name, _, _) in enumerate(points)},
     }
     (folder / "model.toml").write_text(to_toml(MODEL))
-    (folder / "campaign.toml").write_text(to_toml(said))
+    (folder / "campaign.toml").write_text(to_toml(stated))
     shape = (FREQUENCY.size, len(sensors), len(points))
-    ends: dict[str, Any] = {"sensor": np.array([*said["records"][0]["responses"]])}
-    ends["hammer"] = np.array([*said["records"][0]["references"]])
+    ends: dict[str, Any] = {"sensor": np.array([*stated["records"][0]["responses"]])}
+    ends["hammer"] = np.array([*stated["records"][0]["references"]])
     coherence = np.full(shape, 1.0 / (1.0 + 2.0 * BLOWS * NOISE**2))
     np.savez(folder / "frf.npz", f=FREQUENCY, frf=np.ones(shape, complex), coh=coherence, **ends)
     read = read_campaign(folder / "campaign.toml")
@@ -64,12 +64,12 @@ def test_compare_holds_each_against_the_model(tmp_path: Path, which: str) -> Non
     (record,) = found.records
     pairs = set(zip(record["sensor"].values.tolist(), record["force"].values.tolist(), strict=True))
     assert pairs == {(s, p) for s, _, _ in sensors for p, _, _ in points}
-    # Records of the owner's own values: the recalibrated ones stay there.
+    # Records of the nominal values: the recalibrated ones stay there.
     assert (found.parameters["value"] / found.parameters["nominal"]).values == pytest.approx(1.0, abs=0.1)
 
 
 @pytest.mark.parametrize("which", SHARED)
-def test_separability_tells_what_each_could_show(tmp_path: Path, which: str) -> None:
+def test_separability_states_what_each_could_show(tmp_path: Path, which: str) -> None:
     found = separability(campaign(tmp_path, *SHARED[which]), threads=1)
     assert {"sensor_gain", "fastener_loss"} <= set(found.entries)
     assert np.isfinite(found.seen).all()

@@ -19,7 +19,7 @@ from permway.diagnosis.plain_names import (
 from permway.diagnosis.verdict_parts import Estimate, Smallest
 
 
-def test_no_effect_or_parameter_is_said_with_an_underscore() -> None:
+def test_no_effect_or_parameter_is_reported_with_an_underscore() -> None:
     for name, entry in entries().items():
         assert "_" not in name_of(name)
         assert all("_" not in parameter_of(one) for one in entry.PARAMETERS)
@@ -29,7 +29,7 @@ def test_no_effect_or_parameter_is_said_with_an_underscore() -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "low", "high", "unit", "said", "interval"),
+    ("value", "low", "high", "unit", "words", "interval"),
     [
         (0.05, 0.0499, 0.0501, "1", "0.050", ""),
         (0.05, 0.0481, 0.0519, "1", "0.050", "0.048 to 0.052"),
@@ -43,14 +43,14 @@ def test_no_effect_or_parameter_is_said_with_an_underscore() -> None:
     ],
 )
 def test_a_value_has_the_digits_that_its_interval_leaves(
-    value: float, low: float, high: float, unit: str, said: str, interval: str
+    value: float, low: float, high: float, unit: str, words: str, interval: str
 ) -> None:
     one = Estimate(value=value, low=low, high=high, unit=unit)
-    assert estimate(one) == said
+    assert estimate(one) == words
     assert ends(one) == interval
 
 
-def test_without_an_interval_three_digits_are_said_of_a_share_two() -> None:
+def test_without_an_interval_three_digits_are_reported_of_a_share_two() -> None:
     one = Estimate(value=0.123456, unit="1")
     assert (estimate(one), ends(one)) == ("0.12", "")
     assert measured(3.1e-6, "m") == "3.10 µm"
@@ -76,7 +76,7 @@ def test_what_would_have_been_seen_is_a_change_or_a_size_with_its_unit() -> None
     assert seen(Smallest(parameter="length_m", value=None, unit="m")) == "none would have been seen"
 
 
-def test_a_stretch_is_said_to_the_decimetre() -> None:
+def test_a_stretch_is_reported_to_the_decimetre() -> None:
     assert stretch(5.7254, 7.6214) == "5.7 to 7.6 m"
     assert stretch(6.0052, 6.0504) == "6.01 to 6.05 m"
     # Joints: the second would lie outside the rounded stretch.

@@ -53,12 +53,12 @@ def test_intervals_hold_the_truth(cases: list[tuple[Simulated, Observations, Fit
     assert np.mean(held) >= fewest
 
 
-def test_the_records_say_much_more_than_the_priors(cases: list[tuple[Simulated, Observations, Fit]]) -> None:
+def test_the_records_state_much_more_than_the_priors(cases: list[tuple[Simulated, Observations, Fit]]) -> None:
     for _, _, fit in cases:
         assert (np.sqrt(np.diag(fit.covariance)) < 0.25).all()
 
 
-def test_the_owners_values_deviate_and_the_found_ones_do_not(
+def test_nominal_values_deviate_and_recalibrated_ones_do_not(
     cases: list[tuple[Simulated, Observations, Fit]],
 ) -> None:
     for _, observations, fit in cases:
@@ -99,13 +99,13 @@ def test_what_is_left_knows_nothing_of_its_neighbours(cases: list[tuple[Simulate
         chance = left["chance"].values / 1.96
         assert (left["correlation"].values < 4.0 * chance).all()
         assert (left["correlation"].values > -4.0 * chance - 1.0 / 7.0).all()
-        # The owner's values leave what no noise would, in gain or in phase of every sensor.
+        # The nominal values leave what no noise would, in gain or in phase of every sensor.
         raw = lag_correlation(z.sel(model=RAW), lags=4)["correlation"].values[..., 0]
         assert (raw > 3.0 * chance[..., 0]).any(axis=0).all()
 
 
 def test_nothing_is_learnt_of_what_no_record_sees(tmp_path: Path) -> None:
-    """With noise far above every resonance the priors stay as they were, and are said not to be informed."""
+    """With noise far above every resonance the priors stay as they were, and are reported as not informed."""
     made = simulate(tmp_path / "loud", 3, noise=5000.0)
     observations = gather(made.campaign, threads=1)
     found = assemble(observations, recalibrated_base(observations))
@@ -132,7 +132,7 @@ def practice(name: str, folder: Path) -> tuple[Campaign, list[Dataset], dict[str
 def amended(campaign: Campaign, truth: dict[str, Any]) -> Campaign:
     """The true amendment of practice-1: a spring with a springpot beside it, k (r0 + r1 (i w/w0)^alpha).
 
-    The parameter `pad.k` goes on to scale the spring, and its owner's value is put there; the springpot is the
+    The parameter `pad.k` goes on to scale the spring, and the nominal value is put there; the springpot is the
     amendment's own, and true.
     """
     line, effect = campaign.model.line, truth["fx"][0]
@@ -180,6 +180,6 @@ def test_practice_2_after_recalibration(tmp_path: Path) -> None:
 @needs_shared
 def test_practice_1_with_its_true_amendment(tmp_path: Path) -> None:
     campaign, datasets, truth = practice("practice-1", tmp_path)
-    told = amended(campaign, truth)
-    observations = gather(told, datasets, threads=1)
+    amended_campaign = amended(campaign, truth)
+    observations = gather(amended_campaign, datasets, threads=1)
     check_practice(assemble(observations, recalibrated_base(observations)))

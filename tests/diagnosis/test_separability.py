@@ -43,11 +43,11 @@ def test_nothing_explains_an_effect_better_than_itself(found: Separability) -> N
     assert np.median(own[seen] / found.seen[seen]) < 0.1
 
 
-def test_a_lost_fastener_and_a_sensors_gain_are_no_twins(found: Separability) -> None:
+def test_a_lost_fastener_and_a_sensors_gain_are_not_alternatives(found: Separability) -> None:
     pairs = {frozenset(pair[:2]) for pair in found.inseparable()}
     assert frozenset(("fastener_loss", "sensor_gain")) not in pairs
-    said = found.summary()
-    assert {row["effect"] for row in said["effects"]} >= {"fastener_loss", "sensor_gain", "deck_attachment"}
+    summary = found.summary()
+    assert {row["effect"] for row in summary["effects"]} >= {"fastener_loss", "sensor_gain", "deck_attachment"}
 
 
 def test_people_read_effects_by_what_engineers_call_them() -> None:
@@ -69,7 +69,7 @@ def test_people_read_effects_by_what_engineers_call_them() -> None:
 def test_measured_values_play_no_part(case: Simulated, found: Separability, tmp_path: Path) -> None:
     other = simulate(tmp_path / "c", 3, amend=lambda c: weakened(c, "pad", 7.5, 0.6, 0.5))
     again = separability(other.campaign, threads=1)
-    # The noise that a record's coherence tells of is drawn with the record, and follows its level.
+    # The noise that a record's coherence states is drawn with the record, and follows its level.
     np.testing.assert_allclose(np.log10(again.seen + 1.0), np.log10(found.seen + 1.0), atol=0.4)
 
 
@@ -87,7 +87,7 @@ def test_more_blows_and_more_sensors_separate_more(case: Simulated) -> None:
     assert all(separation(item, same, base) < 1e-6 for item in menu(case.campaign, base.observations.datasets))
 
 
-def test_of_a_suspicion_it_is_said_what_would_make_sure(case: Simulated) -> None:
+def test_of_a_suspicion_it_is_reported_what_would_make_sure(case: Simulated) -> None:
     """Held against nothing missing."""
     base = recalibrate(gather(case.campaign, threads=1))
     fit = type(base)(**{**vars(base), "campaign": weakened(base.campaign, "pad", 7.5, 0.6, 0.9)})

@@ -92,7 +92,7 @@ def test_an_input_error_goes_from_one_process_to_another() -> None:
 
 
 @forks
-def test_a_process_that_ends_before_its_work_is_told_of() -> None:
+def test_a_process_that_ends_before_its_work_is_reported() -> None:
     here = os.getpid()
 
     def work(item: int) -> int:

@@ -195,10 +195,10 @@ def test_the_commands_take_a_campaign_of_few_parameters(command: str, parameters
     options = [] if command == "separability" else ["-o", str(tmp_path / "out")]
     ended = CliRunner().invoke(app, [command, str(case.path), *options, "--json"])
     assert ended.exit_code == 0, ended.output
-    said = json.loads(ended.stdout)
+    printed = json.loads(ended.stdout)
     if command == "compare":
-        assert said["parameters"] == parameters
+        assert printed["parameters"] == parameters
     elif command == "diagnose":
-        assert Verdict.read(tmp_path / "out" / "verdict.json").status == said["status"]
+        assert Verdict.read(tmp_path / "out" / "verdict.json").status == printed["status"]
     else:
-        assert {"fastener_loss", "sensor_gain"} <= {one["effect"] for one in said["effects"]}
+        assert {"fastener_loss", "sensor_gain"} <= {one["effect"] for one in printed["effects"]}

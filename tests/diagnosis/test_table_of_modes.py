@@ -87,7 +87,7 @@ def test_the_posterior_of_one_table_has_no_chains(tmp_path: Path) -> None:
     assert fit.values()["E"] == pytest.approx(1.08 * 3.4e10, rel=0.02)
 
 
-def test_a_missed_mode_is_said_and_costs(tmp_path: Path) -> None:
+def test_a_missed_mode_is_reported_and_costs(tmp_path: Path) -> None:
     campaign = read_campaign(tables.write(tmp_path, tables.rows_of(tables.changed(with_absorber))))
     result = compare(campaign, raw_only=True)
     (missed,) = result.summary()["missed"]
@@ -99,7 +99,7 @@ def test_a_missed_mode_is_said_and_costs(tmp_path: Path) -> None:
     assert off.max() == pytest.approx(np.log(1.5) / tables.SD, rel=1e-6)
 
 
-def test_without_a_missed_mode_nothing_is_said(tmp_path: Path) -> None:
+def test_without_a_missed_mode_nothing_is_reported(tmp_path: Path) -> None:
     campaign = read_campaign(tables.write(tmp_path, tables.rows_of(tables.changed(stiffer))))
     assert "missed" not in compare(campaign, raw_only=True).summary()
 

@@ -1,4 +1,4 @@
-"""A model that fits only outside what is stated of it is not said to lack nothing."""
+"""A model that fits only outside what is stated of it is not called complete."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def test_softer_pads_than_stated_are_reported(seed: int, tmp_path: Path) -> None
     assert "Nothing is missing" not in verdict.sentence
     assert verdict.sentence.startswith("The model fits only with pad.k at ")
     assert f"{100.0 * (1.0 - pad.value / pad.prior):.3g} % below the stated 30 MN/m" in verdict.sentence
-    told = write_diagnosis(found, tmp_path / "d")
+    written = write_diagnosis(found, tmp_path / "d")
     page = (tmp_path / "d" / "report.html").read_text(encoding="utf-8")
-    assert told["status"] == "outside_tolerance"
+    assert written["status"] == "outside_tolerance"
     assert verdict.sentence in page
     assert "No effect is called missing." in page

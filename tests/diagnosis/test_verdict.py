@@ -152,7 +152,7 @@ def test_a_file_that_breaks_the_schema_is_refused_with_the_place(
     assert str(path) in str(caught.value)
 
 
-def test_statuses_ask_for_what_they_say() -> None:
+def test_statuses_ask_for_what_they_state() -> None:
     for status in ("named", "ambiguous", "described", "located", "measurement"):
         with pytest.raises(InputError, match="needs an effect"):
             Verdict(status=status)
@@ -165,7 +165,7 @@ def test_statuses_ask_for_what_they_say() -> None:
         Verdict(status="named", effects=(LOST,), evidence=Weight(unmet=("placebo",)))
 
 
-def test_a_file_that_is_not_there_is_said(tmp_path: Path) -> None:
+def test_a_file_that_is_not_there_is_reported(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot be read"):
         Verdict.read(tmp_path / "none.json")
 
@@ -198,7 +198,7 @@ def test_the_documentation_explains_every_key_and_status() -> None:
         assert f'| "{status}" |' in text
 
 
-def test_a_place_is_told_from_a_hypothesis() -> None:
+def test_a_place_is_distinguished_from_a_hypothesis() -> None:
     line = Line.model_validate(MODEL["line"])
     pads = Place.of(Where("pad", (3.0, 4.2)), line, within=(2.4, 4.8))
     assert (pads.joint, pads.body, pads.x, pads.within) == ("pad", None, (3.0, 4.2), (2.4, 4.8))
@@ -227,7 +227,7 @@ def test_a_size_is_seen_on_the_side_away_from_no_effect() -> None:
 
 
 @pytest.mark.parametrize("status", ["named", "measurement", "described", "located"])
-def test_a_model_that_leaves_something_says_that_it_is_not_all(status: str) -> None:
+def test_a_model_that_leaves_something_states_that_it_is_not_all(status: str) -> None:
     open_end = Weight(bic_gain=300.0, misfit_before=90.0, misfit_after=74.4)
     words = "this is not all of it: what is left has 74.4 times the mean square that errors explain."
     found = verdict(status, effects=(LOST,), evidence=open_end).sentence
@@ -245,31 +245,31 @@ def test_the_ends_of_an_interval_differ_as_they_are_written() -> None:
     assert span(2.0, 2.0) == "2 to 2"
 
 
-def test_a_parameter_that_nobody_would_believe_is_said() -> None:
+def test_a_parameter_that_nobody_would_believe_is_reported() -> None:
     near = Moved(value=1.05e9, prior=1e9, z=1.2)
     far = {"level": Moved(value=7.0, prior=0.0, z=7.0), "pad.k": Moved(value=2e7, prior=6e7, z=-4.4, unit="N/m")}
     words = (
         "; level has to be 7.00 for it, 7 standard deviations from the nominal 0"
         " and pad.k has to be 20.0 MN/m for it, 4.4 standard deviations from the nominal 60 MN/m."
     )
-    told = Recalibrated(before={"slab.E": near, **far})
-    found = verdict("located", effects=(LOST,), recalibrated=told).sentence
+    recalibrated = Recalibrated(before={"slab.E": near, **far})
+    found = verdict("located", effects=(LOST,), recalibrated=recalibrated).sentence
     assert found.endswith(words)
     assert "slab.E" not in found
-    # Of a wrong stated value its own effect tells.
+    # A wrong stated value is stated by its own effect.
     member = ClassMember(name="owner_value", probability=1.0)
     stated = Effect(domain="path", place=Place(body="pad.k"), name="owner_value", class_=(member,))
-    assert "pad.k has to be" not in verdict("named", effects=(stated,), recalibrated=told).sentence
+    assert "pad.k has to be" not in verdict("named", effects=(stated,), recalibrated=recalibrated).sentence
     # What an amendment brings back is off no more.
     back = Recalibrated(before=far, after=dict.fromkeys(far, near))
     assert "has to be" not in verdict("named", effects=(LOST,), recalibrated=back).sentence
 
 
-def test_a_model_that_fits_outside_a_tolerance_says_so() -> None:
+def test_a_model_that_fits_outside_a_tolerance_states_so() -> None:
     far = Moved(value=2.1e7, prior=3e7, z=-4.4, low=2e7, high=2.2e7, unit="N/m")
     near = Moved(value=1.05e9, prior=1e9, z=1.2)
-    told = Recalibrated(before={"slab.E": near, "pad.k": far, "level": Moved(value=7.0, prior=0.0, z=7.0)})
-    assert verdict("outside_tolerance", recalibrated=told).sentence == (
+    recalibrated = Recalibrated(before={"slab.E": near, "pad.k": far, "level": Moved(value=7.0, prior=0.0, z=7.0)})
+    assert verdict("outside_tolerance", recalibrated=recalibrated).sentence == (
         "The model fits only with level at 7.00, in place of the stated 0 and 7 standard deviations of its "
         "tolerance away and pad.k at 21.0 MN/m (90 %: 20.0 to 22.0 MN/m), 30 % below the stated 30 MN/m and 4.4 "
         "standard deviations of its tolerance away: what is stated there is wrong, or something is missing that "
@@ -279,11 +279,11 @@ def test_a_model_that_fits_outside_a_tolerance_says_so() -> None:
         Verdict(status="outside_tolerance", effects=(LOST,))
     # Nor is physics ruled out where a measurement is at fault beside it.
     faulty = LOST.model_copy(update={"domain": "measurement"})
-    for moved, said in ((near, True), (far, False)):
+    for moved, ruled_out in ((near, True), (far, False)):
         words = verdict(
             "measurement", effects=(faulty,), recalibrated=Recalibrated(after={"pad.k": moved})
         ).sentence
-        assert ("no physics is missing" in words) is said
+        assert ("no physics is missing" in words) is ruled_out
 
 
 def test_the_tolerance_of_one_parameter_is_two_deviations() -> None:
@@ -323,7 +323,7 @@ def unmet(*names: Condition, **changed: Any) -> Weight:
 
 
 @pytest.mark.parametrize(
-    ("one", "says"),
+    ("one", "message"),
     [
         (
             verdict("described", effects=(unnamed(("novel", 0.9), law=Mechanics(words="a resonator of 7 kg")),)),
@@ -345,7 +345,7 @@ def unmet(*names: Condition, **changed: Any) -> Weight:
         ),
         (
             verdict("insufficient", effects=(LOST,), evidence=unmet("held_out")),
-            "; records that were left out are not foretold better by it",
+            "; records that were left out are not predicted better by it",
         ),
         (verdict("insufficient", evidence=unmet("placebo")), "as many parameters elsewhere gain half as much"),
         (
@@ -380,8 +380,8 @@ def unmet(*names: Condition, **changed: Any) -> Weight:
         ),
     ],
 )
-def test_every_status_has_its_sentence(one: Verdict, says: str) -> None:
-    assert says in one.sentence
+def test_every_status_has_its_sentence(one: Verdict, message: str) -> None:
+    assert message in one.sentence
     assert one.sentence.endswith(".")
     assert one.sentence.count(". ") == 0
 
@@ -420,7 +420,7 @@ def test_a_notebook_shows_a_small_table() -> None:
     assert "<script>" not in html
 
 
-def test_the_sentence_tells_what_was_ruled_out() -> None:
-    said = verdict("recalibrated", ruled_out=("wheel_flat", "wheel_polygon")).sentence
-    assert said.endswith("; not considered, for somebody had ruled it out: wheel flat, polygonal wheel.")
+def test_the_sentence_states_what_was_ruled_out() -> None:
+    sentence = verdict("recalibrated", ruled_out=("wheel_flat", "wheel_polygon")).sentence
+    assert sentence.endswith("; not considered, for somebody had ruled it out: wheel flat, polygonal wheel.")
     assert "ruled" not in verdict("recalibrated").sentence

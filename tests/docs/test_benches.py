@@ -49,7 +49,7 @@ def test_medians_and_ratios() -> None:
     assert "busy" not in text
 
 
-def test_what_a_side_lacks_is_a_dash_and_a_busy_machine_is_said() -> None:
+def test_what_a_side_lacks_is_a_dash_and_a_busy_machine_is_reported() -> None:
     text = import_module("waits").table(report(None, "1", 4.0))
     assert "| - | 2 | - | - | 1 | - |" in text
     assert "same compiled core" in text

@@ -8,10 +8,10 @@ from pathlib import Path
 DOCS = Path(__file__).parents[2] / "docs"
 
 
-def test_the_page_says_the_rates_of_the_committed_run() -> None:
+def test_the_page_states_the_rates_of_the_committed_run() -> None:
     page = " ".join((DOCS / "check.md").read_text("utf-8").split())
     found = json.loads((DOCS / "check.json").read_text("utf-8"))
-    reported, wrong, of = (sum(row[key] for row in found["blunders"]) for key in ("told", "wrong", "of"))
+    reported, wrong, of = (sum(row[key] for row in found["blunders"]) for key in ("reported", "wrong", "of"))
     assert (
         f"Of {found['campaigns']} small campaigns of a fresh seed {found['false_alarms']} were doubted wrongly"
         in page

@@ -56,7 +56,7 @@ def test_an_example_computes_what_its_pages_quote(name: str) -> None:
 
 
 @pytest.mark.injection
-def test_the_tutorial_s_diagnosis_says_what_its_page_says(tmp_path: Path) -> None:
+def test_the_tutorial_s_diagnosis_states_what_its_page_states(tmp_path: Path) -> None:
     """Half a minute: the two fasteners that carry 5 %, in folders made as the tutorial makes them."""
     import numpy as np
     from permway.campaign.campaign import read_campaign
@@ -90,7 +90,7 @@ def survey(folder: Path) -> Path:
     return folder / "campaign.toml"
 
 
-def test_the_survey_is_read_from_csv_as_its_page_says(tmp_path: Path) -> None:
+def test_the_survey_is_read_from_csv_as_its_page_states(tmp_path: Path) -> None:
     from permway.campaign.campaign import read_campaign
 
     (dataset,) = read_campaign(survey(tmp_path)).load()
@@ -102,7 +102,7 @@ def test_the_survey_is_read_from_csv_as_its_page_says(tmp_path: Path) -> None:
 
 
 @pytest.mark.injection
-def test_the_survey_s_diagnosis_says_what_its_page_says(tmp_path: Path) -> None:
+def test_the_survey_s_diagnosis_states_what_its_page_states(tmp_path: Path) -> None:
     """Most of a minute: the four fasteners that keep 6 %."""
     from permway.campaign.campaign import read_campaign
     from permway.posterior.diagnose import diagnose

@@ -67,7 +67,7 @@ def test_the_page_of_small_campaigns_is_that_of_the_committed_runs() -> None:
     assert made.page() == (DOCS / "baseline.md").read_text("utf-8")
 
 
-def test_the_readme_and_the_page_of_small_campaigns_say_the_same() -> None:
+def test_the_readme_and_the_page_of_small_campaigns_state_the_same() -> None:
     """Counts of the status table against the committed runs."""
     summary = json.loads(import_module("make_baseline").SUMMARY.read_text("utf-8"))
     lines = [line for line in (ROOT / "README.md").read_text("utf-8").splitlines() if line.startswith("| ")]

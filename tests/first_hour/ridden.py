@@ -14,16 +14,16 @@ import numpy as np
 from permway.arrays import Complexes, Reals
 from permway.challenge.assembly import lossy
 from permway.challenge.beams import Section
+from permway.challenge.closed_mesh import ClosedMesh
 from permway.challenge.crossing import Consist, cross
 from permway.challenge.irregularity import profile
 from permway.challenge.layout import NOMINAL
 from permway.challenge.mesh import Mesh
 from permway.challenge.newmark import UNDAMPED
 from permway.challenge.plan import CONTACT_N_PER_M
-from permway.challenge.ring import Ring
 from permway.challenge.small.errors import Errors, blow_noise, root, smooth, struck
 from permway.challenge.small.write import write_arrays, write_tables
-from permway.challenge.track import Beam, Link, Spot, Track, grounded
+from permway.challenge.track import Beam, Link, Location, Track, grounded
 from permway.challenge.vehicle import vehicle
 from scipy.interpolate import CubicSpline
 
@@ -68,7 +68,7 @@ def track_of(pads: float, lost: tuple[float, ...] = (), beyond: float = BEYOND_M
     )
 
 
-class Round(Ring):
+class Round(ClosedMesh):
     """The rail closed into a ring."""
 
     def __init__(self, track: Track) -> None:
@@ -108,16 +108,18 @@ def run(random: np.random.Generator, pads: float) -> Reals:
         beams_at_Hz={"rail": VISCOUS_AT_HZ},
         gamma=UNDAMPED,
     )
-    felt = np.fft.irfft(np.fft.rfft(done.on_board[start:], axis=0)[: samples // 2 + 1] / FINER, n=samples, axis=0)
+    measured = np.fft.irfft(
+        np.fft.rfft(done.on_board[start:], axis=0)[: samples // 2 + 1] / FINER, n=samples, axis=0
+    )
     own = np.sqrt(0.5 * RATE_HZ * np.array(list(NOISE.values())))
-    return np.asarray(felt + own * random.standard_normal(felt.shape))
+    return np.asarray(measured + own * random.standard_normal(measured.shape))
 
 
 def hammer(random: np.random.Generator, pads: float, lost: tuple[float, ...]) -> tuple[Complexes, Reals]:
     """Accelerance and coherence, (sensors, points, F)."""
     rows, columns = ([("rail", x) for x in places] for places in (READ, STRUCK))
-    spots: list[Spot] = [*rows, *columns]
-    moved = Mesh(track_of(pads, lost), spots).receptance(FREQUENCY, 12.0, rows, columns)
+    locations: list[Location] = [*rows, *columns]
+    moved = Mesh(track_of(pads, lost), locations).receptance(FREQUENCY, 12.0, rows, columns)
     frf = np.moveaxis(moved, 0, -1) * -((2.0 * np.pi * FREQUENCY) ** 2)
     functions = root(FREQUENCY, ERRORS.length_octaves)
     sensors, points = (
@@ -238,7 +240,7 @@ def ridden(
     labels = {"sensor": np.array(names["responses"]), "hammer": np.array(names["references"])}
     write_arrays(folder / "blows.npz", content | labels)
     if rides is not None:
-        felt = rides(random, pads)
-        content = {"fs": RATE_HZ, "acceleration": felt.astype(np.float32), "channels": np.array(list(NOISE))}
+        measured = rides(random, pads)
+        content = {"fs": RATE_HZ, "acceleration": measured.astype(np.float32), "channels": np.array(list(NOISE))}
         write_arrays(folder / "ride.npz", content)
     return path

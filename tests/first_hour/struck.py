@@ -73,14 +73,19 @@ def struck_deck(
     there(line)
     record = campaign["records"][0]
     places = [
-        [(spot["body"], spot["x_m"]) for name in record[key].values() for spot in spots if spot["name"] == name]
-        for key, spots in (("responses", campaign["sensors"]), ("references", campaign["forces"]))
+        [
+            (location["body"], location["x_m"])
+            for name in record[key].values()
+            for location in locations
+            if location["name"] == name
+        ]
+        for key, locations in (("responses", campaign["sensors"]), ("references", campaign["forces"]))
     ]
     frf = line.receptance(FREQUENCY, 12.0, *places) * -((2.0 * np.pi * FREQUENCY) ** 2)
     functions = root(FREQUENCY, ERRORS.length_octaves)
     sensors, points = (
-        np.array([smooth(random, functions, ERRORS.size(kind)) for _ in spots])
-        for kind, spots in zip(("sensor", "force"), places, strict=True)
+        np.array([smooth(random, functions, ERRORS.size(kind)) for _ in locations])
+        for kind, locations in zip(("sensor", "force"), places, strict=True)
     )
     frf = frf * sensors[:, None, :] * points[None, :, :]
     found, coherence = struck(random, frf, blow_noise(frf, ERRORS, np.ones(frf.shape[0])), BLOWS)

@@ -50,7 +50,7 @@ def test_the_exports_are_as_shown(folder: Path) -> None:
     assert all(f"exports/{path.name}" in PAGE for path in (folder / "exports").glob("*.csv"))
 
 
-def test_new_says_what_the_page_says(begun: str) -> None:
+def test_new_states_what_the_page_states(begun: str) -> None:
     assert begun == SHOWN["new"]
 
 
@@ -58,12 +58,12 @@ def test_the_page_has_the_tolerances(begun: str) -> None:
     assert f"```toml{TOLERANCES}```" in PAGE
 
 
-def test_check_says_what_the_page_says(begun: str) -> None:
+def test_check_states_what_the_page_states(begun: str) -> None:
     assert command("check", "exports/campaign.toml") == SHOWN["check"]
 
 
 @pytest.mark.injection
-def test_diagnose_says_what_the_page_says(begun: str) -> None:
+def test_diagnose_states_what_the_page_states(begun: str) -> None:
     """Half a minute of processor: the fastener that carries nothing."""
     printed = command("diagnose", "exports/campaign.toml", "-o", "diagnosis", "--threads", "1")
     shown = " ".join(SHOWN["diagnose"].split())

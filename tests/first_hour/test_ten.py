@@ -20,7 +20,6 @@ from permway.campaign.campaign import Campaign, read_campaign
 from permway.campaign.predict import predict
 from permway.challenge.small.elements_line import Line, scaled
 from permway.checking.check import Checked, check
-from permway.diagnosis.doubts import doubted
 from permway.diagnosis.verdict import Verdict
 from permway.posterior.diagnose import diagnose
 from ridden import NOISE, PAD_N_PER_M, SPACING_M, SPEED_M_PER_S, ridden, run
@@ -112,11 +111,11 @@ def checked(path: Path) -> Checked:
 def diagnosed(path: Path) -> Verdict:
     """What is stated of a campaign; two tests may ask, and it takes minutes."""
     campaign = read_campaign(path)
-    return doubted(diagnose(campaign, threads=1), check(campaign, threads=1)).verdict
+    return diagnose(campaign, threads=1).with_blunders(check(campaign, threads=1)).verdict
 
 
 @pytest.mark.parametrize("name", STRUCK)
-def test_blunders_are_told_and_nothing_else_is_called_one(name: str, path: Callable[[str], Path]) -> None:
+def test_blunders_are_reported_and_nothing_else_is_called_one(name: str, path: Callable[[str], Path]) -> None:
     found = checked(path(name)).blunders
     if name not in BLUNDERS:
         assert found == ()
@@ -134,7 +133,7 @@ def test_a_noise_floor_that_was_not_given_is_asked_for(name: str, path: Callable
     assert asked == (set(NOISE) if name == "no noise floors" else set())
 
 
-def test_a_train_that_rolls_is_foretold(path: Callable[[str], Path]) -> None:
+def test_a_train_that_rolls_is_predicted(path: Callable[[str], Path]) -> None:
     """Marched in time over the finite elements' fasteners: the line of their passing is in the prediction."""
     campaign = read_campaign(path("nothing missing"))
     pads = float(np.exp(0.5 * np.log1p(0.25) * np.random.default_rng([SEED, 470]).standard_normal()))
@@ -143,8 +142,8 @@ def test_a_train_that_rolls_is_foretold(path: Callable[[str], Path]) -> None:
     lines = np.abs(ridden_by.frequency_Hz - SPEED_M_PER_S / SPACING_M) < 1.0
     off = {}
     for rolls in (True, False):
-        (foretold,) = predict(true if rolls else _standing(true), [ridden_by], threads=1)
-        ratio = ridden_by.data["psd"].values[:, lines] / foretold["psd"].values[:, lines]
+        (predicted,) = predict(true if rolls else _standing(true), [ridden_by], threads=1)
+        ratio = ridden_by.data["psd"].values[:, lines] / predicted["psd"].values[:, lines]
         off[rolls] = 10.0 * np.log10(ratio).mean(axis=1)
     assert np.abs(off[True]).max() < 1.0
     assert off[False].min() > 2.0
@@ -173,11 +172,11 @@ def test_pads_softer_than_stated(percent: int, path: Callable[[str], Path]) -> N
 
 @pytest.mark.injection
 @pytest.mark.parametrize("percent", [5, 25])
-def test_the_sentence_says_the_value_that_the_table_says(percent: int, path: Callable[[str], Path]) -> None:
+def test_the_sentence_states_the_value_that_the_table_states(percent: int, path: Callable[[str], Path]) -> None:
     verdict = diagnosed(path(f"soft at {percent} %"))
-    (said,) = re.findall(r"(?:about|at) ([\d.]+) MN/m", verdict.sentence)
+    (stated,) = re.findall(r"(?:about|at) ([\d.]+) MN/m", verdict.sentence)
     found = (verdict.recalibrated.after or verdict.recalibrated.before)["pad.k"]
-    assert float(said) == pytest.approx(found.value / 1e6, abs=0.06)
+    assert float(stated) == pytest.approx(found.value / 1e6, abs=0.06)
 
 
 @pytest.mark.injection

@@ -105,10 +105,10 @@ def keep(found: Path, target: str, name: str, content: bytes, stated: str) -> No
     found.mkdir(parents=True, exist_ok=True)
     path = found / f"{target}-{hashlib.sha256(content).hexdigest()[:12]}-{name}"
     path.write_bytes(content)
-    path.with_name(path.name + ".said").write_text(stated + "\n")
+    path.with_name(path.name + ".message").write_text(stated + "\n")
 
 
-def _heard(pipe: Connection, worker: int) -> tuple[str, Any, Any]:
+def _received(pipe: Connection, worker: int) -> tuple[str, Any, Any]:
     """The next that a worker states; or that it died, or hangs."""
     begin, spent = time.monotonic(), _spent_s(worker)
     try:
@@ -144,7 +144,7 @@ def fuzz(target: str, inputs: int, random: int, found: Path, seconds: float) -> 
         there.close()
         before, now = done, ("", b"")
         while True:
-            what, first, second = _heard(here, worker.pid or 0)
+            what, first, second = _received(here, worker.pid or 0)
             if what == "begin":
                 now = (first, second)
                 continue

@@ -45,7 +45,7 @@ def left(folder: Path) -> list[str]:
     ],
     ids=lambda command: command[0],
 )
-def test_no_room_is_said_and_leaves_nothing(tmp_path: Path, command: list[str]) -> None:
+def test_no_room_is_reported_and_leaves_nothing(tmp_path: Path, command: list[str]) -> None:
     ended = run(512, *(part.format(tmp_path) for part in command))
     assert ended.returncode == 2, ended.stderr
     assert "make room there, or name another place" in ended.stderr

@@ -60,7 +60,7 @@ def test_the_same_table(tmp_path: Path, text: str, encoding: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "message"),
     [
         ("F,T [°C],E' [MPa],E'' [MPa]\n3,20,2,0.3\n", ["frequency", "'F' may be a force", "--frequency"]),
         ("F [N],T [°C],E' [MPa],E'' [MPa]\n3,20,2,0.3\n3,20,3,0.5\n", ["frequency", "unit 'N'"]),
@@ -88,14 +88,14 @@ def test_the_same_table(tmp_path: Path, text: str, encoding: str) -> None:
         ("PK\x03\x04 zipped", ["Excel"]),
     ],
 )  # fmt: skip
-def test_refused_with_a_way_on(tmp_path: Path, text: str, says: list[str]) -> None:
+def test_refused_with_a_way_on(tmp_path: Path, text: str, message: list[str]) -> None:
     with pytest.raises(InputError) as caught:
         read_dma(write(tmp_path, text))
-    for part in says:
+    for part in message:
         assert part in str(caught.value)
 
 
-def test_what_the_user_says_settles_what_the_file_leaves_open(tmp_path: Path) -> None:
+def test_what_the_user_states_settles_what_the_file_leaves_open(tmp_path: Path) -> None:
     path = write(tmp_path, "f;T;E' [MPa];E'' [MPa]\n1,000;20,000;2,000;1,300\n")
     assert read_dma(path, decimal=",").storage_Pa[0] == 2e6
     with pytest.raises(InputError, match="not a number"):
@@ -160,12 +160,12 @@ def test_a_law_is_not_put_where_the_other_quantity_belongs(tmp_path: Path) -> No
     made = model_from_dict(model(pad("modulus.toml")), folder=tmp_path).line.laws["pad"]
     np.testing.assert_allclose(made.complex(10.0), 0.7 * 3.0 * laws["modulus"].law.complex(10.0))
     bare: dict[str, object] = {"file": "modulus.toml"}
-    for wrong, says in ((pad("stiffness.toml"), "--shape-factor"), (bare, 'type = "pad"')):
-        with pytest.raises(InputError, match=says):
+    for wrong, message in ((pad("stiffness.toml"), "--shape-factor"), (bare, 'type = "pad"')):
+        with pytest.raises(InputError, match=message):
             model_from_dict(model(wrong), folder=tmp_path)
 
 
-def test_the_answer_says_which_of_the_two_it_is(tmp_path: Path) -> None:
+def test_the_answer_states_which_of_the_two_it_is(tmp_path: Path) -> None:
     rows = "".join(f"{f},{1e6 * f**0.2:.6g},0.3249\n" for f in (1, 2, 5, 10, 20, 50))
     path = write(tmp_path, "f [Hz],K' [N/m],tan δ\n" + rows)
     answer = fit_table(path, output=tmp_path / "law.toml", law="springpot", shift="none")
@@ -196,7 +196,9 @@ def test_a_damping_factor_is_not_taken_for_a_loss_factor(tmp_path: Path) -> None
     )
 
 
-def test_the_command_takes_what_the_file_does_not_say(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_takes_what_the_file_does_not_state(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """A stiffness in a decimal comma that could be thousands, at a frequency that no column gives."""
     rows = "".join(f"{t},000;{k},125;0,325\n" for t, k in ((-40, 650), (-20, 130), (1, 26), (20, 13), (40, 11)))
     path = write(tmp_path, "T [°C];K' [kN/m];tan δ\n" + rows)

@@ -63,7 +63,7 @@ def test_isotherms_group_near_temperatures(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "message"),
     [
         ("", ["file is empty"]),
         ("# only remarks\n\n", ["file is empty"]),
@@ -93,11 +93,11 @@ def test_isotherms_group_near_temperatures(tmp_path: Path) -> None:
         ),
     ],
 )  # fmt: skip
-def test_tables_that_cannot_be_used(tmp_path: Path, text: str, says: list[str]) -> None:
+def test_tables_that_cannot_be_used(tmp_path: Path, text: str, message: list[str]) -> None:
     path = write(tmp_path, text)
     with pytest.raises(InputError) as caught:
         read_dma(path)
-    for part in [path.name, *says]:
+    for part in [path.name, *message]:
         assert part in str(caught.value)
 
 
@@ -123,7 +123,7 @@ def test_modulus_pair_keeps_the_quasi_static_line_apart(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("storage", "loss", "name", "says"),
+    ("storage", "loss", "name", "message"),
     [
         ("1\t10\n2\t20\n", "1\t0.1\n2\t0.1\n", "storage.tsv", "unit of the modulus"),
         ("1\t10\n1\t20\n", "1\t0.1\n2\t0.1\n", "storage_MPa.tsv", "line 2, column 'frequency'"),
@@ -134,7 +134,9 @@ def test_modulus_pair_keeps_the_quasi_static_line_apart(tmp_path: Path) -> None:
         ("0\t10\n", "5\t0.1\n9\t0.1\n", "storage_MPa.tsv", "no rows above 0 Hz"),
     ],
 )
-def test_modulus_pairs_that_cannot_be_used(tmp_path: Path, storage: str, loss: str, name: str, says: str) -> None:
+def test_modulus_pairs_that_cannot_be_used(
+    tmp_path: Path, storage: str, loss: str, name: str, message: str
+) -> None:
     with pytest.raises(InputError) as caught:
         read_modulus_pair(write(tmp_path, storage, name), write(tmp_path, loss, "loss.tsv"))
-    assert says in str(caught.value)
+    assert message in str(caught.value)

@@ -42,7 +42,7 @@ SWEEP = DmaTable(
 
 
 @pytest.mark.parametrize(
-    ("act", "where", "says"),
+    ("act", "where", "message"),
     [
         (lambda: SPRING.complex([1.0, 2.0, 0.0]), "frequency_Hz[2]", "got 0.0"),
         (lambda: SPRING.complex([1.0, -3.0]), "frequency_Hz[1]", "got -3.0"),
@@ -105,11 +105,11 @@ SWEEP = DmaTable(
         (lambda: identify(SWEEP, shift="none", weights=(1.0, 0.0)), "weights", "above zero"),
     ],
 )  # fmt: skip
-def test_wrong_arguments(act: Callable[[], object], where: str, says: str) -> None:
+def test_wrong_arguments(act: Callable[[], object], where: str, message: str) -> None:
     with pytest.raises(InputError) as caught:
         act()
     assert where in str(caught.value)
-    assert says in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_a_sweep_over_temperature_needs_a_shift() -> None:
@@ -124,7 +124,7 @@ def test_a_sweep_over_temperature_needs_a_shift() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "message"),
     [
         ("[law]\ntype = ", "not TOML"),
         ('name = "x"\n', "no table named law"),
@@ -137,12 +137,12 @@ def test_a_sweep_over_temperature_needs_a_shift() -> None:
         ('[law]\ntype = "zener"\nrelaxed = 1.0\nunrelaxed = 2.0\n', "law.relaxation_time_s"),
     ],
 )
-def test_wrong_law_files(tmp_path: Path, text: str, says: str) -> None:
+def test_wrong_law_files(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "LAW.toml"
     path.write_text(text)
     with pytest.raises(InputError) as caught:
         load_law(path)
-    assert says in str(caught.value)
+    assert message in str(caught.value)
     assert "LAW.toml" in str(caught.value)
 
 

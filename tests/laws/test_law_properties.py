@@ -171,7 +171,7 @@ def test_the_papers_pair_is_not_causal() -> None:
         (FVMP(mu1=1.0, eta1=0.0, mu2=1.0, eta2=1.0, alpha=2.5, beta=2.6, gamma=0.5), None, False, "not below 2"),
     ],
 )
-def test_unphysical_parameters_are_said(law: Law, passive: bool | None, causal: bool, word: str) -> None:
+def test_unphysical_parameters_are_reported(law: Law, passive: bool | None, causal: bool, word: str) -> None:
     found = law.check(BAND)
     if passive is not None:
         assert found.passive is passive

@@ -55,7 +55,7 @@ def test_a_common_factor_comes_back() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "message"),
     [
         ("freq_hz,base\n1,2\n", "no column base_accel_ms2"),
         (HEADER, "no rows"),
@@ -65,9 +65,9 @@ def test_a_common_factor_comes_back() -> None:
         (HEADER + "10,1,0,1,0\n0,1,0,1,0\n", "frequency_Hz[1]"),
     ],
 )
-def test_records_that_cannot_be_used(tmp_path: Path, text: str, says: str) -> None:
+def test_records_that_cannot_be_used(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "record.csv"
     path.write_text(text)
     with pytest.raises(InputError) as caught:
         read_shaker(path)
-    assert says in str(caught.value)
+    assert message in str(caught.value)

@@ -235,7 +235,7 @@ def test_impedance_from_a_file_beside_the_model(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("model", "rows", "says"),
+    ("model", "rows", "message"),
     [
         (MODEL, ROWS.replace("real", "re"), r"laws.soil.file: .*soil.csv, line 2: no column real"),
         (MODEL, ROWS.replace("2e5,-3e5", "2e5,"), r"line 4, column imaginary: the cell is empty"),
@@ -256,14 +256,14 @@ def test_impedance_from_a_file_beside_the_model(tmp_path):
         ),
     ],
 )  # fmt: skip
-def test_wrong_tables(model, rows, says, tmp_path):
-    with pytest.raises(InputError, match=says) as caught:
+def test_wrong_tables(model, rows, message, tmp_path):
+    with pytest.raises(InputError, match=message) as caught:
         read_model(write(tmp_path, model, rows))
     assert str(caught.value).startswith(str(tmp_path))
 
 
 @pytest.mark.parametrize(
-    ("function", "says"),
+    ("function", "message"),
     [
         (lambda f: 1e8, r"function: the given function must return one number for each frequency \(got \(\)\)"),
         (lambda f: "stiff", r"function: the given function fails"),
@@ -271,13 +271,13 @@ def test_wrong_tables(model, rows, says, tmp_path):
         (lambda f: np.full(f.shape, 1e8 - 1e7j), r"laws.soil: the law creates energy at 4 Hz"),
     ],
 )
-def test_wrong_functions(function, says):
+def test_wrong_functions(function, message):
     line = with_it(Joints(between=("slab", GROUND), law="soil", at=(3.0,)), soil=Given(function=function))
-    with pytest.raises(InputError, match=says):
+    with pytest.raises(InputError, match=message):
         respond(line, [Place(body="slab", x_m=3.0)])
 
 
-def test_a_model_with_a_function_is_solved_and_told_without_it():
+def test_a_model_with_a_function_is_solved_and_reported_without_it():
     model = model_from_dict(
         {
             "frequencies": {"values_Hz": [5.0]},

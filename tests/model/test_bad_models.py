@@ -644,7 +644,7 @@ def test_endless_file():
 
 
 @pytest.mark.parametrize(
-    ("content", "says"),
+    ("content", "message"),
     [
         (b"title = 'r\xe9sonance'", "byte 10: is not text in UTF-8; save it as UTF-8"),
         (b"\xff\xfet\x00", "byte 0: is not text in UTF-8"),
@@ -657,13 +657,13 @@ def test_endless_file():
         (b"<?xml version='1.0'?>", "is not TOML: Invalid statement (at line 1"),
     ],
 )
-def test_not_a_model_file(content, says, tmp_path):
+def test_not_a_model_file(content, message, tmp_path):
     path = tmp_path / "model.toml"
     path.write_bytes(content)
     with pytest.raises(InputError) as caught:
         read_model(path)
     assert str(caught.value).startswith(str(path))
-    assert says in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_byte_order_mark_is_no_fault(tmp_path):

@@ -313,7 +313,7 @@ def test_rails_that_share_nothing_do_not_hear_each_other():
     assert np.abs(other).max() < 1e-12 * np.abs(same).max()
 
 
-def test_the_antisymmetric_half_says_what_it_is():
+def test_the_antisymmetric_half_states_what_it_is():
     odd = antisymmetric(slabs(), SLAB_ROLL)
     slab = odd.bodies["slab"]
     assert isinstance(slab, Shaft)
@@ -347,7 +347,7 @@ def test_a_preset_on_two_rails():
 
 
 @pytest.mark.parametrize(
-    ("changed", "says"),
+    ("changed", "message"),
     [
         ({"bodies": {"slap": SLAB_ROLL.bodies["slab"]}}, r"bodies.slap: the line has no such name; use one of"),
         ({"laws": {"mortal": Lever(arm_m=1.0)}}, r"laws.mortal: the line has no such name"),
@@ -359,9 +359,9 @@ def test_a_preset_on_two_rails():
         ),
     ],
 )
-def test_a_roll_that_does_not_fit(changed, says):
+def test_a_roll_that_does_not_fit(changed, message):
     roll = SLAB_ROLL.model_copy(update=changed)
-    with pytest.raises(InputError, match=says):
+    with pytest.raises(InputError, match=message):
         antisymmetric(slabs(), roll)
 
 

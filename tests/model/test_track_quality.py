@@ -90,7 +90,7 @@ def test_a_table_over_cycles_per_metre_is_the_one_over_wavenumber() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "message"),
     [
         ('type = "en13848"\nD1_mm = 1.0\nD3_mm = 2.0\n', "leaves a gap"),
         ('type = "en13848"\nD1_mm = 900.0\n', "give it in mm"),
@@ -99,10 +99,10 @@ def test_a_table_over_cycles_per_metre_is_the_one_over_wavenumber() -> None:
         ('type = "table_per_cycle"\ncycles_per_m = [0.01, 0.1]\ndensity_mm2_m = [1.0, 0.0]\n', "above zero"),
     ],
 )
-def test_recorded_irregularities_that_cannot_be(tmp_path: Path, text: str, says: str) -> None:
+def test_recorded_irregularities_that_cannot_be(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "model.toml"
     path.write_text("[irregularity]\n" + text)
-    with pytest.raises(InputError, match=says):
+    with pytest.raises(InputError, match=message):
         irregularity_of(path)
 
 
@@ -123,7 +123,7 @@ def test_a_profile_has_the_spectrum_it_was_drawn_from() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "says"),
+    ("options", "message"),
     [
         ({"length_m": 0.0, "spacing_m": 0.5}, "length_m"),
         ({"length_m": 10.0, "spacing_m": float("nan")}, "spacing_m"),
@@ -132,8 +132,8 @@ def test_a_profile_has_the_spectrum_it_was_drawn_from() -> None:
         ({"length_m": 10.0, "spacing_m": 0.5, "seed": -1}, "seed"),
     ],
 )
-def test_profiles_that_cannot_be_drawn(options: dict[str, float], says: str) -> None:
-    with pytest.raises(InputError, match=says):
+def test_profiles_that_cannot_be_drawn(options: dict[str, float], message: str) -> None:
+    with pytest.raises(InputError, match=message):
         draw_profile(GermanLow(), **options)  # type: ignore[arg-type]
 
 
@@ -169,7 +169,7 @@ def test_the_command_reads_only_the_irregularity(tmp_path: Path, capsys: pytest.
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "message"),
     [
         ("[line]\n", "has no irregularity"),
         ("irregularity = 3\n", "must be a table"),
@@ -177,9 +177,9 @@ def test_the_command_reads_only_the_irregularity(tmp_path: Path, capsys: pytest.
         ('[irregularity]\ntype = "german_low"\nscale = -1.0\n', "irregularity"),
     ],
 )
-def test_files_without_a_usable_irregularity(tmp_path: Path, text: str, says: str) -> None:
+def test_files_without_a_usable_irregularity(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "model.toml"
     path.write_text(text)
-    with pytest.raises(InputError, match=says) as caught:
+    with pytest.raises(InputError, match=message) as caught:
         irregularity_of(path)
     assert "model.toml" in str(caught.value)

@@ -209,7 +209,7 @@ def test_a_suspension_is_described_once() -> None:
     assert caught.value.where.endswith("additions[1]")
 
 
-def test_the_model_file_says_additions(tmp_path) -> None:
+def test_the_model_file_states_additions(tmp_path) -> None:
     table = {
         "format": 1,
         "frequencies": {"from_Hz": 5.0, "to_Hz": 20.0, "step_Hz": 5.0},

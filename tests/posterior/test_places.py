@@ -61,7 +61,7 @@ def member(
     return Member(tuple(hypothesis(*one) for one in at), cast(object, fit), (-6.0,) * len(at))  # type: ignore[arg-type]
 
 
-def test_a_place_that_is_told_exactly_holds_all_of_its_probability(campaign: Campaign) -> None:
+def test_a_place_that_is_constrained_exactly_holds_all_of_its_probability(campaign: Campaign) -> None:
     lost = member(campaign, ("lost", stretch(0.7), 6.0, 1e-6), nats=90.0)
     found = weighed(Masses.of([member(campaign), lost]))
     (one,) = found.along
@@ -73,8 +73,8 @@ def test_a_place_that_is_told_exactly_holds_all_of_its_probability(campaign: Cam
     assert found.aside == ()
 
 
-def test_a_place_that_is_hardly_told_is_spread_as_the_normal_distribution(campaign: Campaign) -> None:
-    point = member(campaign, ("hung", lambda x: Where("deck", (x, x)), 6.0, 1.5), nats=90.0)
+def test_a_place_that_is_hardly_constrained_is_spread_as_the_normal_distribution(campaign: Campaign) -> None:
+    point = member(campaign, ("attached", lambda x: Where("deck", (x, x)), 6.0, 1.5), nats=90.0)
     (one,) = weighed(Masses.of([member(campaign), point])).along
     assert not one.joints
     assert float(one.probability.sum()) == pytest.approx(1.0, abs=1e-3)
@@ -83,7 +83,7 @@ def test_a_place_that_is_hardly_told_is_spread_as_the_normal_distribution(campai
     assert float(one.probability[inside].sum()) == pytest.approx(0.9, abs=0.07)
 
 
-def test_all_probabilities_sum_to_one_and_what_has_no_place_is_told_beside(campaign: Campaign) -> None:
+def test_all_probabilities_sum_to_one_and_what_has_no_place_is_reported_beside(campaign: Campaign) -> None:
     loud = member(campaign, ("gain", lambda _: Where(channels=("deck@3",)), 0.0, 1.0), nats=88.0, novel=0.2)
     lost = member(campaign, ("lost", stretch(0.6), 6.0, 1e-6), nats=90.0, novel=0.2)
     found = weighed(Masses.of([member(campaign), lost, loud]))
@@ -98,7 +98,7 @@ def test_all_probabilities_sum_to_one_and_what_has_no_place_is_told_beside(campa
     assert [one.behind_nats for one in found.rivals] == pytest.approx([0.0, 2.0, 84.0 - np.log(1.0)], abs=1e-9)
 
 
-def test_where_nothing_is_missing_the_map_says_where_was_looked(campaign: Campaign) -> None:
+def test_where_nothing_is_missing_the_map_states_where_was_looked(campaign: Campaign) -> None:
     only = member(campaign)
     lost = member(campaign, ("lost", stretch(0.6), 6.0, 1.0), nats=-30.0)
     tried = [Cell(lost.amendments[0], np.array([z]), 0.0) for z in (-1.0, 0.0, 0.0, 2.0)]

@@ -71,7 +71,7 @@ def campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
     return simulate(folder, 41, amend=lambda c: weakened(c, "pad", 6.0, 1.2, 0.3)).campaign
 
 
-def test_a_stopped_diagnosis_goes_on_and_says_the_same_to_the_last_bit(
+def test_a_stopped_diagnosis_goes_on_and_states_the_same_to_the_last_bit(
     campaign: Campaign, tmp_path: Path, counting: Callable[..., Steps]
 ) -> None:
     folder, key = tmp_path / FOLDER, key_of(campaign, OTHERS)
@@ -143,16 +143,16 @@ def test_a_file_that_is_not_whole_is_no_step(tmp_path: Path, spoil: Callable[[by
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the processor time of another process from /proc")
 def test_ctrl_c_ends_the_command_at_once_and_the_same_command_goes_on(campaign: Campaign, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    steps, said = out / FOLDER, tmp_path / "said"
+    steps, printed = out / FOLDER, tmp_path / "printed"
     # A program that is started in the background ignores SIGINT, and what it starts inherits that.
     start = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
     start += "from permway.posterior import cells; cells.BESIDE.clear(); import permway.__main__"
     asked = ["diagnose", str(campaign.folder / campaign.file), "-o", str(out), "--no-report"]
     command = [sys.executable, "-c", start, *asked, *(word for name in OTHERS for word in ("--rule-out", name))]
-    with said.open("w") as file:
+    with printed.open("w") as file:
         process = subprocess.Popen(command, stdout=file, stderr=file)
     while not list(steps.glob("step-*.npz")):
-        assert process.poll() is None, said.read_text()
+        assert process.poll() is None, printed.read_text()
         time.sleep(0.01)
     used = processor_s(process.pid)
     process.send_signal(signal.SIGINT)
@@ -161,7 +161,7 @@ def test_ctrl_c_ends_the_command_at_once_and_the_same_command_goes_on(campaign: 
     assert os.waitstatus_to_exitcode(status) == 130
     # Of processor, for others may be busy on this machine.
     assert usage.ru_utime + usage.ru_stime - used < 1.0
-    assert said.read_text().splitlines() == ["permway: interrupted"]
+    assert printed.read_text().splitlines() == ["permway: interrupted"]
     assert not (out / "verdict.json").exists()
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stderr

@@ -76,7 +76,7 @@ def test_the_answer_does_not_depend_on_how_many_processes_share_the_work(tmp_pat
     assert diagnose(campaign, threads=2).verdict == diagnose(campaign, threads=1).verdict
 
 
-def test_a_wrong_stated_value_is_said_with_the_value_that_fits(
+def test_a_wrong_stated_value_is_reported_with_the_value_that_fits(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """All pads are softer by some 30 % than stated, at a tolerance of 5 %."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from permway.diagnosis.hypothesis import Hypothesis, Where, linear_free, log_free
-from permway.posterior.spans import WIDER, begun, tuned, widened
+from permway.posterior.spans import WIDER, tuned, widened, with_starts
 
 BAND_HZ = (2.0, 1600.0)
 
@@ -61,8 +61,8 @@ def test_its_frequency_is_evenly_likely_in_its_logarithm() -> None:
 
 
 def test_what_starts_at_nothing_starts_on_either_side() -> None:
-    assert begun(level()).starts == ((-1.0,), (1.0,))
-    assert begun(resonator()).starts == resonator().starts
+    assert with_starts(level()).starts == ((-1.0,), (1.0,))
+    assert with_starts(resonator()).starts == resonator().starts
 
 
 def test_sizes_span_four_times_as_many_orders_from_the_same_starts() -> None:

@@ -74,7 +74,7 @@ def test_a_run_with_no_channel_left_is_left_out(campaign: Campaign) -> None:
         without_bad_channels(campaign.with_records(runs[:1]))
 
 
-def test_a_verdict_says_what_channels_were_bad() -> None:
+def test_a_verdict_states_what_channels_were_bad() -> None:
     plain = with_bad_channels(Verdict(status="recalibrated"), [CLIPPED])
     assert (plain.status, plain.effects[0].name) == ("measurement", "clipping")
     assert plain.effects[0].place.channels == ("axlebox2",)

@@ -21,7 +21,7 @@ from permway.errors import InputError
 Table = dict[str, Any]
 
 
-def test_reads_what_it_says(tmp_path: Path) -> None:
+def test_reads_what_it_states(tmp_path: Path) -> None:
     campaign = small(tmp_path)
     assert [sensor.name for sensor in campaign.stated.sensors] == ["rail@12", "deck@6", "axle", "floor"]
     assert campaign.condition("fast").speed_m_per_s == pytest.approx(50.0)

@@ -149,7 +149,7 @@ def test_a_pair_that_was_not_measured_stays_empty(tmp_path: Path) -> None:
     assert np.isfinite(data["log_variance"].sel(sensor="deck@6", force="hit far").values).all()
 
 
-def test_responses_without_coherence_or_averages_are_refused_for_nothing_says_how_sure_they_are(
+def test_responses_without_coherence_or_averages_are_refused_for_nothing_states_how_sure_they_are(
     tmp_path: Path,
 ) -> None:
     campaign = campaign_with(tmp_path)

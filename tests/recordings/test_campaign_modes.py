@@ -107,7 +107,7 @@ def two_decks() -> dict:
 
 
 @pytest.mark.parametrize("shapes", [True, False])
-def test_shapes_tell_modes_that_changed_places(tmp_path: Path, shapes: bool) -> None:
+def test_shapes_distinguish_modes_that_changed_places(tmp_path: Path, shapes: bool) -> None:
     """The listed first mode is that of the deck; a softer deck has it below that of the other one."""
     model = two_decks()
     channels = {"deck": "a", "other": "z"}

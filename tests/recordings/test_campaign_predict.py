@@ -244,7 +244,7 @@ def test_decay_rate_by_the_blows_of_the_standard(tmp_path: Path) -> None:
         ({"degree": None, "body": "rail", "x_m": 3.0}, "beside the track"),
     ],
 )
-def test_what_cannot_be_predicted_is_said(tmp_path: Path, change: dict[str, Any], what: str) -> None:
+def test_what_cannot_be_predicted_is_reported(tmp_path: Path, change: dict[str, Any], what: str) -> None:
     campaign, model = tables()
     campaign["sensors"][3] = {k: v for k, v in {**campaign["sensors"][3], **change}.items() if v is not None}
     read = read_campaign(write(tmp_path, campaign, model))

@@ -155,7 +155,7 @@ def test_rubber_rig_by_its_campaign(tmp_path: Path) -> None:
     assert rms_dB(predict(rubber, [table])[0]["modulus"].values, table.data["modulus"].values) < 1.0
 
 
-def test_rubber_that_is_shaken_says_what_its_dma_knows(tmp_path: Path) -> None:
+def test_rubber_that_is_shaken_states_what_its_dma_knows(tmp_path: Path) -> None:
     """The DMA withheld, and a data sheet's modulus instead: the order is that of the law that the DMA gives."""
     folder = SHARED / "recordings" / "rubber-rig"
     _, sheet = import_rubber_rig(folder, tmp_path / "sheet", law="constant")
@@ -180,7 +180,7 @@ def test_rubber_that_is_shaken_says_what_its_dma_knows(tmp_path: Path) -> None:
     raises=AssertionError,
     reason="0.43 dB are left of one group, since decibels are of the model solved and not of its slopes",
 )
-def test_rubber_that_is_shaken_is_foretold_to_four_tenths_of_a_decibel(tmp_path: Path) -> None:
+def test_rubber_that_is_shaken_is_predicted_to_four_tenths_of_a_decibel(tmp_path: Path) -> None:
     _, sheet = import_rubber_rig(SHARED / "recordings" / "rubber-rig", tmp_path / "sheet", law="constant")
     for gain in diagnose(sheet, threads=1).verdict.held_out.values():
         assert gain.db_after < 0.4 < gain.db_before

@@ -145,7 +145,7 @@ def coverages(count, seed=SEED, records=RECORDS):
 
 
 @pytest.mark.parametrize("count", [8, 16, 40])
-def test_intervals_cover_what_they_say(count):
+def test_intervals_cover_what_they_state(count):
     """Between 93 and 97 %: with 400 records of some 50 independent lines chance alone moves a share by 0.2 %."""
     found = coverages(count)
     assert len(found) == 7

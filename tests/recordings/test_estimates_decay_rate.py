@@ -162,7 +162,7 @@ def test_intervals_cover(rate):
     assert float(found["log_variance"].mean()) == pytest.approx(met, rel=0.15)
 
 
-def test_noise_bias_is_said():
+def test_noise_bias_is_reported():
     """Noise at half the response's size at the far places lowers the rate as read, by what the dataset states."""
     rng = np.random.default_rng(3)
     position = grid_positions(0.6)

@@ -61,7 +61,7 @@ def test_coherence_interval_inverts_the_distribution():
     assert np.all((low < sample) & (sample < high))
 
 
-def test_no_coherence_is_within_the_interval_as_often_as_said():
+def test_no_coherence_is_within_the_interval_as_often_as_stated():
     """Without coherence the sample exceeds 1 - 0.025^(1/(K-1)) in 2.5 % (closed form); up to there 0 is within."""
     averages = 9.0
     edge = 1.0 - 0.025 ** (1.0 / (averages - 1.0))

@@ -53,7 +53,7 @@ def coloured(rng, count, samples):
     return np.fft.irfft((draw[0] + 1j * draw[1]) * root, period, axis=1)[:, :samples]
 
 
-def test_false_alarms_are_as_said():
+def test_false_alarms_are_as_stated():
     """Noise alone, 600 records at a varying speed: the probability of the F-test is uniform."""
     rng, distance = np.random.default_rng(21), speeding(3000)
     wavelength = wheel_orders(DIAMETER_M, [1, 3, 5])

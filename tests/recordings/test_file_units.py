@@ -1,4 +1,4 @@
-"""Units that files state of their channels: who corrects a sensor is told to correct these, too."""
+"""Units that files state of their channels: who corrects a sensor is asked to correct these, too."""
 
 from __future__ import annotations
 

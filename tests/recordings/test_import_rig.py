@@ -50,7 +50,7 @@ def test_each_level_is_predicted_for_its_mass(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "what"), [("253g", "states not both a level and a mass"), ("1g_heavy", "states no mass")]
 )
-def test_a_record_that_does_not_say_level_and_mass_is_refused(tmp_path: Path, name: str, what: str) -> None:
+def test_a_record_that_does_not_state_level_and_mass_is_refused(tmp_path: Path, name: str, what: str) -> None:
     folder = make_rig(tmp_path / "rig", BOTH)
     (folder / "rubber" / "shaker" / "1g_253g.csv").rename(folder / "rubber" / "shaker" / f"{name}.csv")
     with pytest.raises(InputError, match=f"{name}.csv: {what}.*; name it by level and mass, as 1g_253g.csv"):

@@ -238,7 +238,7 @@ def test_records_that_lie_in_the_folder_stay_as_they_are(given: dict[str, Path],
 
 
 @pytest.mark.parametrize("which", IMPORTERS)
-def test_no_place_to_write_is_said_first(which: str, given: dict[str, Path], tmp_path: Path) -> None:
+def test_no_place_to_write_is_reported_first(which: str, given: dict[str, Path], tmp_path: Path) -> None:
     (tmp_path / "file").write_text("no folder\n")
     for out, what in ((tmp_path / "no" / "out", "there is no such folder"), (tmp_path / "file", "is a file")):
         with pytest.raises(InputError, match=what):

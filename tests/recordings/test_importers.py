@@ -44,7 +44,7 @@ def test_the_campaigns_folder_is_complete_in_itself(campaign: Campaign) -> None:
     assert "/" not in "".join(record.file for record in campaign.stated.records)
 
 
-def test_what_the_sheet_says_is_in_the_campaign(campaign: Campaign) -> None:
+def test_what_the_sheet_states_is_in_the_campaign(campaign: Campaign) -> None:
     nominal = campaign.parameters.nominal()
     assert nominal["pad.k"] == 5.8e7
     assert nominal["vehicle.kp"] == 1.176e6
@@ -106,7 +106,7 @@ def test_records_can_stay_where_they_are(folder: Path, tmp_path: Path) -> None:
     assert campaign.path(campaign.stated.records[0]) == folder / "hammer_+12C.mat"
 
 
-def test_a_second_import_says_the_same(folder: Path, campaign: Campaign, tmp_path: Path) -> None:
+def test_a_second_import_states_the_same(folder: Path, campaign: Campaign, tmp_path: Path) -> None:
     again = import_sheet(folder, tmp_path / "out")
     for name in ("campaign.toml", "model.toml"):
         assert (again.folder / name).read_text() == (campaign.folder / name).read_text()
@@ -153,7 +153,7 @@ SHEET_FAULTS: list[tuple[Callable[[Any], None], str, str]] = [
 @pytest.mark.parametrize(
     ("change", "where", "what"), SHEET_FAULTS, ids=[f"{i}-{f[1]}" for i, f in enumerate(SHEET_FAULTS)]
 )
-def test_a_sheet_at_fault_is_told_with_its_place(
+def test_a_sheet_at_fault_is_reported_with_its_place(
     folder: Path, tmp_path: Path, change: Callable[[Any], None], where: str, what: str
 ) -> None:
     broken = tmp_path / "team"

@@ -140,7 +140,7 @@ def test_a_model_with_a_train_against_itself_and_against_softer_pads() -> None:
 
 
 @pytest.mark.parametrize(
-    ("act", "says"),
+    ("act", "message"),
     [
         (lambda: permway.insertion_loss("a.nc", oscillator(1e6)), "without: must be a Dataset"),
         (lambda: permway.insertion_loss(oscillator(1e6), oscillator(1e6, FREQUENCY + 0.1)), "other frequencies"),
@@ -148,6 +148,6 @@ def test_a_model_with_a_train_against_itself_and_against_softer_pads() -> None:
         (lambda: permway.insertion_loss(*[oscillator(1e6, FREQUENCY[:4])] * 2), "no one-third octave"),
     ],
 )
-def test_what_cannot_be_compared_is_refused(act, says: str) -> None:
-    with pytest.raises(InputError, match=says):
+def test_what_cannot_be_compared_is_refused(act, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         act()

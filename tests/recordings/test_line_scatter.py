@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from campaigns import tables, write
 from permway.campaign.campaign import Campaign, read_campaign
-from permway.diagnosis.thinning import thinned
+from permway.diagnosis.frf_lines import thinned
 from permway.errors import InputError
 from permway.recordings.line_scatter import FREEDOM, scatter_variance
 
@@ -74,7 +74,7 @@ def written(folder: Path, *, coherence: bool = False, **record: Any) -> Campaign
     return read_campaign(write(folder, campaign, model))
 
 
-def test_a_record_without_coherence_says_what_stands_for_it(tmp_path: Path) -> None:
+def test_a_record_without_coherence_states_what_stands_for_it(tmp_path: Path) -> None:
     (dataset,) = written(tmp_path, averages=None).load()
     data = dataset.data
     assert data.attrs["noise"] == "scatter"
@@ -93,14 +93,14 @@ def test_a_record_without_coherence_says_what_stands_for_it(tmp_path: Path) -> N
         ({"averages": 8}, False, "without averages"),
     ],
 )
-def test_what_tells_the_noise_is_never_guessed(
+def test_what_states_the_noise_is_never_guessed(
     tmp_path: Path, record: dict[str, Any], coherence: bool, message: str
 ) -> None:
     with pytest.raises(InputError, match=message):
         written(tmp_path, coherence=coherence, **record).load()
 
 
-def test_a_record_says_how_many_lines_its_resonances_take(tmp_path: Path) -> None:
+def test_a_record_states_how_many_lines_its_resonances_take(tmp_path: Path) -> None:
     coarse = thinned(written(tmp_path, averages=None).load()[0])
     fine = thinned(written(tmp_path, averages=None, lines_per_frequency=1e4).load()[0])
     assert np.diff(coarse.frequency_Hz).min() >= coarse.frequency_Hz[0] / 40.0 - 1e-9

@@ -108,7 +108,7 @@ def test_places_of_nodes(kind: int, length: float | None, scale: float, tmp_path
     assert [s.x_m for s in sensors] == [pytest.approx(at[0] * scale) for at in place.values()]
 
 
-def test_what_is_missing_is_said_with_its_key(tmp_path: Path) -> None:
+def test_what_is_missing_is_reported_with_its_key(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("time,a\n" + "".join(f"{2 * i},{i % 3}\n" for i in range(20)))
     result = look(path)

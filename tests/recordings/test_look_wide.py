@@ -38,7 +38,7 @@ def test_a_wide_table_is_looked_at_as_it_is_begun_with(wide: Path) -> None:
     assert export.shows["holds"] == "2 x 1 responses"
 
 
-def test_a_table_over_frequency_says_what_it_lacks_of_responses(tmp_path: Path) -> None:
+def test_a_table_over_frequency_states_what_it_lacks_of_responses(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("Frequency [Hz],a Real [g/N],b Imag [g/N]\n10,1,2\n20,1,2\n")
     (problem,) = look(path)["problems"]

@@ -241,7 +241,7 @@ def test_a_slow_clock_takes_from_cross_spectra_what_it_takes_from_samples(
         ),
     ],
 )
-def test_faults_are_said_with_their_place(tmp_path: Path, stated: dict[str, Any], where: str) -> None:
+def test_faults_are_reported_with_their_place(tmp_path: Path, stated: dict[str, Any], where: str) -> None:
     with pytest.raises(InputError, match=where):
         campaign_with(tmp_path, stated)
 

@@ -74,7 +74,7 @@ def test_sliders_that_move_otherwise(cars: int, additions: tuple[AnyAddition, ..
         np.testing.assert_allclose(influence_of(moving) / size, expected / size, rtol=0.0, atol=1e-10)
 
 
-def test_forces_whose_density_is_no_density_are_said_and_where() -> None:
+def test_forces_whose_density_is_no_density_are_reported_and_where() -> None:
     """Of two ties: all but one force is well, for rounding; what takes power away is not."""
     alike = np.full((3, 2, 2), 4.0 + 0.0j)
     rows = np.eye(2)

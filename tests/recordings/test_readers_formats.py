@@ -234,7 +234,7 @@ def test_table_of_arrays(tmp_path: Path) -> None:
     np.testing.assert_array_equal(table.numbers("G"), [1.0, 2.0])
 
 
-def test_what_the_caller_knows_is_taken_where_the_file_says_nothing(tmp_path: Path) -> None:
+def test_what_the_caller_knows_is_taken_where_the_file_states_nothing(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("a,b\n1,2\n3,4\n")
     record = read_time(path, units={"a": "g"}, sampling_Hz=100)

@@ -278,7 +278,7 @@ def test_only_the_pairs_asked_for_must_be_sound(even: bool, binary: bool, tmp_pa
     np.testing.assert_array_equal(record.values[0, 1:], np.full(5, 1j))
 
 
-def test_labels_that_tie_are_told_apart(tmp_path: Path) -> None:
+def test_labels_that_tie_are_distinguished(tmp_path: Path) -> None:
     path = tmp_path / "a.uff"
     for name, quantity in (("left", 12), ("right", 12)):
         dataset = pyuff.prepare_58(

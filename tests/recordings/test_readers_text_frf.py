@@ -62,7 +62,7 @@ HEADER = "frequency;sensor;force;real;imaginary;coherence"
         ([HEADER, *[row.replace("0.9", "1.9") for row in rows("parts")]], "coherence"),
     ],
 )
-def test_what_cannot_be_used_is_said(tmp_path: Path, lines: list[str], stated: str) -> None:
+def test_what_cannot_be_used_is_reported(tmp_path: Path, lines: list[str], stated: str) -> None:
     path = tmp_path / "frf.csv"
     path.write_text("\n".join(lines) + "\n")
     with pytest.raises(InputError, match=stated):

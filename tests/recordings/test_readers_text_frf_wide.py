@@ -90,7 +90,7 @@ def test_names_over_joined_cells(tmp_path: Path) -> None:
     np.testing.assert_array_equal(record.values, [H, 2 * H])
 
 
-def test_names_that_do_not_say_what_was_struck(tmp_path: Path) -> None:
+def test_names_that_do_not_state_what_was_struck(tmp_path: Path) -> None:
     path = wide(tmp_path, ["f [Hz];H1 [g/N];H2 [g/N]"], [cells(F), [str(h) for h in H], [str(2 * h) for h in H]])
     with pytest.raises(InputError, match=r"cannot be determined from a name \(got 'H1'\).*pairs = \{ \"H1\" ="):
         read_frf(path)

@@ -61,7 +61,7 @@ def test_a_coherence_of_nobody_knows_which(tmp_path: Path) -> None:
         read_frf(path, responses=["1:+Z (version 2)"])
 
 
-def test_functions_that_nothing_tells_apart(tmp_path: Path) -> None:
+def test_functions_that_nothing_distinguishes(tmp_path: Path) -> None:
     path = tmp_path / "a.uff"
     for _ in range(2):
         function(path, 4, F + 1j, F, ver_num=1)
@@ -158,7 +158,7 @@ def test_cross_spectra_that_are_missing_or_of_another_scale(tmp_path: Path) -> N
         campaign(tmp_path, "b.uff", averages=80.0).load()
 
 
-def test_an_auto_spectrum_does_not_say_that_it_is_a_density(tmp_path: Path) -> None:
+def test_an_auto_spectrum_does_not_state_that_it_is_a_density(tmp_path: Path) -> None:
     function(tmp_path / "a.uff", 2, np.ones(50), 2.0 * np.arange(50), ref_node=1)
     one = {"averages": 80.0, "channels": {"1:+Z": "axle"}}
     with pytest.raises(InputError, match=r"densities is not stated.*\"\(m/s2\)\^2/Hz\""):

@@ -58,7 +58,9 @@ def test_over_supports_that_repeat(tmp_path: Path) -> None:
         ({"bodies": short}, "rail is too short: what rolls is followed from -5.2 to 38.7 m"),
     ],
 )
-def test_not_where_they_cannot_and_then_it_is_said_why(tmp_path: Path, changes: dict[str, Any], why: str) -> None:
+def test_not_where_they_cannot_and_then_it_is_reported_why(
+    tmp_path: Path, changes: dict[str, Any], why: str
+) -> None:
     read = campaign(tmp_path, **changes)
     assert read.stated.irregularity.rolls is None
     assert read.summary()["trains"] == f"stand: {why}"
@@ -67,7 +69,7 @@ def test_not_where_they_cannot_and_then_it_is_said_why(tmp_path: Path, changes: 
     assert "irregularity.rolling" in str(reported.value)
 
 
-def test_a_campaign_may_say_that_they_stand(tmp_path: Path) -> None:
+def test_a_campaign_may_state_that_they_stand(tmp_path: Path) -> None:
     read = campaign(tmp_path, False)
     assert read.stated.irregularity.rolls is None
     assert read.summary()["trains"] == "stand, as the campaign file states"
@@ -75,7 +77,7 @@ def test_a_campaign_may_say_that_they_stand(tmp_path: Path) -> None:
     assert read.with_values({"pad.k": 5.5e7}).stated.irregularity.rolls is None
 
 
-def test_a_campaign_may_say_what_they_roll_over(tmp_path: Path) -> None:
+def test_a_campaign_may_state_what_they_roll_over(tmp_path: Path) -> None:
     known = campaign(tmp_path, {"spacing_m": 0.65}, joints=uneven).stated.irregularity.rolls
     assert known is not None
     assert known.model_copy(update={"about": None}) == Rolling(spacing_m=0.65)
@@ -99,7 +101,7 @@ def test_without_a_run_there_is_nothing_to_roll(tmp_path: Path) -> None:
         read_campaign(write(tmp_path, stated, model))
 
 
-def test_a_check_says_so(tmp_path: Path) -> None:
+def test_a_check_states_so(tmp_path: Path) -> None:
     stated, model = tables()
     del stated["irregularity"]["rolling"]
     path = write(tmp_path, stated, model)

@@ -129,7 +129,7 @@ def test_a_dropout_in_quantised_samples() -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_spikes(seed: int) -> None:
     x = noise(seed)
-    # White noise is foretold by nothing: only what stands out of its level is a spike.
+    # White noise is predicted by nothing: only what stands out of its level is a spike.
     size = 6.0 * x.std() if seed == 0 else 2.0 * x.std()
     for at, sign in ((40, 1.0), (12_345, -1.0), (30_000, 1.0)):
         x[at] += sign * size * (2.0 if seed == 0 else 1.0)

@@ -111,7 +111,7 @@ def test_nothing_is_written_where_something_stands_or_nothing_is_read(exports: P
     assert [path.name for path in empty.iterdir()] == ["a.tdms"]
 
 
-def test_the_command_says_what_it_found(exports: Path) -> None:
+def test_the_command_states_what_it_found(exports: Path) -> None:
     command = [sys.executable, "-m", "permway", "new", str(exports), "--json"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=240)
     assert (done.returncode, done.stderr) == (0, "")

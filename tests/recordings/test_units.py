@@ -118,7 +118,7 @@ def test_levels() -> None:
         ("kdB", "not known"),
     ],
 )
-def test_what_is_no_unit_is_told_with_the_nearest(text: str, stated: str) -> None:
+def test_what_is_no_unit_is_reported_with_the_nearest(text: str, stated: str) -> None:
     with pytest.raises(InputError, match=stated) as caught:
         parse_unit(text, where="run.csv: channel 'a'")
     assert caught.value.where == "run.csv: channel 'a'"

@@ -129,7 +129,7 @@ def test_the_page_needs_nothing_from_outside(written: Path) -> None:
     assert page.count("data:image/png;base64,") == len(list((written / "pictures").iterdir()))
 
 
-def test_the_page_says_first_how_well_it_fits(written: Path, comparison: Comparison) -> None:
+def test_the_page_states_first_how_well_it_fits(written: Path, comparison: Comparison) -> None:
     page = (written / "report.html").read_text(encoding="utf-8")
     (fit,) = comparison.fits()
     first = page[page.index('<p class="first">') :][:400]

@@ -74,7 +74,7 @@ def test_what_is_concealed_is_found_and_the_report_opened(shown: Shown) -> None:
     assert effect["parameters"]["factor"]["value"] == pytest.approx(0.05, abs=0.02)
 
 
-def test_a_folder_that_cannot_be_made_is_said_before_the_work(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_made_is_reported_before_the_work(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="there is no such folder"):
         run(tmp_path / "no" / "demo")
 
@@ -97,7 +97,7 @@ def test_its_page_fits_and_asks_for_nothing(shown: Shown, size: tuple[int, int])
             assert page.locator(link.get_attribute("href")).count() == 1
 
 
-def test_its_pictures_say_what_lies_under_the_pointer_and_grow_when_clicked(shown: Shown) -> None:
+def test_its_pictures_state_what_lies_under_the_pointer_and_grow_when_clicked(shown: Shown) -> None:
     with opened(shown.report, (1280, 3000)) as (page, complaints):
         page.evaluate("document.querySelectorAll('details').forEach(one => { one.open = true })")
         shots = page.locator("figure.shot")

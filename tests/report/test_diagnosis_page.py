@@ -170,7 +170,7 @@ def test_the_same_diagnosis_gives_the_same_page(diagnosis: Diagnosis, page: str,
     assert written(diagnosis, tmp_path) == page
 
 
-def test_a_folder_that_cannot_be_is_said_before_drawing(diagnosis: Diagnosis, tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_is_reported_before_drawing(diagnosis: Diagnosis, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no such folder"):
         write_report(diagnosis, tmp_path / "a" / "b")
 

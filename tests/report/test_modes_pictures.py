@@ -35,7 +35,7 @@ def test_no_mode_no_picture(tmp_path: Path) -> None:
     assert draw_modes(permway.modes(chain(2), 100.0, 200.0), tmp_path) == []
 
 
-def test_down_is_down_and_titles_say_frequency_and_damping() -> None:
+def test_down_is_down_and_titles_state_frequency_and_damping() -> None:
     data = permway.modes(chain(2), 2.0, 40.0)
     figure = _figure(data)
     first = figure.axes[0]

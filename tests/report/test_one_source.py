@@ -168,7 +168,7 @@ def test_parameters_and_their_intervals(written: Written) -> None:
             assert cells == []
 
 
-def test_the_comparison_says_what_the_verdict_says_of_the_base(written: Written) -> None:
+def test_the_comparison_states_what_the_verdict_states_of_the_base(written: Written) -> None:
     before = written.verdict["recalibrated"]["before"]
     table = written.diagnosis.comparison.parameters
     for row in parameter_rows(written.diagnosis.comparison):
@@ -216,9 +216,9 @@ def test_what_was_held_out(written: Written) -> None:
 
 
 def test_sizes_and_advice(written: Written) -> None:
-    said = {name: Smallest.model_validate(one) for name, one in written.verdict["detectable"].items()}
+    smallest = {name: Smallest.model_validate(one) for name, one in written.verdict["detectable"].items()}
     assert [tuple(row) for row in written.rows("Effect, Seen from")] == [
-        (name_of(name).capitalize(), seen(one)) for name, one in said.items()
+        (name_of(name).capitalize(), seen(one)) for name, one in smallest.items()
     ]
     rows = written.rows("Measure, States")
     assert len(rows) == len(written.verdict["next"])
@@ -227,7 +227,7 @@ def test_sizes_and_advice(written: Written) -> None:
         same(then, [one["separation_after"]])
 
 
-def test_the_amended_model_has_the_values_that_the_verdict_says(written: Written) -> None:
+def test_the_amended_model_has_the_values_that_the_verdict_states(written: Written) -> None:
     called = written.verdict["status"] not in ("recalibrated", "insufficient")
     stated = written.verdict["recalibrated"]["after" if called else "before"]
     campaign = written.diagnosis.comparison.campaign

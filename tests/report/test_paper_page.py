@@ -76,7 +76,7 @@ def test_every_statement_slip_and_choice_is_on_the_page(report: Any, own: str) -
         assert choice.name in own
 
 
-def test_sizes_and_what_is_told(report: Any) -> None:
+def test_sizes_and_what_is_reported(report: Any) -> None:
     assert (report.folder / "report.html").stat().st_size < 8e6
     assert sorted(p.name for p in report.folder.iterdir()) == ["report.html", "tables.json"]
     reported = report.reported

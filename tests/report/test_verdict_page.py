@@ -154,7 +154,7 @@ def test_held_out_groups_have_nats_and_decibels(found: dict[str, Diagnosis], pag
         assert re.search(rf"{re.escape(name)} −?[0-9.]+ [0-9.]+ dB [0-9.]+ dB", text), name
 
 
-def test_each_status_says_what_to_do(found: dict[str, Diagnosis]) -> None:
+def test_each_status_states_what_to_do(found: dict[str, Diagnosis]) -> None:
     loud_one, fine = found["loud"], found["nothing"]
     assert next_steps(loud_one)[0].startswith("Check deck@3: mounting")
     assert next_steps(fine)[0].startswith("Nothing to repair")
@@ -185,7 +185,7 @@ SURE = ClassMember(name=NOVEL, probability=0.95)
 
 
 @pytest.mark.parametrize(
-    ("status", "changes", "said"),
+    ("status", "changes", "expected"),
     [
         ("ambiguous", {"name": None, "class_": (LOST, VOID)}, ("Lost fasteners or void below the slab", "(0.40)")),
         ("insufficient", {}, ("What is suspected", "Lost fasteners")),
@@ -216,14 +216,14 @@ SURE = ClassMember(name=NOVEL, probability=0.95)
         ),
     ],
 )
-def test_a_page_of_every_status_says_its_effect(
-    found: dict[str, Diagnosis], status: str, changes: dict[str, object], said: tuple[str, ...]
+def test_a_page_of_every_status_states_its_effect(
+    found: dict[str, Diagnosis], status: str, changes: dict[str, object], expected: tuple[str, ...]
 ) -> None:
     one = found["lost"]
     effect = one.verdict.effects[0].model_copy(update=changes)
     verdict = one.verdict.model_copy(update={"status": status, "effects": (effect,)})
     text = read(render_verdict(replace(one, verdict=verdict), {}))
-    for words in said:
+    for words in expected:
         assert words in text, words
     assert re.findall(r"\b\w*[A-Za-z]_[A-Za-z]\w*", text) == []
 

@@ -163,7 +163,7 @@ def test_given_places_give_shapes_there() -> None:
 
 
 @pytest.mark.parametrize(
-    ("act", "says"),
+    ("act", "message"),
     [
         (lambda: modes(Line(bodies={"beam": beam()}), 5.0, 5.0), "from low to high"),
         (lambda: modes(Line(bodies={"beam": beam()}), "low", 5.0), "from low to high"),
@@ -172,13 +172,13 @@ def test_given_places_give_shapes_there() -> None:
         (lambda: modes(Line(bodies={"beam": beam("free", intervals=None)}), 1.0, 5.0), "give places"),
     ],
 )
-def test_what_is_asked_wrongly_is_refused(act, says: str) -> None:
-    with pytest.raises(InputError, match=says):
+def test_what_is_asked_wrongly_is_refused(act, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         act()
 
 
 def test_an_endless_rail_against_its_characteristic_equation() -> None:
-    """A rail that radiates, with a hung mass at 0 and a support at 5 m: det(1 + G K) = 0 at complex frequencies.
+    """A rail that radiates, a mass at 0 and a support at 5 m: det(1 + G K) = 0 at complex frequencies.
 
     Under exp(+i omega t) the endless beam has G(x) = (-i exp(-i k x) - exp(-k x)) / (4 E I k^3), k^4 = m omega^2 /
     (E I) (Graff, Wave Motion in Elastic Solids, 1975, 3.2); the mass on its spring is a stiffness

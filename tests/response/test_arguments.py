@@ -63,7 +63,7 @@ TRAIN = permway.Train(vehicle=permway.crh380a(), centre_m=1.0, speed_m_per_s=60.
         (lambda: ANY.compare(None), "must be a campaign or the path of its file"),
     ],
 )
-def test_it_says_what_would_be_right(call: Callable[[], object], words: str) -> None:
+def test_it_states_what_would_be_right(call: Callable[[], object], words: str) -> None:
     with pytest.raises(permway.InputError, match=words) as caught:
         call()
     assert "\n" not in str(caught.value)

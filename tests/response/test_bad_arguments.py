@@ -53,7 +53,7 @@ def joined(at, between=("rail", "ground")):
 
 
 @pytest.mark.parametrize(
-    ("act", "where", "says"),
+    ("act", "where", "message"),
     [
         (lambda: decay_rate([1.0], [0.5], 0.0), "distance_m", "must be positive (got 0.0)"),
         (lambda: decay_rate([1.0], [0.5], -1.0), "distance_m", "got -1.0"),
@@ -140,11 +140,11 @@ def joined(at, between=("rail", "ground")):
         (lambda: write_dataset(solved(), "/nowhere/at/all.nc"), "/nowhere/at/all.nc", "No such file"),
     ],
 )  # fmt: skip
-def test_wrong_argument(act, where, says):
+def test_wrong_argument(act, where, message):
     with pytest.raises(InputError) as caught:
         act()
     assert caught.value.where.startswith(where), caught.value
-    assert says in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_dense_system_too_large_is_refused_before_it_is_made():
@@ -220,7 +220,7 @@ def test_tables_are_good():
 
 @pytest.mark.parametrize("formulation", ["chain", "receptance"])
 @pytest.mark.parametrize(
-    ("changes", "says"),
+    ("changes", "message"),
     [
         ({"beams_mass": [60.0, 60.0]}, "beams: the columns have different lengths"),
         ({"joints_x": [0.0]}, "joints: the columns have different lengths"),
@@ -261,10 +261,10 @@ def test_tables_are_good():
         ({"threads": 10**6}, "threads 1000000: use 1 to 1024"),
     ],
 )
-def test_tables_that_do_not_fit(changes, says, formulation):
+def test_tables_that_do_not_fit(changes, message, formulation):
     with pytest.raises(_core.TablesError) as caught:
         _core.solve_line(**tables(formulation=formulation, **changes))
-    assert says in str(caught.value)
+    assert message in str(caught.value)
 
 
 DERIVED = {
@@ -290,7 +290,7 @@ def test_a_group_of_minus_one_is_none():
 
 
 @pytest.mark.parametrize(
-    ("change", "says"),
+    ("change", "message"),
     [
         ({"groups": np.array([0, -2])}, "derived: group -2 must not be negative; -1 alone stands for no group"),
         ({"groups": np.array([0, -7])}, "derived: group -7 must not be negative"),
@@ -305,10 +305,10 @@ def test_a_group_of_minus_one_is_none():
         ({"n_groups": 10**7, "sensors": np.zeros(10**6, dtype=np.int64)}, "no room for an answer of shape"),
     ],
 )
-def test_what_cannot_be_derived(change, says):
+def test_what_cannot_be_derived(change, message):
     with pytest.raises(_core.TablesError) as caught:
         _core.solve_line(**tables(derived={**DERIVED, **change}))
-    assert says in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_an_answer_too_large_is_refused_by_the_core():

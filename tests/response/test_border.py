@@ -83,7 +83,7 @@ def test_progress_counts_up_to_the_end():
     assert {total for _, total in calls} == {20_000}
 
 
-def test_progress_is_told_of_a_sweep_too_short_to_watch():
+def test_progress_is_reported_for_a_sweep_too_short_to_watch():
     calls = []
     solved(BAND[:3], progress=lambda done, total: calls.append((done, total)))
     assert calls[-1] == (3, 3)
@@ -244,7 +244,7 @@ MODEL = {
 }
 
 
-def test_dataset_says_what_it_holds():
+def test_dataset_states_what_it_holds():
     data = solve(model_from_dict(MODEL), threads=1)
     assert data.attrs["convention"].startswith(CONVENTION)
     assert "one-sided" in data.attrs["convention"]

@@ -122,7 +122,7 @@ def test_a_law_is_taken_at_the_wave_s_own_frequency() -> None:
         assert f == pytest.approx(np.sqrt((EI * kappa**4 + s) / RHO_A) / (2.0 * np.pi), rel=1e-7)
 
 
-def test_what_is_no_bed_is_held_and_said() -> None:
+def test_what_is_no_bed_is_held_and_reported() -> None:
     slab = Beam(
         youngs_modulus_Pa=3e10,
         second_moment_m4=1e-3,
@@ -144,13 +144,13 @@ def test_what_is_no_bed_is_held_and_said() -> None:
     assert any("slab is taken as rigid" in note for note in found.notes)
     reported = dispersion(line, held=("slab",))
     assert reported.critical_speed_m_per_s == pytest.approx(found.critical_speed_m_per_s)
-    for options, says in (
+    for options, message in (
         ({"body": "deck"}, "is no beam"),
         ({"held": ("rail",)}, "cannot be held|can be held"),
         ({"from_m": 5.0, "to_m": 1.0}, "left to right"),
         ({"from_m": 500.0, "to_m": 600.0}, "nothing bears"),
     ):
-        with pytest.raises(InputError, match=says):
+        with pytest.raises(InputError, match=message):
             dispersion(line, **options)
 
 

@@ -188,7 +188,7 @@ def test_a_model_file_of_a_lone_beam() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "says"),
+    ("options", "message"),
     [
         ({"ends": "clamp"}, '"clamped"'),
         ({"ends": "clamped", "intervals_m": None}, "give intervals_m"),
@@ -197,8 +197,8 @@ def test_a_model_file_of_a_lone_beam() -> None:
         ({"ends": "clamped", "modes": 5}, "modes are for free and pinned ends"),
     ],
 )
-def test_ends_that_cannot_be(options: dict[str, object], says: str) -> None:
-    with pytest.raises(ValueError, match=says):
+def test_ends_that_cannot_be(options: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
         beam(**options)
 
 

@@ -67,7 +67,7 @@ def test_a_joint_moves_by_the_difference_of_what_it_joins() -> None:
     assert (data["joint_body"].item(), data["joint_onto"].item(), data["joint_x"].item()) == ("block", "deck", 7.3)
 
 
-def test_it_is_what_the_response_says_of_the_same_places() -> None:
+def test_it_is_what_the_response_states_of_the_same_places() -> None:
     data = middle(permway.slab_track_viaduct_32m(), 80.0, 16.1, "rail")
     bodies, x = data["place_body"].values, data["place_x"].values
     assert np.isclose(x[bodies == "rail"], 16.1).any()

@@ -155,7 +155,7 @@ def carry(order, *, speed=50.0, moments=None):
     return carried(path.coefficients(values), chosen)
 
 
-def test_quadrature_converges_and_says_how_far_it_is():
+def test_quadrature_converges_and_states_how_far_it_is():
     """Two polynomials more are worth a factor of ten at least; the stated share bounds the error."""
     best, _ = carry(12)
     errors, stated = [], []
@@ -206,7 +206,7 @@ def test_a_moving_source_is_heard_at_two_frequencies():
     loud = np.abs(spectrum[:, 0])
     above, below = (frequency[mask][loud[mask].argmax()] for mask in (frequency > force_Hz, frequency < force_Hz))
 
-    def heard(sign):
+    def received(sign):
         # omega = omega0 + sign V k(omega), with k from two places twelve bays apart.
         pair = [Place(body="rail", x_m=x) for x in (0.3, 7.5)]
         source = Place(body="rail", x_m=-30.0 + 0.3)
@@ -217,8 +217,8 @@ def test_a_moving_source_is_heard_at_two_frequencies():
         wave = (bays + 2 * np.pi * round((free - bays[0]) / (2 * np.pi))) / 7.2
         return frequency[np.abs(omega - rotation - sign * speed * wave).argmin()]
 
-    assert above == pytest.approx(heard(1.0), abs=1.5)
-    assert below == pytest.approx(heard(-1.0), abs=1.5)
+    assert above == pytest.approx(received(1.0), abs=1.5)
+    assert below == pytest.approx(received(-1.0), abs=1.5)
     assert above - force_Hz > 15.0
 
 

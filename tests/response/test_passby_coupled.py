@@ -226,7 +226,7 @@ def test_a_car_over_a_bridge():
     assert np.abs(data["displacement"][0] - history).max() < 0.05 * np.abs(history).max()
 
 
-def test_progress_is_told_and_may_stop_the_march():
+def test_progress_is_reported_and_may_stop_the_march():
     calls = []
     options = {"speed_m_per_s": 25.0, "contact_N_per_m": 1e6, "step_s": 5e-3, "body": "girder", "window_s": 4.0}
     couple(

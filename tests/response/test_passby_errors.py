@@ -52,7 +52,7 @@ def march(**options):
 
 
 @pytest.mark.parametrize(
-    ("act", "where", "says"),
+    ("act", "where", "message"),
     [
         (lambda: axles(loads_N=(1e5, -1e5)), "loads_N[1]", "positive is down"),
         (lambda: axles(loads_N=(1e5, 0.0)), "loads_N[1]", "above 0 N"),
@@ -103,11 +103,11 @@ def march(**options):
         (lambda: march(sensors=[Place(body="slab", x_m=0.0)]), "sensors[0]", "slab"),
     ],
 )
-def test_one_clear_error(act, where, says):
+def test_one_clear_error(act, where, message):
     with pytest.raises(InputError) as caught:
         act()
     assert where in caught.value.where
-    assert says in str(caught.value)
+    assert message in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
@@ -145,7 +145,7 @@ def test_a_generous_limit_is_remarked():
         run(wraparound_limit=0.9, window_s=2.0)
 
 
-def test_progress_is_told_and_may_stop_the_sweep():
+def test_progress_is_reported_and_may_stop_the_sweep():
     calls = []
     run(window_s=2.0, progress=lambda done, total: calls.append((done, total)))
     assert calls
@@ -207,7 +207,7 @@ def test_a_passage_needs_no_irregularity(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("change", "where", "says"),
+    ("change", "where", "message"),
     [
         ({"passby": {}}, "passby.highest_Hz", "missing"),
         ({"passby": {"highest_Hz": -5.0}}, "passby.highest_Hz", "greater than 0"),
@@ -218,8 +218,8 @@ def test_a_passage_needs_no_irregularity(tmp_path):
         ({"sensors": []}, "passby", "needs a [train] and [[sensors]]"),
     ],
 )
-def test_faults_of_the_table(change, where, says):
+def test_faults_of_the_table(change, where, message):
     with pytest.raises(InputError) as caught:
         model_from_dict({**MODEL, **change})
     assert caught.value.where == where
-    assert says.lower() in str(caught.value).lower()
+    assert message.lower() in str(caught.value).lower()

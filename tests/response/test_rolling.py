@@ -220,7 +220,7 @@ def solved(
 
 
 @pytest.mark.parametrize("wrong", [{"speed_m_per_s": 0.0}, {"spacing_m": np.nan}, {"to_Hz": -1.0}])
-def test_faults_of_use_are_told(model: Model, wheels: Reals, wrong: dict[str, float]) -> None:
+def test_faults_of_use_are_reported(model: Model, wheels: Reals, wrong: dict[str, float]) -> None:
     given = {"speed_m_per_s": 60.0, "spacing_m": 0.6, "to_Hz": 100.0, **wrong}
     with pytest.raises(InputError, match=f"{next(iter(wrong))}: must be above zero"):
         kernel(model.line, "rail", wheels, temperature_C=20.0, **given)

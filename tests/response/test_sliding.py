@@ -112,7 +112,7 @@ def test_a_solve_takes_the_dashpot_at_work() -> None:
     assert bogie(blown, 1e6) == pytest.approx(bogie(undamped, 1.0), rel=2e-2)
 
 
-def test_one_frequency_tells_no_velocity() -> None:
+def test_one_frequency_constrains_no_velocity() -> None:
     train = Train(
         vehicle=with_slider(suspension="primary", force_N=800.0, velocity_m_per_s=0.01),
         centre_m=16.0,

@@ -83,8 +83,8 @@ FAULTS = {
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_fault_of_the_study(fault, model):
-    changes, says = FAULTS[fault]
-    with pytest.raises(InputError, match=re.escape(says)):
+    changes, message = FAULTS[fault]
+    with pytest.raises(InputError, match=re.escape(message)):
         study_from_dict({"model": model, **changes})
 
 
@@ -102,10 +102,10 @@ CASES = {
 
 
 @pytest.mark.parametrize("fault", CASES)
-def test_fault_of_a_case_is_said_before_anything_is_written(fault, model, tmp_path):
-    changes, says = CASES[fault]
+def test_fault_of_a_case_is_reported_before_anything_is_written(fault, model, tmp_path):
+    changes, message = CASES[fault]
     study = study_from_dict({"model": model, **changes})
-    with pytest.raises(InputError, match=re.escape(says)):
+    with pytest.raises(InputError, match=re.escape(message)):
         run_study(study, tmp_path / "out")
     assert list(tmp_path.iterdir()) == []
 

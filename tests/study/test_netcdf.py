@@ -48,7 +48,7 @@ def test_the_same_bytes_whatever_was_written_before(with_train):
         assert netcdf.to_netcdf(data) == first
 
 
-def test_no_more_structures_are_kept_than_said(with_train):
+def test_no_more_structures_are_kept_than_stated(with_train):
     for x in range(2 * netcdf.MOST_STRUCTURES):
         netcdf.to_netcdf(with_train.assign_coords(sensor_x=("sensor", [0.0, x], {"units": "m"})))
     assert len(netcdf._structures) == netcdf.MOST_STRUCTURES

@@ -12,7 +12,7 @@ from permway.errors import InputError
 from permway.formats.model_file import model_from_dict
 from permway.problem.solve import solve
 from permway.study import local, open_study, run_study, study_from_dict
-from permway.study.answer import Answer
+from permway.study.answer import CaseResult
 
 PAD = "line.laws.pad."
 
@@ -108,9 +108,9 @@ def test_a_manifest_that_is_none(table, tmp_path):
     study, folder = study_from_dict(table), tmp_path / "out"
     run_study(study, folder, threads=1)
     whole = (folder / "study.json").read_text(encoding="utf-8")
-    for text, says in [("{", "is not JSON"), ("[]", "is no manifest")]:
+    for text, message in [("{", "is not JSON"), ("[]", "is no manifest")]:
         (folder / "study.json").write_text(text, encoding="utf-8")
-        with pytest.raises(InputError, match=says):
+        with pytest.raises(InputError, match=message):
             run_study(study, folder, threads=1)
     (folder / "study.json").write_text(whole.replace("20000000.0", "30000000.0"), encoding="utf-8")
     with pytest.raises(InputError, match="was changed"):
@@ -208,13 +208,13 @@ def test_a_process_that_dies_is_replaced(times, fails, table, tmp_path, monkeypa
     study = _Dies(study_from_dict(table), times, (os.getpid(), tmp_path))
     answers = dict(local.solve_locally(study, range(6), 2))
     assert sorted(answers) == list(range(6))
-    assert all(isinstance(got, Answer) and got.content for i, got in answers.items() if i != 2)
+    assert all(isinstance(got, CaseResult) and got.content for i, got in answers.items() if i != 2)
     assert bool(answers[2].error) == fails
     if fails:
         assert "died, 3 times (exit code -9)" in answers[2].error
 
 
-def test_notes_are_said_once(table, tmp_path):
+def test_notes_are_reported_once(table, tmp_path):
     table["model"]["train"] = {
         "vehicle": {"preset": "crh380a", "share": 0.5},
         "centre_m": 0.9,

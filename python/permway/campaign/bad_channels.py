@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from permway.campaign.parts import Record
 from permway.errors import InputError
 from permway.recordings.finding import Finding
-from permway.recordings.readers import time_blocks
 from permway.recordings.screening import screen
 
 if TYPE_CHECKING:
@@ -66,17 +65,8 @@ def without_bad_channels(campaign: Campaign) -> tuple[Campaign, tuple[BadChannel
 
 def _bad_channels(campaign: Campaign, record: Record) -> Iterator[BadChannel]:
     """One for each kind of error of each channel."""
-    blocks = time_blocks(
-        campaign.path(record),
-        channels=list(record.channels),
-        units={label: campaign.sensor(name).unit for label, name in record.channels.items()},
-        sampling_Hz=record.sampling_Hz,
-        format=record.format,
-        part=record.part,
-        hints=record.hints,
-    )
     errors: dict[tuple[str, str], list[Finding]] = {}
-    for block in blocks:
+    for block in campaign.samples(record):
         for finding in screen(block).of("error"):
             if finding.channel in record.channels:
                 errors.setdefault((finding.channel, finding.kind), []).append(finding)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -13,7 +13,7 @@ from permway.campaign.checks import check_campaign
 from permway.campaign.excitation import About
 from permway.campaign.parameters import Parameter
 from permway.campaign.parts import Condition, HeldOut, IrregularityKnown, Record
-from permway.campaign.rolls import how_trains_run, rolling_said
+from permway.campaign.rolls import how_trains_run, rolling_stated
 from permway.campaign.values import ParameterSet
 from permway.errors import InputError
 from permway.formats.model_file import read_model
@@ -26,6 +26,7 @@ from permway.records import FrozenModel
 
 if TYPE_CHECKING:
     from permway.campaign.load import Dataset
+    from permway.recordings.record import TimeRecord
 
 
 class CampaignFile(FrozenModel):
@@ -102,6 +103,20 @@ class Campaign(Shown):
     def path(self, record: Record) -> Path:
         """Where the file of a record lies."""
         return self.folder / record.file
+
+    def samples(self, record: Record) -> Iterator[TimeRecord]:
+        """The samples of a record over time, in blocks, in the units that its sensors state."""
+        from permway.recordings.readers import time_blocks
+
+        return time_blocks(
+            self.path(record),
+            channels=list(record.channels),
+            units={label: self.sensor(name).unit for label, name in record.channels.items()},
+            sampling_Hz=record.sampling_Hz,
+            format=record.format,
+            part=record.part,
+            hints=record.hints,
+        )
 
     def model_with(self, values: Mapping[str, float]) -> Model:
         """The model with other values of parameters; those not named keep their nominal.
@@ -241,7 +256,7 @@ def campaign_from_dict(table: Mapping[str, Any], *, folder: Path, allow_outside:
             if name is not None and not beside(name, folder, where, outside=allow_outside).is_file():
                 raise InputError("there is no such file", where=where, value=name)
     check_campaign(stated, model)
-    stated = rolling_said(stated, model)
+    stated = rolling_stated(stated, model)
     raw = read_toml(model_path, "name a model file (TOML)")
     read = Campaign(stated, model, folder, ParameterSet(stated.parameters, model, raw, stated, model_path.parent))
     return read.rolling_about(read)

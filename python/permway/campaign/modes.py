@@ -10,7 +10,7 @@ import xarray as xr
 
 from permway.arrays import Reals
 from permway.campaign.parts import Record
-from permway.campaign.tabular import says
+from permway.campaign.tabular import matches
 from permway.errors import InputError
 from permway.laws.textfile import Line, number, read_lines
 from permway.response.receptance import frequency_coordinate
@@ -128,7 +128,7 @@ def _fits(row: Line, header: Line, path: Path) -> bool:
 
 
 def _selected(row: Line, header: Line, record: Record) -> bool:
-    return all(says(row, header, key, want) for key, want in record.select.items())
+    return all(matches(row, header, key, want) for key, want in record.select.items())
 
 
 def _cell(row: Line, header: Line, name: str, path: Path) -> float:

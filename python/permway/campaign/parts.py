@@ -233,6 +233,11 @@ class Record(FrozenModel):
         return self.statistic in IN_TIME and self.averages is None
 
     @property
+    def spectral(self) -> bool:
+        """Whether it holds power and cross spectra, of a run or computed."""
+        return self.statistic in ("csd", "psd")
+
+    @property
     def hints(self) -> Hints:
         """What is stated about how its file is read."""
         return Hints(**{key: getattr(self, key) for key in _HINTS})
@@ -271,7 +276,7 @@ class Record(FrozenModel):
         if self.within_dB is not None and self.statistic not in ("transmissibility", "material"):
             raise fault('goes with statistic "transmissibility" or "material"', "within_dB")
         _check_lines(self.interpolated_Hz or ())
-        if self.interpolated_Hz is not None and self.statistic not in ("csd", "psd"):
+        if self.interpolated_Hz is not None and not self.spectral:
             raise fault('goes with statistic "csd" or "psd"', "interpolated_Hz")
         if self.sampling_Hz is not None and self.statistic not in IN_TIME:
             raise fault('goes with statistic "csd", "psd" or "passage"', "sampling_Hz")

@@ -15,7 +15,6 @@ from permway.errors import InputError, SolveError
 from permway.model.place import Place
 from permway.problem.model import Model
 from permway.recordings.channel import Sensor
-from permway.recordings.readers import time_blocks
 from permway.response.modes import poles_between
 from permway.response.passby.path import Path, path_of
 from permway.response.passby.window import FLAT
@@ -129,14 +128,14 @@ def passage(campaign: Campaign, record: Record) -> xr.Dataset:
 
 def _decay_s(model: Model, condition: Condition, sensors: list[Sensor], highest_Hz: float) -> float:
     """How long the line's slowest mode of the band takes to decay, s; the least where it has none."""
-    spots = dict.fromkeys((str(s.body), float(s.x_m or 0.0)) for s in sensors)
+    locations = dict.fromkeys((str(s.body), float(s.x_m or 0.0)) for s in sensors)
     temperature = model.temperature_C if condition.temperature_C is None else condition.temperature_C
     try:
         found = poles_between(
             model.line,
             LOWEST * highest_Hz,
             highest_Hz,
-            places=[Place(body=body, x_m=x) for body, x in spots],
+            places=[Place(body=body, x_m=x) for body, x in locations],
             temperature_C=temperature,
             formulation=model.formulation,
         )
@@ -207,17 +206,7 @@ def spectrum_of(values: Reals, sampling_Hz: float) -> Complexes:
 
 def _history(campaign: Campaign, record: Record, sensors: list[Sensor]) -> tuple[Reals, float, float]:
     """Samples in SI, rate, and time of the first."""
-    blocks = list(
-        time_blocks(
-            campaign.path(record),
-            channels=list(record.channels),
-            units={label: sensor.unit for label, sensor in zip(record.channels, sensors, strict=True)},
-            sampling_Hz=record.sampling_Hz,
-            format=record.format,
-            part=record.part,
-            hints=record.hints,
-        )
-    )
+    blocks = list(campaign.samples(record))
     if not blocks:
         raise InputError("holds no samples", where=record.file)
     rate = blocks[0].sampling_Hz

@@ -31,7 +31,7 @@ much 2 and 41 %."""
 WHERE = "irregularity.rolling"
 
 
-def rolling_said(stated: CampaignFile, model: Model) -> CampaignFile:
+def rolling_stated(stated: CampaignFile, model: Model) -> CampaignFile:
     """A campaign file with what its trains roll over, where it leaves that to the model.
 
     Raises
@@ -74,7 +74,7 @@ def _runs(stated: CampaignFile) -> Iterator[Condition]:
     """Conditions of records on board."""
     conditions = {condition.name: condition for condition in stated.conditions}
     degrees = {sensor.name for sensor in stated.sensors if sensor.degree is not None}
-    for name in dict.fromkeys(r.condition for r in stated.records if r.statistic in ("csd", "psd")):
+    for name in dict.fromkeys(r.condition for r in stated.records if r.spectral):
         on_board = any(
             degrees.intersection(record.channels.values()) for record in stated.records if record.condition == name
         )

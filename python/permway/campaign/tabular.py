@@ -115,7 +115,7 @@ def _row(campaign: Campaign, record: Record) -> tuple[np.ndarray, np.ndarray]:
     if short is not None:
         what = f"{len(short.cells)} cells where the header has {len(header.cells)}"
         raise InputError(what, where=f"{path}: line {short.number}")
-    found = [row for row in rows if all(says(row, header, key, want) for key, want in record.select.items())]
+    found = [row for row in rows if all(matches(row, header, key, want) for key, want in record.select.items())]
     if len(found) != 1:
         what = "no row states this" if not found else f"{len(found)} rows say this"
         raise InputError(what, where="select", value=dict(record.select), remedy="select exactly one row")
@@ -141,7 +141,7 @@ def _row(campaign: Campaign, record: Record) -> tuple[np.ndarray, np.ndarray]:
     return band[used], np.array(values)
 
 
-def says(row: Line, header: Line, key: str, wanted: object) -> bool:
+def matches(row: Line, header: Line, key: str, wanted: object) -> bool:
     """Whether a row's cell in a column is what `select` asks for."""
     cell = row.cells[header.cells.index(key)]
     if isinstance(wanted, bool):

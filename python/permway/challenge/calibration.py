@@ -80,16 +80,16 @@ def confusion(scored: Iterable[Scored]) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        `concealed`, `cases`, `said` (family or status to count), the most frequent first.
+        `concealed`, `cases`, `named` (family or status to count), the most frequent first.
     """
     table: dict[str, dict[str, int]] = {}
     for one in scored:
         if one.found is not None:
-            said = table.setdefault(one.concealed_family or NAMELESS, {})
-            said[one.said_family] = said.get(one.said_family, 0) + 1
+            named = table.setdefault(one.concealed_family or NAMELESS, {})
+            named[one.named_family] = named.get(one.named_family, 0) + 1
     rows = [
-        {"concealed": name, "cases": sum(said.values()), "said": dict(sorted(said.items(), key=_most_first))}
-        for name, said in table.items()
+        {"concealed": name, "cases": sum(named.values()), "named": dict(sorted(named.items(), key=_most_first))}
+        for name, named in table.items()
     ]
     return sorted(rows, key=lambda row: (-int(row["cases"]), row["concealed"]))
 

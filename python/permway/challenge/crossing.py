@@ -18,7 +18,7 @@ from permway.challenge.contact import Hertz
 from permway.challenge.layout import Values
 from permway.challenge.newmark import GAMMA, Marched, Meshed, line_matrices, train_matrices
 from permway.challenge.plan import CONTACT_N_PER_M
-from permway.challenge.track import Spot
+from permway.challenge.track import Location
 from permway.challenge.vehicle import GRAVITY, WHEELS, Arm, vehicle, wheel_load
 from permway.challenge.wheels_on_rail import Rail
 from permway.errors import InputError, SolveError
@@ -98,7 +98,7 @@ def cross(
     to_m: float,
     leaves: bool = True,
     profile: Callable[[Reals], Reals] | None = None,
-    sensors: Sequence[Spot] = (),
+    sensors: Sequence[Location] = (),
     arms: Sequence[Arm] = (),
     step_s: float = 2.5e-4,
     viscous_at_Hz: float = 20.0,
@@ -109,7 +109,7 @@ def cross(
 
     Parameters
     ----------
-    line : Mesh or Ring
+    line : Mesh or ClosedMesh
         Its stiffnesses are taken at `viscous_at_Hz`. A mesh's rail ends where its elements do; round a ring a
         train may run as far as it likes, and x is where it is from the first station on.
     train : Consist
@@ -119,7 +119,7 @@ def cross(
         Hertz's contact, which wheels may leave; else a linear one, which holds them down.
     profile : callable, optional
         Of x (m): how much lower the rail's surface is, m.
-    sensors : sequence of Spot
+    sensors : sequence of Location
         Places of nodes, whose deflections are wanted.
     arms : sequence of Arm
         Combinations of the first car's degrees, whose accelerations are wanted.
@@ -156,7 +156,7 @@ def cross(
     weight = GRAVITY * cars.mass.diagonal()
     weight[[size * number + degree for number in range(train.cars) for degree in PITCHING]] = 0.0
     rail_gives, wheels_give = below.gives(rail.degrees), cars.gives(wheels)
-    read = [line.at(spot) for spot in sensors]
+    read = [line.at(location) for location in sensors]
     rows, still = car.rows(arms), np.zeros(line.size)
     # As many as fit, rounding forgiven.
     steps = int((to_m - from_m) / train.speed_m_per_s / step_s + 1e-6)

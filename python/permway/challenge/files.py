@@ -12,14 +12,14 @@ import scipy.io
 
 from permway.challenge.beams import Complexes, Reals
 from permway.challenge.measure import HammerTest, Run
-from permway.challenge.track import Spot
+from permway.challenge.track import Location
 
 NODE = {"rail": 1, "slab": 2, "base": 3, "girder": 4}
 _EPOCH = (2026, 1, 1, 0, 0, 0)
 _BLANK = " " * 80
 
 
-def write_uff(path: Path, test: HammerTest, sensors: tuple[Spot, ...], points: tuple[Spot, ...]) -> None:
+def write_uff(path: Path, test: HammerTest, sensors: tuple[Location, ...], points: tuple[Location, ...]) -> None:
     """Universal file, dataset 58: a frequency response and a coherence for each pair."""
     parts: list[str] = []
     for j, point in enumerate(points):
@@ -29,13 +29,13 @@ def write_uff(path: Path, test: HammerTest, sensors: tuple[Spot, ...], points: t
     path.write_text("\n".join(parts) + "\n", encoding="ascii")
 
 
-def _function(sensor: Spot, point: Spot, frequency_Hz: Reals, values: Complexes | Reals) -> Iterable[str]:
+def _function(sensor: Location, point: Location, frequency_Hz: Reals, values: Complexes | Reals) -> Iterable[str]:
     kind, ordinate = (4, 6) if np.iscomplexobj(values) else (6, 4)
     yield f"{-1:6d}"
     yield f"{58:6d}".ljust(80)
     yield f"{sensor[0]} {sensor[1]} m / {point[0]} {point[1]} m".ljust(80)
     yield from [_BLANK] * 4
-    places = "".join(f"{spot[0]:>11s}{node_of(spot):10d}{3:4d}" for spot in (sensor, point))
+    places = "".join(f"{location[0]:>11s}{node_of(location):10d}{3:4d}" for location in (sensor, point))
     yield f"{kind:5d}{0:10d}{0:5d}{0:10d}{places}"
     step = float(frequency_Hz[1] - frequency_Hz[0])
     yield f"{ordinate:10d}{frequency_Hz.size:10d}{1:10d}{frequency_Hz[0]:13.5e}{step:13.5e}{0.0:13.5e}"
@@ -48,12 +48,12 @@ def _function(sensor: Spot, point: Spot, frequency_Hz: Reals, values: Complexes 
     yield f"{-1:6d}"
 
 
-def node_of(spot: Spot) -> int:
+def node_of(location: Location) -> int:
     """A UFF node: 10000 times the body's number and x in cm."""
-    return 10000 * NODE[spot[0]] + round(100.0 * spot[1])
+    return 10000 * NODE[location[0]] + round(100.0 * location[1])
 
 
-def write_mat(path: Path, test: HammerTest, sensors: tuple[Spot, ...], points: tuple[Spot, ...]) -> None:
+def write_mat(path: Path, test: HammerTest, sensors: tuple[Location, ...], points: tuple[Location, ...]) -> None:
     """MAT file, version 5, single precision."""
     content = {
         "f": test.frequency_Hz,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from permway.challenge.track import Spot
+from permway.challenge.track import Location
 
 Values = Mapping[str, Mapping[str, float]]
 
@@ -129,15 +129,15 @@ class Tests:
 
     Parameters
     ----------
-    sensors, points : tuple of Spot
+    sensors, points : tuple of Location
     temperatures_C : tuple of float
         As written down, one hammer test each; trains run at the first.
     speeds_kmh : tuple of float
         As written down.
     """
 
-    sensors: tuple[Spot, ...]
-    points: tuple[Spot, ...]
+    sensors: tuple[Location, ...]
+    points: tuple[Location, ...]
     temperatures_C: tuple[float, ...] = (12.0,)
     speeds_kmh: tuple[float, ...] = (200.016, 299.988)
     lines_Hz: tuple[float, float, float] = (2.0, 400.0, 1.0)
@@ -192,12 +192,12 @@ def draw_tests(random: np.random.Generator, layout: Layout, *, temperatures: int
         return layout.station(round(layout.bays * share) + int(random.integers(-2, 3)))
 
     quarter = layout.station(per_span // 4 + int(random.integers(-1, 2)))
-    sensors: list[Spot] = [("rail", within), ("rail", middle), ("rail", near(0.8)), ("slab", middle)]
+    sensors: list[Location] = [("rail", within), ("rail", middle), ("rail", near(0.8)), ("slab", middle)]
     sensors += [("slab", near(0.77)), ("base", middle), ("girder", middle), ("girder", quarter), ("girder", 0.0)]
     stride = 2 * layout.spans
     start = int(random.integers(1, stride + 1))
     along = [layout.station(i) for i in range(start, layout.bays, stride)]
-    points: list[Spot] = [("rail", within), ("rail", middle)]
+    points: list[Location] = [("rail", within), ("rail", middle)]
     points += [("rail", x) for x in along if abs(x - middle) > 1e-6]
     points.append(("girder", middle))
     first = float(random.integers(5, 25))

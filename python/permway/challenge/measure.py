@@ -16,7 +16,7 @@ from permway.challenge.irregularity import deviation, profile
 from permway.challenge.mesh import Mesh
 from permway.challenge.plan import FLOOR, Plan
 from permway.challenge.rolling import rolled
-from permway.challenge.track import Spot
+from permway.challenge.track import Location
 from permway.challenge.under_train import Ridden
 from permway.challenge.vehicle import wheel_load
 
@@ -63,7 +63,7 @@ def measure(plan: Plan, random: np.random.Generator) -> tuple[list[HammerTest], 
     tests = plan.tests
     start, stop, step = tests.lines_Hz
     lines = np.asarray(np.arange(start, stop + 0.5 * step, step))
-    wheels: list[Spot] = [("rail", x) for x in plan.layout.wheels_m(plan.values["vehicle"])]
+    wheels: list[Location] = [("rail", x) for x in plan.layout.wheels_m(plan.values["vehicle"])]
     rows = list(dict.fromkeys([*tests.sensors, *wheels]))
     columns = list(dict.fromkeys([*tests.points, *wheels]))
     mesh = Mesh(plan.track, [*rows, *columns])
@@ -79,8 +79,8 @@ def measure(plan: Plan, random: np.random.Generator) -> tuple[list[HammerTest], 
             r, c = ([names.index(wheel) for wheel in wheels] for names in (rows, columns))
             under = displaced[:, r][:, :, c]
         rates = displaced[np.searchsorted(at, lines)] * -((2.0 * np.pi * lines[:, None, None]) ** 2)
-        r = [rows.index(spot) for spot in tests.sensors]
-        c = [columns.index(spot) for spot in tests.points]
+        r = [rows.index(location) for location in tests.sensors]
+        c = [columns.index(location) for location in tests.points]
         hammers.append(_hammer(plan, random, written, lines, rates[:, r][:, :, c] * errors))
     off_dB = deviation(random)
     samples = round(tests.seconds * tests.sampling_Hz)
@@ -117,13 +117,13 @@ def _hammer(
     plan: Plan, random: np.random.Generator, written_C: float, lines: Reals, response: Complexes
 ) -> HammerTest:
     tests, chain = plan.tests, plan.chain
-    for index, spot in enumerate(tests.sensors):
-        response[:, index] *= plan.gain_of(plan.line_gain.get(spot, []), lines)[:, None]
+    for index, location in enumerate(tests.sensors):
+        response[:, index] *= plan.gain_of(plan.line_gain.get(location, []), lines)[:, None]
     if chain.clean:
         return HammerTest(written_C, lines, response, np.ones(response.shape))
     # Ground unrest below, and a hammer that loses force above.
     tint = np.sqrt(1.0 + (6.0 / lines) ** 2) * np.sqrt(1.0 + (lines / 350.0) ** 2)
-    each = np.array([plan.line_noise.get(spot, 1.0) for spot in tests.sensors])
+    each = np.array([plan.line_noise.get(location, 1.0) for location in tests.sensors])
     each = each * np.exp(0.3 * random.standard_normal(each.size)) * chain.noise
     frf, coherence = struck(random, response, tint[:, None] * each, blows=tests.blows)
     return HammerTest(written_C, lines, frf, coherence)
@@ -199,7 +199,7 @@ def _as_ridden(
     grid, _ = under_wheels
     if not plan.supports:
         return under_wheels
-    wheels: list[Spot] = [("rail", x) for x in plan.layout.wheels_m(plan.values["vehicle"])]
+    wheels: list[Location] = [("rail", x) for x in plan.layout.wheels_m(plan.values["vehicle"])]
     temperature = plan.tests.temperatures_C[0] + plan.chain.warmer_C[0]
     ridden = Ridden(plan.track, wheels, plan.vehicle, wheel_load(plan.values), temperature)
     return grid, ridden.receptance(plan.supports, grid, lines_Hz=lines, profiles=profiles, samples=samples)

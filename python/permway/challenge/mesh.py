@@ -11,7 +11,7 @@ from scipy import sparse
 from scipy.linalg import lapack
 
 from permway.challenge.beams import Blocks, Complexes, Reals, Section, cable_element, dynamic, element, endless
-from permway.challenge.track import BODIES, TOUCH_M, Beam, Link, Spot, Track
+from permway.challenge.track import BODIES, TOUCH_M, Beam, Link, Location, Track
 from permway.errors import InputError, SolveError
 
 NDIndex = NDArray[np.int64]
@@ -25,17 +25,17 @@ class Mesh:
     Parameters
     ----------
     track : Track
-    spots : sequence of Spot
+    locations : sequence of Location
         Where it will be struck or read: there are nodes there.
     """
 
-    def __init__(self, track: Track, spots: Sequence[Spot]) -> None:
+    def __init__(self, track: Track, locations: Sequence[Location]) -> None:
         self.track = track
-        self.columns = _columns(track, spots)
+        self.columns = _columns(track, locations)
         self._number()
         self._assemble()
 
-    def at(self, spot: Spot, *, after: bool = False) -> int:
+    def at(self, location: Location, *, after: bool = False) -> int:
         """The degree of freedom of a place's deflection.
 
         Raises
@@ -43,7 +43,7 @@ class Mesh:
         InputError
             If the body has no node there.
         """
-        body, x = spot
+        body, x = location
         column = int(np.argmin(np.abs(self.columns - x)))
         found = self.nodes[body].get((column, int(after)), self.nodes[body].get((column, 0)))
         if found is None or abs(self.columns[column] - x) > TOUCH_M:
@@ -137,11 +137,11 @@ class Mesh:
 
     def tied(self, link: Link) -> list[int]:
         """Degrees of freedom of a link's points."""
-        after = link.after or (False,) * len(link.spots)
-        return [self.at(spot, after=side) for spot, side in zip(link.spots, after, strict=True)]
+        after = link.after or (False,) * len(link.locations)
+        return [self.at(location, after=side) for location, side in zip(link.locations, after, strict=True)]
 
     def receptance(
-        self, frequency_Hz: Reals, temperature_C: float, rows: Sequence[Spot], columns: Sequence[Spot]
+        self, frequency_Hz: Reals, temperature_C: float, rows: Sequence[Location], columns: Sequence[Location]
     ) -> Complexes:
         """Deflections at `rows` per force at `columns`.
 
@@ -162,8 +162,8 @@ class Mesh:
             body: endless(self.track.beams[body].section, self.track.step_m, frequency_Hz) for body in self.ends
         }
         forces = np.zeros((self.size, len(rows)), dtype=np.complex128, order="F")
-        forces[[self.at(spot) for spot in rows], range(len(rows))] = 1.0
-        read = [self.at(spot) for spot in columns]
+        forces[[self.at(location) for location in rows], range(len(rows))] = 1.0
+        read = [self.at(location) for location in columns]
         answer = np.empty((frequency_Hz.size, len(rows), len(columns)), dtype=np.complex128)
         flat = np.zeros(self.tall * self.size, dtype=np.complex128)
         for index, hertz in enumerate(frequency_Hz):
@@ -195,10 +195,10 @@ class Mesh:
         return np.stack(rows, axis=1).astype(np.complex128)
 
 
-def _columns(track: Track, spots: Sequence[Spot]) -> Reals:
+def _columns(track: Track, locations: Sequence[Location]) -> Reals:
     """Places of nodes: where something is tied, cut, struck or read, and between these every `step_m` or less."""
-    needed = [x for _, x in spots]
-    needed += [x for link in track.links for _, x in link.spots]
+    needed = [x for _, x in locations]
+    needed += [x for link in track.links for _, x in link.locations]
     for beam in track.beams.values():
         needed += [beam.start, beam.stop, *beam.breaks]
         needed += [x for stretch in beam.stretches for x in stretch[:2]]

@@ -11,7 +11,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from permway.challenge.beams import Reals, element
-from permway.challenge.track import Link, Spot, Track
+from permway.challenge.track import Link, Location, Track
 from permway.challenge.vehicle import Vehicle
 
 GAMMA = 0.52
@@ -28,7 +28,7 @@ Matrices = tuple[sparse.csc_array, sparse.csc_array, sparse.csc_array]
 
 
 class Meshed(Protocol):
-    """Nodes of a track: :class:`permway.challenge.mesh.Mesh`, :class:`permway.challenge.ring.Ring`."""
+    """Nodes of a track, as of :class:`permway.challenge.mesh.Mesh`."""
 
     track: Track
     size: int
@@ -41,7 +41,7 @@ class Meshed(Protocol):
         """Degrees of freedom of a link's points."""
         ...
 
-    def at(self, spot: Spot) -> int:
+    def at(self, location: Location) -> int:
         """The degree of freedom of a place's deflection."""
         ...
 

@@ -10,7 +10,7 @@ import numpy as np
 from permway.challenge.assembly import assemble
 from permway.challenge.beams import Complexes, Reals
 from permway.challenge.layout import Layout, Tests, Values
-from permway.challenge.track import Spot, Track
+from permway.challenge.track import Location, Track
 from permway.challenge.under_train import Support
 from permway.challenge.vehicle import Vehicle, vehicle
 
@@ -54,7 +54,7 @@ class Plan:
 
     Attributes
     ----------
-    line_gain : dict of Spot to list of Transfer
+    line_gain : dict of Location to list of Transfer
         Faults of sensors on the line.
     channel_gain : dict of str to list of Transfer
         Faults of channels on board.
@@ -80,9 +80,9 @@ class Plan:
     chain: Chain
     track: Track
     vehicle: Vehicle
-    line_gain: dict[Spot, list[Transfer]] = field(default_factory=dict)
+    line_gain: dict[Location, list[Transfer]] = field(default_factory=dict)
     channel_gain: dict[str, list[Transfer]] = field(default_factory=dict)
-    line_noise: dict[Spot, float] = field(default_factory=dict)
+    line_noise: dict[Location, float] = field(default_factory=dict)
     channel_noise: dict[str, float] = field(default_factory=dict)
     shapes: list[Callable[[Reals, float], Reals]] = field(default_factory=list)
     wheel_profiles: list[Callable[[Reals, float], Reals]] = field(default_factory=list)

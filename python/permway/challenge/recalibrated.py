@@ -53,8 +53,8 @@ def pulls(folder: Path, scored: Iterable[Scored], verdicts: Path | None = None) 
         if not right or one.false_name:
             continue
         true = json.loads((Path(folder) / "truth" / f"{one.name}.json").read_text())
-        said = json.loads(((verdicts or Path(folder) / "verdicts") / one.name / "verdict.json").read_text())
-        displaced = said.get("recalibrated", {}).get("before" if one.found is None else "after", {})
+        verdict = json.loads(((verdicts or Path(folder) / "verdicts") / one.name / "verdict.json").read_text())
+        displaced = verdict.get("recalibrated", {}).get("before" if one.found is None else "after", {})
         for name, value in _by_name(true.get("parameters", {})):
             estimate = displaced.get(name)
             if estimate is not None and estimate.get("low") is not None:
@@ -71,8 +71,8 @@ def _by_name(parameters: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
             yield name, float(value)
 
 
-def _pull(case: str, parameter: str, true: float, said: Mapping[str, Any]) -> Pull:
-    low, value, high = (float(said[key]) for key in ("low", "value", "high"))
+def _pull(case: str, parameter: str, true: float, estimate: Mapping[str, Any]) -> Pull:
+    low, value, high = (float(estimate[key]) for key in ("low", "value", "high"))
     inside = low <= true <= high
     if min(low, true) > 0.0:
         low, value, high, true = (float(np.log(one)) for one in (low, value, high, true))

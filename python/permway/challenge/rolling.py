@@ -10,10 +10,10 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from permway.challenge.beams import Complexes
+from permway.challenge.closed_mesh import ClosedMesh
 from permway.challenge.crossing import Consist, cross
 from permway.challenge.newmark import UNDAMPED
 from permway.challenge.plan import Plan
-from permway.challenge.ring import Ring
 from permway.errors import InputError
 
 FINER = 12
@@ -55,7 +55,7 @@ def rolled(plan: Plan, met: Complexes, speed: float, *, samples: int, sampling_H
     InputError
         If the laps are no whole number.
     """
-    ring = Ring(plan.track)
+    ring = ClosedMesh(plan.track)
     seconds = samples / sampling_Hz
     laps = speed * seconds / ring.length_m
     if abs(laps - round(laps)) > LAP * laps:

@@ -67,7 +67,7 @@ class Scored:
         By which records that were left out are predicted better, the median of all ways to leave some out.
     claims : tuple of Claim
         All names of all effects, "novel" among them.
-    concealed_family, said_family : str
+    concealed_family, named_family : str
         Of the strongest concealed effect, and of what is named in its place, or what the verdict is instead.
     """
 
@@ -75,7 +75,7 @@ class Scored:
     tier: str
     status: str
     truth: tuple[str, ...]
-    said: tuple[str, ...]
+    named: tuple[str, ...]
     found: bool | None
     placed: bool | None
     family: bool | None
@@ -90,7 +90,7 @@ class Scored:
     gain_dB: float | None = None
     claims: tuple[Claim, ...] = ()
     concealed_family: str = ""
-    said_family: str = ""
+    named_family: str = ""
 
     @property
     def group(self) -> str:
@@ -119,14 +119,14 @@ def score(folder: Path, families: Mapping[str, str], verdicts: Path | None = Non
     """
     found, weighed, each = [], weights(folder), weights_of_each(folder)
     for path in sorted((Path(folder) / "truth").glob("*.json")):
-        verdict = (verdicts or Path(folder) / "verdicts") / path.stem / "verdict.json"
-        if verdict.is_file():
-            seconds = verdict.with_name("seconds.json")
+        written = (verdicts or Path(folder) / "verdicts") / path.stem / "verdict.json"
+        if written.is_file():
+            seconds = written.with_name("seconds.json")
             took = sum(json.loads(seconds.read_text()).values()) if seconds.is_file() else float("nan")
-            true, said = json.loads(path.read_text()), json.loads(verdict.read_text())
+            true, verdict = json.loads(path.read_text()), json.loads(written.read_text())
             alone = each.get(path.stem)
             strongest, telling = _strongest_first(true, alone), _telling(true, alone)
-            scored = _scored(path.stem, strongest, said, families, took, telling)
+            scored = _scored(path.stem, strongest, verdict, families, took, telling)
             found.append(replace(scored, deviance=weighed.get(path.stem)))
     if not found:
         raise InputError("holds no verdict", where=str(folder), remedy="permway challenge run")
@@ -164,7 +164,7 @@ def _scored(
         if any(e["parameters"] for e in effects)
         else False
     )
-    said = tuple(e["name"] or "|".join(m["name"] for m in e["class"]) or "not named" for e in effects)
+    named = tuple(e["name"] or "|".join(m["name"] for m in e["class"]) or "not named" for e in effects)
     ids = tuple(e["id"] or e.get("mechanical") or "unknown" for e in concealed)
     known = {families.get(e["id"], e.get("family")) for e in concealed if e["id"]}
     # What is named and not in the catalogue, as by screening, is its own family.
@@ -189,7 +189,7 @@ def _scored(
         tier=name.rsplit("-", 1)[0],
         status=str(verdict["status"]),
         truth=ids,
-        said=said,
+        named=named,
         found=flags[0],
         placed=flags[1],
         family=flags[2],
@@ -205,7 +205,7 @@ def _scored(
         gain_dB=_gained(verdict) if effects else None,
         claims=tuple(_claims(concealed, effects)),
         concealed_family=families.get(concealed[0]["id"], "") if concealed and concealed[0]["id"] else "",
-        said_family=_family(concealed, effects, families) or str(verdict["status"]),
+        named_family=_family(concealed, effects, families) or str(verdict["status"]),
     )
 
 
@@ -233,33 +233,33 @@ def _family(
     return families.get(named[0]["name"], named[0]["name"]) if named else ""
 
 
-def _same(true: Mapping[str, Any], said: Mapping[str, Any], families: Mapping[str, str]) -> bool:
+def _same(true: Mapping[str, Any], stated: Mapping[str, Any], families: Mapping[str, str]) -> bool:
     """Whether an effect of the verdict is the concealed one: its place, and its name, its family or its class."""
-    names = {said["name"], *(member["name"] for member in said["class"])}
-    alike = true["id"] in names or families.get(said["name"] or "", "") == families.get(true["id"], true["id"])
-    return alike and _there(true["place"], said["place"], true.get("domain"), said["domain"])
+    names = {stated["name"], *(member["name"] for member in stated["class"])}
+    alike = true["id"] in names or families.get(stated["name"] or "", "") == families.get(true["id"], true["id"])
+    return alike and _there(true["place"], stated["place"], true.get("domain"), stated["domain"])
 
 
 def _described(true: Mapping[str, Any], effects: Iterable[Mapping[str, Any]]) -> bool:
     """Whether what is stated at the place of an effect without a name uses one of its words."""
     there = [e for e in effects if _there(true["place"], e["place"], true.get("domain"), e["domain"])]
-    # Rivals say no words.
-    said = [e["law"]["words"] for e in there if not e["name"] and "law" in e]
-    return any(word in words for words in said for word in true["words"])
+    # Alternatives state no words.
+    laws = [e["law"]["words"] for e in there if not e["name"] and "law" in e]
+    return any(word in words for words in laws for word in true["words"])
 
 
-def _there(true: Mapping[str, Any], said: Mapping[str, Any], domain: str | None, said_domain: str) -> bool:
+def _there(true: Mapping[str, Any], stated: Mapping[str, Any], domain: str | None, stated_domain: str) -> bool:
     """Whether the verdict's place is the concealed one: the same domain, and the same stretch or channels."""
-    if domain is not None and domain != said_domain:
+    if domain is not None and domain != stated_domain:
         return False
     x = true.get("x_m")
     if x:
-        stretch = said.get("within") or said.get("x")
+        stretch = stated.get("within") or stated.get("x")
         near = float(true.get("near_m", NEAR_M))
         return stretch is not None and stretch[0] - near <= x[-1] and x[0] <= stretch[1] + near
     channels = true.get("channels")
-    if isinstance(channels, list) and said.get("channels"):
-        return bool({_channel(name) for name in channels} & {_channel(name) for name in said["channels"]})
+    if isinstance(channels, list) and stated.get("channels"):
+        return bool({_channel(name) for name in channels} & {_channel(name) for name in stated["channels"]})
     # "on board", or all of a kind.
     return True
 
@@ -278,7 +278,7 @@ def _covered(concealed: Iterable[Mapping[str, Any]], effects: Iterable[Mapping[s
         named.sort(key=lambda e: not _there(effect["place"], e["place"], effect.get("domain"), e["domain"]))
         parameters = named[0]["parameters"] if named else {}
         for key, value in in_catalogue(effect["kind"], effect.get("parameters", {})).items():
-            said = parameters.get(key)
-            if said is not None and said["low"] is not None:
-                found.append(bool(said["low"] <= value <= said["high"]))
+            estimate = parameters.get(key)
+            if estimate is not None and estimate["low"] is not None:
+                found.append(bool(estimate["low"] <= value <= estimate["high"]))
     return found

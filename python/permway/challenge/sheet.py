@@ -40,8 +40,8 @@ def sheet(layout: Layout, nominal: Values, tests: Tests) -> dict[str, Any]:
         "hammer": {
             "quantity": f"accelerance (m/s^2)/N, H1 of {tests.blows} blows, with coherence",
             "lines_Hz": list(tests.lines_Hz),
-            "sensors": [list(spot) for spot in tests.sensors],
-            "points": [list(spot) for spot in tests.points],
+            "sensors": [list(location) for location in tests.sensors],
+            "points": [list(location) for location in tests.points],
             "node_numbers": "UFF nodes: 10000*(rail 1, slab 2, base 3, girder 4) + x in cm",
         },
         "runs": {

@@ -9,7 +9,7 @@ import numpy as np
 
 from permway.challenge.beams import Complexes, Reals, Section
 
-Spot = tuple[str, float]
+Location = tuple[str, float]
 """Body and x, m."""
 
 Matrix = Callable[[Reals, float], Complexes]
@@ -64,7 +64,7 @@ class Link:
 
     Parameters
     ----------
-    spots : tuple of Spot
+    locations : tuple of Location
         Points; near each other along x, or the bandwidth suffers.
     law : str
         Name of a law in the track's `laws`.
@@ -74,7 +74,7 @@ class Link:
         At a break: whether the point is on the part behind it. Empty for before.
     """
 
-    spots: tuple[Spot, ...]
+    locations: tuple[Location, ...]
     law: str
     scale: complex = 1.0
     after: tuple[bool, ...] = ()
@@ -101,7 +101,7 @@ class Track:
         """Multiply a layer's joints by a factor of x."""
         for index in self.stations(layer):
             link = self.links[index]
-            self.links[index] = replace(link, scale=link.scale * factor(link.spots[0][1]))
+            self.links[index] = replace(link, scale=link.scale * factor(link.locations[0][1]))
 
     def stretch(self, body: str, stretch: tuple[float, float, float, float]) -> None:
         """Change a body's section from place to place."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from permway.challenge.beams import Complexes, Reals
 from permway.challenge.mesh import Mesh
-from permway.challenge.track import Link, Spot, Track
+from permway.challenge.track import Link, Location, Track
 from permway.challenge.vehicle import Vehicle
 from permway.errors import SolveError
 
@@ -55,7 +55,7 @@ class Ridden:
     ----------
     track : Track
         As a hammer finds it.
-    wheels : sequence of Spot
+    wheels : sequence of Location
     vehicle : Vehicle
     load_N : float
         Of each wheel at rest.
@@ -63,7 +63,7 @@ class Ridden:
     """
 
     track: Track
-    wheels: Sequence[Spot]
+    wheels: Sequence[Location]
     vehicle: Vehicle
     load_N: float
     temperature_C: float
@@ -119,19 +119,19 @@ class Ridden:
         """Receptances under the wheels, and of each link's stretch by them, (F, links, W)."""
         links = [replace(one, scale=one.scale * f) for one, f in zip(self.track.links, factor, strict=True)]
         changed = replace(self.track, links=links)
-        spots = list(dict.fromkeys([*self.wheels, *(spot for link in links for spot in _ends(link))]))
-        displaced = Mesh(changed, spots).receptance(grid_Hz, self.temperature_C, self.wheels, spots)
-        at = {spot: index for index, spot in enumerate(spots)}
+        locations = list(dict.fromkeys([*self.wheels, *(location for link in links for location in _ends(link))]))
+        displaced = Mesh(changed, locations).receptance(grid_Hz, self.temperature_C, self.wheels, locations)
+        at = {location: index for index, location in enumerate(locations)}
         stretch = np.zeros((grid_Hz.size, len(links), len(self.wheels)), dtype=np.complex128)
         for index, link in enumerate(links):
-            for spot, sign in zip(_ends(link), (1.0, -1.0), strict=False):
-                stretch[:, index] += sign * displaced[:, :, at[spot]]
+            for location, sign in zip(_ends(link), (1.0, -1.0), strict=False):
+                stretch[:, index] += sign * displaced[:, :, at[location]]
         return displaced[:, :, [at[wheel] for wheel in self.wheels]], stretch
 
 
-def _ends(link: Link) -> tuple[Spot, ...]:
+def _ends(link: Link) -> tuple[Location, ...]:
     """Of a link between two points or to the ground; of others none."""
-    return link.spots if len(link.spots) <= 2 else ()
+    return link.locations if len(link.locations) <= 2 else ()
 
 
 def _between(grid_Hz: Reals, values: Complexes, lines_Hz: Reals) -> Complexes:

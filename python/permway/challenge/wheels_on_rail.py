@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from permway.challenge.beams import Reals, shape, within
+from permway.challenge.closed_mesh import ClosedMesh
 from permway.challenge.newmark import Meshed
-from permway.challenge.ring import Ring
 
 POINTS = 33
 """Of an element, at which it is known how far it yields within."""
@@ -33,7 +33,7 @@ class Rail:
 
     def __init__(self, mesh: Meshed) -> None:
         found = mesh.elements("rail")
-        self._around = mesh.length_m if isinstance(mesh, Ring) else None
+        self._around = mesh.length_m if isinstance(mesh, ClosedMesh) else None
         self.dofs = np.array([dofs for dofs, _, _ in found])
         self.left = np.array([left for _, left, _ in found])
         self.ends = (float(self.left[0]), float(found[-1][2])) if self._around is None else (-np.inf, np.inf)

@@ -114,7 +114,7 @@ def common(campaign: Campaign, dataset: Dataset) -> tuple[float, float]:
     """Standard deviations of a level that all rows share, and of its slope: neper, and neper an octave."""
     least_known = max((k.sigma for k in campaign.parameters.known.values() if k.log), default=0.0)
     level = float(np.hypot(LEVEL, FROM_TOLERANCE * least_known))
-    if dataset.record.statistic not in ("csd", "psd"):
+    if not dataset.record.spectral:
         return level, 0.0
     known = campaign.stated.irregularity
     if known.knowledge == "unknown":

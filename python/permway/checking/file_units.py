@@ -22,7 +22,7 @@ def file_units(campaign: Campaign, record: Record) -> dict[str, str]:
     try:
         if record.statistic == "frf":
             return _of_responses(campaign, record)
-        if record.statistic in ("csd", "psd"):
+        if record.spectral:
             return _of_channels(campaign, record)
     except InputError:
         # What cannot be read is reported elsewhere.

@@ -40,7 +40,7 @@ def noise_floors(
         Beside the model, put right by what was found.
     """
     for dataset in datasets:
-        if dataset.record.statistic not in ("csd", "psd"):
+        if not dataset.record.spectral:
             continue
         beside = compared.get(dataset.record.name)
         for name, (density, unshared_share) in quietest(dataset).items():
@@ -61,7 +61,7 @@ def noise_floors(
 
 
 def _predicted(beside: Compared | None, name: str) -> float:
-    """Share of a channel's power in its quiet lines that the model foretells; 0 where it foretells none."""
+    """Share of a channel's power in its quiet lines that the model predicts; 0 where it predicts none."""
     if beside is None or name not in beside.channels:
         return 0.0
     row = beside.channels.index(name)

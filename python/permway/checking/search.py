@@ -1,4 +1,4 @@
-"""Which changes of a record the levels and phases speak for."""
+"""Which changes of a record the levels and phases support."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NEAR = 4.0
 
 @dataclass(frozen=True)
 class Reported:
-    """A change that the record speaks for.
+    """A change that the record supports.
 
     Attributes
     ----------

@@ -94,9 +94,9 @@ def time_lines(
     at = [Place(body="rail", x_m=16.0)]
     tried = {name: (line, np.linspace(10.0, 1000.0, frequencies[name])) for name, line in lines().items()}
     found: dict[tuple[str, str], list[float]] = {}
-    begun = time.perf_counter()
+    started = time.perf_counter()
     for done in range(rounds):
-        if done and time.perf_counter() - begun > enough_s:
+        if done and time.perf_counter() - started > enough_s:
             break
         for name, (line, grid) in tried.items():
             # One thread: what the processor spends, whatever else runs. Of several only the clock shows the gain.

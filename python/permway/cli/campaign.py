@@ -87,7 +87,6 @@ def diagnose(
     from permway.campaign.campaign import read_campaign
     from permway.checking.check import check
     from permway.diagnosis.catalogue import known
-    from permway.diagnosis.doubts import doubted
     from permway.files import prepare_folder
     from permway.posterior.diagnose import diagnose as run
     from permway.posterior.journal import FOLDER, keeping, key_of
@@ -102,7 +101,7 @@ def diagnose(
     with keeping(folder / FOLDER, key_of(described, ruled_out)) as steps:
         with stage_bar("diagnosing", as_json) as progress:
             result = run(described, ruled_out=ruled_out, threads=threads, progress=progress)
-        written = write_diagnosis(doubted(result, checked), folder, page=not no_report)
+        written = write_diagnosis(result.with_blunders(checked), folder, page=not no_report)
         steps.close()
     print_result(written if as_json else _in_words(written), as_json)
 

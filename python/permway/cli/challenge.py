@@ -268,7 +268,7 @@ def _scores(folder: Path) -> dict[str, object]:
             "case": s.name,
             "status": s.status,
             "truth": ", ".join(s.truth),
-            "said": ", ".join(s.said),
+            "named": ", ".join(s.named),
             "deviance": s.deviance,
             "found": s.found,
             "placed": s.placed,

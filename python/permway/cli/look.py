@@ -47,7 +47,7 @@ def look(
     Prints channels with units, rates and lengths, or frequency responses, as they are read here; what is missing;
     and the part of a campaign file to paste. Options have the names of the keys of [[records]].
     """
-    from permway.recordings.lab_folder import looked
+    from permway.recordings.lab_folder import examine
     from permway.recordings.look import Asked
     from permway.recordings.readers.hints import Hints
 
@@ -62,7 +62,7 @@ def look(
         unit=_units(unit or []),
         pairs=_pairs(pair or []),
     )
-    result = looked(file, Asked(form, part, sampling_hz, hints))
+    result = examine(file, Asked(form, part, sampling_hz, hints))
     print_result(result if as_json else _shown(result), as_json)
 
 

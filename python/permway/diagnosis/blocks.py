@@ -20,6 +20,9 @@ from permway.diagnosis.calibration_errors import CalibrationErrors
 SURE = 0.25
 """Relative error of a response or a transfer below which it counts by its logarithm."""
 
+FLOOR = 0.003
+"""Relative error that no record is free of: rounding, discretisation, the last decimals (0.026 dB)."""
+
 
 @dataclass(frozen=True)
 class Rows:

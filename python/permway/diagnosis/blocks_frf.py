@@ -11,13 +11,10 @@ import xarray as xr
 from permway.arrays import Complexes, Reals
 from permway.campaign.compare import flat
 from permway.campaign.load import Dataset
-from permway.diagnosis.blocks import SURE, Basis, Rows
+from permway.diagnosis.blocks import FLOOR, SURE, Basis, Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PairColumns, as_complex, as_parts
+from permway.diagnosis.frf_lines import noise_variance, widened
 from permway.diagnosis.gaussian_process import GaussianProcess
-from permway.diagnosis.line_noise import noise_variance, widened
-
-FLOOR = 0.003
-"""Relative error that no record is free of: rounding, discretisation, the last decimals (0.026 dB)."""
 
 REACH = 2
 """Lines to either side over which the variance of noise is taken together."""
@@ -103,14 +100,7 @@ class FrfBlock:
         own_errors = self._relative[..., None] * fine.values(self.frequency)
         self._directions, self._singular, _ = np.linalg.svd(own_errors, full_matrices=False)
         self._sized(pair)
-        names = [data["sensor"].values.astype(str), data["force"].values.astype(str)]
-        sensor, force, frequency = (
-            np.broadcast_to(v, self.measured.shape).reshape(-1)
-            for v in (names[0][:, None, None], names[1][None, :, None], self.frequency)
-        )
-        label = np.char.add(np.char.add(sensor, " < "), force)
-        columns = (label, sensor, force, frequency, decibels.reshape(-1))
-        self.rows = Rows(*(np.tile(v, 2) for v in columns))
+        self.rows = self._labelled(decibels)
 
     @property
     def relative(self) -> Reals:
@@ -121,6 +111,17 @@ class FrfBlock:
     def phase(self) -> Complexes:
         """Of what is there, as a factor of modulus 1, shape (sensors, points, F)."""
         return self._phase
+
+    def _labelled(self, decibels: Reals) -> Rows:
+        """Labels of the rows: all real parts, then all imaginary parts."""
+        names = [self.dataset.data[key].values.astype(str) for key in ("sensor", "force")]
+        sensor, force, frequency = (
+            np.broadcast_to(v, self.measured.shape).reshape(-1)
+            for v in (names[0][:, None, None], names[1][None, :, None], self.frequency)
+        )
+        label = np.char.add(np.char.add(sensor, " < "), force)
+        columns = (label, sensor, force, frequency, decibels.reshape(-1))
+        return Rows(*(np.tile(v, 2) for v in columns))
 
     def _sized(self, pair: float) -> None:
         """Take a size of the pairs' errors, and let go of what came of another."""

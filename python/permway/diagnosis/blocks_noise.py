@@ -23,7 +23,7 @@ NORMAL = 1.4826
 """Standard deviations of a normal variable in its median absolute deviation."""
 
 QUIETEST = 0.1
-"""Quantile over pairs and lines that shows a sensor's noise: where it hears little. Elsewhere the force cell's
+"""Quantile over pairs and lines that shows a sensor's noise: where little reaches it. Elsewhere the force cell's
 noise, or the decimals that coherence is written with, come to more."""
 
 ANY = 20.0

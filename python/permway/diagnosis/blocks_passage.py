@@ -13,12 +13,9 @@ from permway.arrays import Complexes, Reals
 from permway.campaign.compare import NEPER_DB, flat
 from permway.campaign.load import Dataset
 from permway.campaign.passage import spectrum_of
-from permway.diagnosis.blocks import Rows
+from permway.diagnosis.blocks import FLOOR, Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
 from permway.diagnosis.gaussian_process import GaussianProcess
-
-FLOOR = 0.003
-"""Relative error that no record is free of, as of frequency responses: of the spectrum's size about a line."""
 
 ABOUT = 9
 """Lines whose mean square is the size about a line: axles make lobes, and between them nothing is exact either."""

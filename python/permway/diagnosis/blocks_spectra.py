@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 
 import numpy as np
@@ -69,66 +70,52 @@ class SpectraBlock:
         self.dataset, self._expected, self._floor, self._added = dataset, expected, floor, added
         self._away: Complexes = np.zeros(added.shape, dtype=np.complex128) if away is None else away
         data = dataset.data
-        known_Hz, segment_s = data["frequency"].values, dataset.record.segment_s
-        lines = np.flatnonzero(known_Hz * segment_s >= FIRST_LINE - 1e-9)
-        if lines.size == 0:
-            raise InputError(
-                f"has no line that is {FIRST_LINE} lines from zero: nearer ones hold what is beyond zero",
-                where=dataset.record.name,
-                value=f"up to {known_Hz.max():g} Hz, segments of {segment_s:g} s",
-                remedy="give a longer segment_s, or a wider band_Hz",
-            )
-        # Neighbouring lines under Hann's window say half the same.
-        self._lines = lines[::2]
-        self.frequency: Reals = known_Hz[self._lines]
+        self._lines = _used_lines(dataset)
+        self.frequency: Reals = data["frequency"].values[self._lines]
         self.measured: Complexes = data["csd"].values[:, :, self._lines]
-        self.averages = float(data.attrs["averages"])
-        if self.averages < FEWEST:
-            raise InputError(
-                f"has fewer than {FEWEST:g} averages, by which no spectrum is known",
-                where=dataset.record.name,
-                value=round(self.averages, 2),
-                remedy="give a longer record, or a shorter segment_s",
-            )
-        names, everywhere = data["channel"].values.astype(str), np.arange(self.frequency.size)
-        whole = expected["csd"].values[:, :, self._lines]
+        self.averages = _averages(dataset)
+        whole, everywhere = expected["csd"].values[:, :, self._lines], np.arange(self.frequency.size)
         coherent = coherence(whole)
         self.root, self.tree = tree_of(np.nanmean(coherent, axis=-1))
         self._transfers = {(c, o): transfer(whole, c, o, everywhere) for c, o in self.tree}
-        labels, frequency, scale, kind = [], [], [], []
-        self._parts: list[Part] = []
+        self._parts: list[Part] = list(self._factors(coherent))
         self.log_determinant = 0.0
+        self.rows = self._rows()
+        self._span = span or (float(self.frequency[0]), float(self.frequency[-1]))
+
+    def _factors(self, coherent: Reals) -> Iterator[Part]:
+        """The factors of the density: the root's power, then transfer and remainder of every other channel."""
+        everywhere, segment_s = np.arange(self.frequency.size), self.dataset.record.segment_s
         # Of powers by so many averages, and of what remains of one when another's share is taken off.
         single, remaining = (float(np.sqrt(polygamma(1, k))) for k in (self.averages, self.averages - 1.0))
+        yield "power", self.root, self.root, everywhere, np.full(everywhere.size, single)
+        for child, parent in self.tree:
+            g2 = np.clip(coherent[child, parent], 1e-6, 1.0 - 1e-9)
+            at = np.flatnonzero(g2 >= self.LEAST_COHERENCE)
+            relative = np.sqrt((1.0 - g2[at]) / (2.0 * (self.averages - 1.0) * g2[at]) + self._floor**2)
+            yield "transfer", child, parent, at, relative
+            at = np.flatnonzero(g2 <= self.MOST_COHERENCE)
+            torn = TORN / (self.frequency[at] * segment_s) ** 2 / (1.0 - g2[at])
+            yield "rest", child, parent, at, np.hypot(remaining, torn)
 
-        def add(what: str, channel: int, other: int, at: np.ndarray, sigma: Reals) -> None:
-            copies = 2 if what == "transfer" else 1
-            self._parts.append((what, channel, other, at, sigma))
+    def _rows(self) -> Rows:
+        """What the residuals are of; transfers have two for each line."""
+        names = self.dataset.data["channel"].values.astype(str)
+        labels, kind, frequency, scale = [], [], [], []
+        for what, channel, other, at, sigma in self._parts:
             text = names[channel] if what == "power" else f"{names[channel]} {what} {names[other]}"
-            for _ in range(copies):
+            for _ in range(2 if what == "transfer" else 1):
                 labels.extend([text] * at.size)
                 kind.extend([names[channel]] * at.size)
                 frequency.append(self.frequency[at])
                 scale.append((8.686 if what == "transfer" else 4.343) * sigma)
-
-        add("power", self.root, self.root, everywhere, np.full(everywhere.size, single))
-        for child, parent in self.tree:
-            g2 = np.clip(coherent[child, parent], 1e-6, 1.0 - 1e-9)
-            at = np.flatnonzero(g2 >= self.LEAST_COHERENCE)
-            relative = np.sqrt((1.0 - g2[at]) / (2.0 * (self.averages - 1.0) * g2[at]) + floor**2)
-            add("transfer", child, parent, at, relative)
-            at = np.flatnonzero(g2 <= self.MOST_COHERENCE)
-            torn = TORN / (self.frequency[at] * segment_s) ** 2 / (1.0 - g2[at])
-            add("rest", child, parent, at, np.hypot(remaining, torn))
-        text = np.array(labels, dtype=str)
-        self.rows = Rows(
-            text,
+        return Rows(
+            np.array(labels, dtype=str),
             np.array(kind, dtype=str),
-            np.full(text.size, ""),
+            np.full(len(labels), ""),
             np.concatenate(frequency),
             np.concatenate(scale),
         )
-        self._span = span or (float(self.frequency[0]), float(self.frequency[-1]))
 
     def residuals(self, predicted: xr.Dataset) -> Reals:
         """Part by part, transfers as real then imaginary."""
@@ -217,3 +204,30 @@ class SpectraBlock:
 
 LEVEL = GaussianProcess(0.005, 20.0, shortest=0.7)
 """Of the irregularity, over cycles per metre."""
+
+
+def _used_lines(dataset: Dataset) -> np.ndarray:
+    """Every second line from `FIRST_LINE` on: under Hann's window neighbours share half of their information."""
+    known_Hz, segment_s = dataset.data["frequency"].values, dataset.record.segment_s
+    lines = np.flatnonzero(known_Hz * segment_s >= FIRST_LINE - 1e-9)
+    if lines.size == 0:
+        raise InputError(
+            f"has no line that is {FIRST_LINE} lines from zero: nearer ones hold what is beyond zero",
+            where=dataset.record.name,
+            value=f"up to {known_Hz.max():g} Hz, segments of {segment_s:g} s",
+            remedy="give a longer segment_s, or a wider band_Hz",
+        )
+    return lines[::2]
+
+
+def _averages(dataset: Dataset) -> float:
+    """Those of the record, refused if they are fewer than `FEWEST`."""
+    averages = float(dataset.data.attrs["averages"])
+    if averages < FEWEST:
+        raise InputError(
+            f"has fewer than {FEWEST:g} averages, by which no spectrum is known",
+            where=dataset.record.name,
+            value=round(averages, 2),
+            remedy="give a longer record, or a shorter segment_s",
+        )
+    return averages

@@ -12,7 +12,7 @@ import xarray as xr
 from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.compare import NEPER_DB, POWER_DB, curves, flat, third_octaves
-from permway.campaign.kinds import kind_of
+from permway.campaign.kinds import KINDS, kind_of
 from permway.diagnosis.blocks_modes import missed_modes
 from permway.diagnosis.compare_tables import calibration_of, parameters_of
 from permway.diagnosis.fit import Fit, Free, free_parameters
@@ -21,17 +21,6 @@ from permway.diagnosis.residuals import standardised
 from permway.diagnosis.tangent import STEP
 
 RAW, RECALIBRATED, CLEAN = "raw", "recalibrated", "calibration errors out"
-
-KIND = {
-    "frf": "hammer responses",
-    "csd": "spectra of runs",
-    "psd": "spectra of runs",
-    "decay": "decay rates",
-    "transmissibility": "transmissibilities",
-    "material": "moduli",
-    "modes": "modes",
-    "passage": "passages",
-}
 
 
 @dataclass(frozen=True)
@@ -85,8 +74,8 @@ class Comparison:
             residuals, of which 95 % would be if there were noise alone.
         """
         rows = []
-        for kind in dict.fromkeys(KIND[record.attrs["statistic"]] for record in self.records):
-            mine = [i for i, record in enumerate(self.records) if KIND[record.attrs["statistic"]] == kind]
+        for kind in dict.fromkeys(KINDS[record.attrs["statistic"]].title for record in self.records):
+            mine = [i for i, record in enumerate(self.records) if KINDS[record.attrs["statistic"]].title == kind]
             row: dict[str, Any] = {
                 "kind": kind,
                 "records": len(mine),

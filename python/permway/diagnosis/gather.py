@@ -15,8 +15,8 @@ from permway.campaign.predict import predict, why_not
 from permway.diagnosis.block_of import block_of
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
+from permway.diagnosis.frf_lines import LINES_PER_FREQUENCY, thinned
 from permway.diagnosis.observations import Observations
-from permway.diagnosis.thinning import LINES_PER_FREQUENCY, thinned
 from permway.errors import InputError
 
 NOT_MEASURED = "was not measured: the file has no such pair"

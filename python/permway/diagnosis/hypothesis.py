@@ -9,7 +9,7 @@ from typing import Literal, Protocol
 import numpy as np
 
 from permway.campaign.campaign import Campaign
-from permway.diagnosis.fit import Fit, Free
+from permway.diagnosis.fit import Build, Fit, Free
 from permway.diagnosis.location import Location
 
 Domain = Literal["path", "irregularity", "vehicle", "measurement"]
@@ -123,6 +123,32 @@ class Hypothesis:
     def form(self) -> tuple[str, ...]:
         """Effect and names of parameters: joints that are cut and joints that bend are two forms of one effect."""
         return self.entry, self.family, self.variant, *(f.name for f in self.free)
+
+    def stacked_on(
+        self, build: Build, prefix: str, campaign: Campaign | None = None
+    ) -> tuple[Build, tuple[Free, ...]]:
+        """A base with the effect on top: from values to the campaign, and the effect's parameters, renamed.
+
+        Parameters
+        ----------
+        build : callable
+            The base's.
+        prefix : str
+            Before the names of the effect's parameters, as "1.": two effects may be of one kind.
+        campaign : Campaign, optional
+            Whose nominal parameters the hypothesis may move.
+        """
+        names = {prefix + f.name: f.name for f in self.free}
+
+        def made(values: Mapping[str, float]) -> Campaign:
+            nominal = {k: v for k, v in values.items() if k not in names}
+            if self.moves and campaign is not None:
+                known = campaign.parameters.known[self.moves]
+                shift = values[prefix + self.free[0].name]
+                nominal[self.moves] = known.value(known.z(nominal[self.moves]) + shift)
+            return self.amend(build(nominal), {names[k]: v for k, v in values.items() if k in names})
+
+        return made, tuple(Free(prefix + f.name, f.unit, f.value, f.limits) for f in self.free)
 
 
 class Entry(Protocol):

@@ -11,7 +11,7 @@ import xarray as xr
 
 from permway.campaign.campaign import Campaign
 from permway.campaign.load import Dataset
-from permway.diagnosis.stretches import stretches
+from permway.diagnosis.location import stretches
 from permway.errors import InputError
 from permway.recordings.channel import Point, Sensor
 

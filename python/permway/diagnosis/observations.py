@@ -23,9 +23,9 @@ from permway.campaign.predict import (
 )
 from permway.diagnosis.blocks import Block, Rows
 from permway.diagnosis.blocks_noise import NoiseBlock
+from permway.diagnosis.frf_lines import thinned
 from permway.diagnosis.gaussian_process import FIRST_LENGTH
 from permway.diagnosis.side_by_side import threads_of_solver
-from permway.diagnosis.thinning import thinned
 from permway.diagnosis.whitener import AllColumns, Whitener
 
 

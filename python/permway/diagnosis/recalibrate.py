@@ -20,7 +20,7 @@ from permway.errors import InputError
 UNFIT, COARSE = 1.5, 1e-3
 """Mean square of the residuals from which a model does not fit, and share of them that a step must then gain."""
 
-FORETOLD = 0.95
+AS_PREDICTED = 0.95
 """Ratio of a step's gain to what the slopes predicted, or the other way round, from which they serve once more."""
 
 CURVED, BENDS = 0.5, 3
@@ -28,7 +28,7 @@ CURVED, BENDS = 0.5, 3
 that it met: a second-order correction, as Fletcher's (1982) of constrained steps; and how often."""
 
 AT_REST = 0.1
-"""Share of the least gain of a step below which slopes that are exact foretell none worth taking."""
+"""Share of the least gain of a step below which slopes that are exact predict none worth taking."""
 
 
 def recalibrate(
@@ -117,7 +117,7 @@ def _descended(problem: Problem, z: Reals, most_steps: int) -> tuple[State, Tang
         state = state if moved is None else moved
         if gained >= enough:
             # Where the step did what the slopes predicted, they do for the next.
-            if not FORETOLD * predicted < gained < predicted / FORETOLD:
+            if not AS_PREDICTED * predicted < gained < predicted / AS_PREDICTED:
                 tangent = problem.tangent(state)
         elif fresh and moved is None:
             break

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from permway.checking.check import Checked
 from permway.diagnosis.compare import Comparison
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.verdict import Verdict
+from permway.diagnosis.verdict_parts import Doubt
 from permway.diagnosis.weighed import Weighed
 
 
@@ -39,3 +41,20 @@ class Diagnosis:
     after: Comparison | None
     seconds: Mapping[str, float]
     weighed: Weighed
+
+    def with_blunders(self, checked: Checked) -> Diagnosis:
+        """With what a check of the same campaign found in its verdict."""
+        doubts = tuple(
+            Doubt(
+                kind=one.kind,
+                where=one.where,
+                what=one.what,
+                remedy=one.remedy,
+                log_odds=one.log_odds,
+                asked=one.asked,
+            )
+            # Bad channels are effects of the verdict already.
+            for one in checked.blunders
+            if one.kind != "bad channel"
+        )
+        return replace(self, verdict=self.verdict.model_copy(update={"blunders": doubts}))

@@ -21,11 +21,9 @@ from permway.diagnosis.clock import Progress
 from permway.diagnosis.fit import Fit, free_parameters, limits_of
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Hypothesis, Situation
-from permway.diagnosis.location import Location
+from permway.diagnosis.location import Location, stretches
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.side_by_side import one_thread_of_blas
-from permway.diagnosis.stacking import stacked
-from permway.diagnosis.stretches import stretches
 from permway.diagnosis.tangent import Problem
 from permway.errors import InputError, SolveError
 from permway.model.line import Line
@@ -194,7 +192,7 @@ class _Base:
     def effect(self, hypothesis: Hypothesis) -> tuple[Reals, Reals, Reals] | None:
         """The first start that can be solved: its coordinates, its change of the residuals, the slopes there."""
         fit, own = self.fit, self.fit.z.size
-        build, free = stacked(fit.build, hypothesis, "effect.", fit.observations.campaign)
+        build, free = hypothesis.stacked_on(fit.build, "effect.", fit.observations.campaign)
         problem = Problem(fit.observations, build, (*fit.free, *free))
         low, high = limits_of(hypothesis.free)
         for start in hypothesis.starts:

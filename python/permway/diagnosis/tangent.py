@@ -55,7 +55,7 @@ class Tangent:
         return np.asarray(self.curvature / inflation + np.eye(self.jacobian.shape[1]))
 
     def curved(self, state: State, tried: State) -> State:
-        """A state with the part of its change on the way to another that slopes do not foretell."""
+        """A state with the part of its change on the way to another that slopes do not predict."""
         further = tried.residuals - self.jacobian @ (tried.z - state.z)
         return State(state.z, state.solved, further)
 
@@ -112,7 +112,7 @@ class Problem:
         return tangent_of(state, self.observations.whitener, slopes, self.observations.log_determinant)
 
     def jacobian(self, state: State) -> Reals:
-        """Derivative of the residuals by z: forward differences, solves spared where derivatives do."""
+        """Derivative of the residuals by z: forward differences, without solves where derivatives serve."""
         nearby = Nearby(self.observations, state.solved)
         nearby.derive()
         return self.columns(state, range(len(self.free)), nearby)

@@ -62,7 +62,7 @@ class Verdict(VerdictPart):
     effects: tuple[Effect, ...] = ()
     """What is missing, strongest first; what is suspected, if the status is "insufficient"."""
     evidence: Weight = Weight()
-    """How strongly the records speak for it."""
+    """How strongly the records support it."""
     held_out: dict[str, HeldOutGain] = Field(default_factory=dict)
     """By axis (speeds, channels, places, bands, repeats, ...): the gain on records that were not fitted."""
     placebo: dict[str, HeldOutGain] = Field(default_factory=dict)

@@ -135,14 +135,14 @@ class Effect(VerdictPart):
 
 
 E_VALUE = 20.0
-"""From which an e-value speaks for an effect."""
+"""From which an e-value supports an effect."""
 
 Condition = Literal["bic_gain", "e_value", "held_out", "placebo", "explained_gap", "misfit"]
 """What a suspicion has to meet to be called missing."""
 
 
 class Weight(VerdictPart):
-    """How strongly the records speak for the effects together, against the recalibrated base."""
+    """How strongly the records support the effects together, against the recalibrated base."""
 
     bic_gain: Number | None = None
     """Gain of BIC."""

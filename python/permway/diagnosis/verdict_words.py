@@ -18,7 +18,7 @@ MOST_DIGITS = 7
 """Of an interval's ends."""
 
 INCOMPLETE = 1.5
-"""Misfit from which an amended model is said not to be all of it."""
+"""Misfit from which an amended model is called incomplete."""
 
 MOST_OUTSIDE = 2
 """Parameters outside their tolerance that a sentence names, at most."""
@@ -230,7 +230,7 @@ def _short(verdict: Verdict) -> str:
     words: dict[Condition, str] = {
         "bic_gain": f"its gain of BIC is {number(weight.bic_gain)}, {number(asked)} are asked",
         "e_value": f"its e-value is {number(weight.e_value)}, {E_VALUE:.0f} are asked",
-        "held_out": "records that were left out are not foretold better by it",
+        "held_out": "records that were left out are not predicted better by it",
         "placebo": "as many parameters elsewhere gain half as much",
         "explained_gap": f"it explains {number(None if gap is None else 100.0 * gap)} % of what is missing",
         "misfit": f"what is left has {number(left)} times the mean square that errors explain",

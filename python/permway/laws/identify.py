@@ -19,7 +19,7 @@ from permway.laws.base import Law
 from permway.laws.dma import DmaTable
 from permway.laws.families import Scales, family
 from permway.laws.intervals import Parameter, parameter_table
-from permway.laws.search import STEPS, Found, Problem, Progress, nodes_of, search
+from permway.laws.search import STEPS, Problem, Progress, SearchResult, nodes_of, search
 from permway.laws.shift_fit import ShiftFamily, middle, shift_family
 from permway.laws.tfdv import TFDV
 
@@ -195,7 +195,7 @@ def _scales(table: DmaTable, shifted: ShiftFamily) -> Scales:
 def _report(
     problem: Problem,
     table: DmaTable,
-    found: Found,
+    found: SearchResult,
     reference_C: float | None,
     vertical: str,
     seed: int,

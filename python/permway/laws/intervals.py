@@ -31,11 +31,6 @@ class Parameter:
     high: float
     note: str = ""
 
-    @property
-    def identifiable(self) -> bool:
-        """Whether the data say anything of it."""
-        return not self.note
-
 
 def parameter_table(problem: Problem, x: Reals, jacobian: Reals, square: float) -> tuple[Parameter, ...]:
     """Values and 90 % intervals of the parameters of law and shift.

@@ -87,7 +87,7 @@ class Problem:
 
 
 @dataclass(frozen=True)
-class Found:
+class SearchResult:
     """The optimum: coordinates, Jacobian of the residuals there, and how it was reached."""
 
     x: Reals
@@ -105,7 +105,7 @@ def nodes_of(table: DmaTable) -> Reals:
     return nodes
 
 
-def search(problem: Problem, table: DmaTable, seed: int, progress: Progress | None) -> Found:
+def search(problem: Problem, table: DmaTable, seed: int, progress: Progress | None) -> SearchResult:
     """Find the optimum of a problem.
 
     A free shift is searched for as WLF first, and freed in the last step from where that ended.
@@ -133,7 +133,7 @@ def search(problem: Problem, table: DmaTable, seed: int, progress: Progress | No
         evaluations += sum(int(result.nfev + 2 * result.njev * len(problem.bounds)) for result in freed)
         finishes = sorted(freed, key=lambda result: float(result.cost))
     best = finishes[0]
-    return Found(
+    return SearchResult(
         x=np.asarray(best.x, dtype=np.float64),
         jacobian=np.asarray(best.jac, dtype=np.float64),
         evaluations=evaluations,

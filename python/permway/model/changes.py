@@ -75,7 +75,7 @@ class Scatter(FrozenModel):
 
     def factors(self, count: int) -> Reals:
         """Factors of `count` joints."""
-        # The raw stream of PCG64 is numpy's promise; that of its normal numbers is not.
+        # The raw stream of PCG64 is guaranteed by numpy; that of its normal numbers is not.
         raw = np.atleast_1d(np.random.PCG64(self.seed).random_raw(count))
         uniform = ((raw >> np.uint64(11)).astype(np.float64) + 0.5) * 2.0**-53
         spread = np.sqrt(np.log1p(self.relative_std**2))

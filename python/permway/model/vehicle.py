@@ -11,7 +11,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 from permway.arrays import Complexes, Reals, check_frequency
 from permway.errors import InputError
 from permway.model import vehicle_car as car
-from permway.model.vehicle_additions import AnyAddition, check_additions, hung_mass_kg
+from permway.model.vehicle_additions import AnyAddition, attached_mass_kg, check_additions
 from permway.model.vehicle_condensed import Condensed, condensed
 from permway.records import FrozenModel
 
@@ -102,7 +102,7 @@ class Vehicle(FrozenModel):
     def static_wheel_load_N(self) -> float:
         """Weight on one of the eight wheels of a car, N, whatever the share; resonators' is spread evenly."""
         mass = self.car_body_mass_kg + 2.0 * self.bogie_mass_kg + 4.0 * self.wheelset_mass_kg
-        mass += hung_mass_kg(self.additions)
+        mass += attached_mass_kg(self.additions)
         return mass * STANDARD_GRAVITY / 8.0
 
     def lags_m(self) -> Reals:

@@ -191,6 +191,6 @@ def check_additions(additions: Sequence[AnyAddition]) -> None:
         seen |= kinds
 
 
-def hung_mass_kg(additions: Sequence[AnyAddition]) -> float:
+def attached_mass_kg(additions: Sequence[AnyAddition]) -> float:
     """Mass that resonators add to a car."""
     return sum(a.mass_kg * len(a.at()) for a in additions if isinstance(a, Resonator))

@@ -1,8 +1,8 @@
 """The pad that makes the paper's tables come out: free at each temperature, and by one law for all three.
 
 The paper prints neither the pad's stiffness nor its shift factors (Table 4 is lost), so both are identified from
-tables 5 and 7 and from the minima of the total flexibility. Tables 6 (which hardly feels the pad) and 8 (which is
-open) take no part.
+tables 5 and 7 and from the minima of the total flexibility. Tables 6 (which hardly depends on the pad) and 8
+(which is open) take no part.
 """
 
 from __future__ import annotations

@@ -67,7 +67,7 @@ def _mechanics() -> list[Misprint]:
         ),
         Misprint(
             "4.2.1, Figure 11",
-            "The wheel's flexibility is said to be largest at 1 Hz because a natural frequency of the secondary "
+            "The wheel's flexibility is stated to be largest at 1 Hz because a natural frequency of the secondary "
             f"suspension lies there. The body's bounce lies at "
             f"{train().vehicle.natural_frequencies_Hz()[4]:.2f} Hz by Table 2, and the flexibility of a free "
             "vehicle grows without limit towards 0 Hz: 1 Hz is merely the lowest frequency drawn.",
@@ -114,7 +114,7 @@ def _irregularity() -> list[Misprint]:
         Misprint(
             "Table 6",
             "Pitch acceleration is given in (m/s²)²/Hz; it is an angular acceleration, (rad/s²)²/Hz. Its text "
-            "says 0.0081 and 0.0079 where the table has 0.00081 and 0.00079; the table's values come out.",
+            "states 0.0081 and 0.0079 where the table has 0.00081 and 0.00079; the table's values come out.",
             "The table is followed.",
         ),
     ]
@@ -148,7 +148,7 @@ def _pad(result: Reproduction) -> list[Misprint]:
         ),
         Misprint(
             "3.5.3",
-            "The test data shown are said to cover (−30, −20) °C; the results are for 20, −20 and −30 °C.",
+            "The test data shown are stated to cover (−30, −20) °C; the results are for 20, −20 and −30 °C.",
             "Figure 9 covers −30 to 20 °C.",
         ),
     ]
@@ -174,7 +174,8 @@ def _tables(result: Reproduction) -> list[Misprint]:
         ),
         Misprint(
             "Conclusion 2 and 4.2.1 against Table 5",
-            "The minimum of the total flexibility is said to get smaller in the cold. The printed forces ask for "
+            "The minimum of the total flexibility is stated to get smaller in the cold. The printed forces ask "
+            "for "
             + ", ".join(f"{v * 1e9:.2f} nm/N at {t} °C".replace("-", "−") for t, v in asked.items())
             + " where they peak (irregularity over force, one wheel alone): larger in the cold, for the loss "
             "factor fills the minimum.",
@@ -199,14 +200,14 @@ def _wording() -> list[Misprint]:
         ),
         Misprint(
             "4.2.1, Figure 14",
-            "The curves are said to coincide below 25 Hz because the pad's viscoelasticity “affects the wheel "
+            "The curves are stated to coincide below 25 Hz because the pad's viscoelasticity “affects the wheel "
             "movement”. It must mean that it does not, as 4.2.2 and conclusion 3 say.",
             "Read so.",
         ),
         Misprint(
             "Conclusion 1",
-            "Storage modulus and loss factor are said to “decrease with temperature and increase frequency”; the "
-            "abstract says that they increase as temperature falls and frequency rises.",
+            "Storage modulus and loss factor are stated to “decrease with temperature and increase frequency”; "
+            "the abstract states that they increase as temperature falls and frequency rises.",
             "The abstract is judged.",
         ),
     ]

@@ -35,7 +35,7 @@ def write_report(output: Path, *, threads: int | None = None, progress: Progress
     Raises
     ------
     InputError
-        If the folder cannot be written; said before the work.
+        If the folder cannot be written; raised before the work.
     """
     output = Path(output)
     prepare_folder(output, (PAGE, NUMBERS))

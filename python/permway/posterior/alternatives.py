@@ -1,6 +1,6 @@
 """What else may be what a set of amendments was fitted with: other forms begun at the same place and frequency.
 
-A sharp resonance shows only near its own frequency, which a look at a few does not meet. Once one form has been
+A narrow resonance shows only near its own frequency, which a look at a few does not meet. Once one form has been
 fitted there, all others with a frequency, a loss factor or a place are looked at with the same.
 """
 

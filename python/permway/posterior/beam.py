@@ -204,8 +204,8 @@ def completed(
 
     def work(trial: Trial) -> Trial | None:
         try:
-            begun = fitter.begin(_model(root, trial.cell), trial.z, trial.hyper, bend=trial.bend)
-            return _kept(trial, finished(fitter, begun, (trial.cell.hypothesis,)))
+            started = fitter.begin(_model(root, trial.cell), trial.z, trial.hyper, bend=trial.bend)
+            return _kept(trial, finished(fitter, started, (trial.cell.hypothesis,)))
         except (InputError, SolveError):
             return None
 

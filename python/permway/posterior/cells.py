@@ -15,11 +15,10 @@ from permway.diagnosis.catalogue import entries
 from permway.diagnosis.fit import Fit as Base
 from permway.diagnosis.fit import Free, free_parameters
 from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
-from permway.diagnosis.location import Location
-from permway.diagnosis.stretches import stretches
+from permway.diagnosis.location import Location, stretches
 from permway.posterior import generic, stated
 from permway.posterior.fit import Fit
-from permway.posterior.spans import BEYOND, begun, spread_out, tuned, widened
+from permway.posterior.spans import BEYOND, spread_out, tuned, widened, with_starts
 
 SPACING_M = 1.0
 """Between places along a body, m: a third of what the places' priors span."""
@@ -81,7 +80,7 @@ def cells(base: Fit, ruled_out: Collection[str] = ()) -> list[Cell]:
                 scaled
                 for hypothesis in _offered(entry, situations)
                 for scaled in spread_out(
-                    begun(widened(hypothesis if name == generic.ID else tuned(hypothesis, band)))
+                    with_starts(widened(hypothesis if name == generic.ID else tuned(hypothesis, band)))
                 )
             ]
             if found:

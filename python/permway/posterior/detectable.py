@@ -1,4 +1,4 @@
-"""The smallest size of every effect that the records would have shown, where nothing is said to be missing."""
+"""The smallest size of every effect that the records would have shown, where nothing is called missing."""
 
 from __future__ import annotations
 

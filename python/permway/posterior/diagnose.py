@@ -15,13 +15,13 @@ from permway.diagnosis.clock import Clock, Progress
 from permway.diagnosis.compare import RECALIBRATED, assemble
 from permway.diagnosis.fit import WIDTH
 from permway.diagnosis.fit import Fit as Base
+from permway.diagnosis.frf_lines import LINES_PER_FREQUENCY
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.labels import mislabelled
 from permway.diagnosis.observations import Observations
 from permway.diagnosis.recalibrated_values import recalibrated_of
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.side_by_side import one_thread_of_blas
-from permway.diagnosis.thinning import LINES_PER_FREQUENCY
 from permway.diagnosis.verdict import RIGHT, Verdict
 from permway.diagnosis.verdict_parts import Moved, NextMeasurement
 from permway.diagnosis.verdict_records import mixed_up, with_bad_channels
@@ -30,7 +30,7 @@ from permway.posterior.beam import Member
 from permway.posterior.covariance import Frame
 from permway.posterior.detectable import detectable
 from permway.posterior.fit import Fit, Fitter
-from permway.posterior.held_out import gains
+from permway.posterior.held_out import Gain, gains
 from permway.posterior.masses import Masses
 from permway.posterior.places import weighed
 from permway.posterior.search import explored
@@ -78,16 +78,11 @@ def diagnose(
     search = explored(Fitter(frame), ruled_out=ruled_out, progress=clock)
     masses = Masses.of(search.members)
     base = as_base(masses.empty.fit)
-    mixed = mislabelled(base)
     clock("hold out")
     best, empty = masses.best, masses.empty
     held_out = gains(empty.fit, best.fit) if best.amendments else []
     after = as_base(best.fit) if best.amendments else base
-    verdict = (
-        mixed_up(base, mixed)
-        if mixed is not None
-        else verdict_of(masses, held_out, recalibrated_of(base), with_moved(recalibrated_of(after), best))
-    )
+    verdict = _verdict(masses, held_out, base, after)
     if verdict.status in RIGHT:
         verdict = verdict.model_copy(update={"detectable": detectable(*search.small, frame.sigma.size)})
     clock("advise")
@@ -105,6 +100,14 @@ def diagnose(
         seconds=clock.seconds(),
         weighed=weighed(masses, search.small[0]),
     )
+
+
+def _verdict(masses: Masses, held_out: Sequence[Gain], base: Base, after: Base) -> Verdict:
+    """What the posterior states, or that labels of a record are mixed up."""
+    mixed = mislabelled(base)
+    if mixed is not None:
+        return mixed_up(base, mixed)
+    return verdict_of(masses, held_out, recalibrated_of(base), with_moved(recalibrated_of(after), masses.best))
 
 
 def _enough(campaign: Campaign, kept: Sequence[Dataset], whole: Observations) -> Observations:

@@ -106,7 +106,7 @@ def _step(slope: Reals, bend: Reals, x: Reals, low: Reals, high: Reals) -> Reals
     if not free.size:
         return shift
     shift[free] = -np.linalg.solve(bend[np.ix_(free, free)], slope[free])
-    # What no record tells of stands where its prior has it, without a slope.
+    # What no record constrains stands where its prior has it, without a slope.
     shift *= min(1.0, LONGEST / max(float(np.abs(shift).max()), LONGEST))
     kept = np.clip(x + shift, low, high) - x
     if float(slope @ kept) < 0.5 * float(slope @ shift):

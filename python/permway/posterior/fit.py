@@ -19,7 +19,6 @@ from permway.diagnosis.bounded import bounded_step
 from permway.diagnosis.catalogue._interval import spacing_of
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.hypothesis import Hypothesis
-from permway.diagnosis.stacking import stacked
 from permway.diagnosis.tangent import Problem, State
 from permway.errors import InputError
 from permway.posterior.covariance import Covariance, Frame, Roots
@@ -189,7 +188,7 @@ def grown(fit: Fit, hypothesis: Hypothesis, prefix: str) -> Model:
 
 def extended(model: Model, hypothesis: Hypothesis, prefix: str, campaign: Campaign) -> Model:
     """A model with an amendment more; the campaign is that of the nominal parameters."""
-    build, free = stacked(model.build, hypothesis, prefix, campaign)
+    build, free = hypothesis.stacked_on(model.build, prefix, campaign)
     return Model(build, (*model.free, *free), (*model.stretches, *_stretch(hypothesis, campaign, len(model.free))))
 
 
@@ -333,7 +332,7 @@ class Fitter:
         return new
 
     def _corrected(self, problem: Problem, fit: Fit, tried: Fit, damping: float) -> Fit | None:
-        """A step again, with the part of the residuals' change that slopes did not foretell."""
+        """A step again, with the part of the residuals' change that slopes did not predict."""
         bent = tried.state.residuals - fit.jacobian @ (tried.z - fit.z)
         slope = fit.slope(bent) + fit.z
         low, high = fit.model.limits

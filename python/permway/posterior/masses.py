@@ -14,7 +14,7 @@ CLASS = 0.95
 """Posterior mass that a class of names holds."""
 
 LIKELY = 0.5
-"""Posterior probability from which nothing is said to be missing, or something of no catalogue."""
+"""Posterior probability from which nothing is called missing, or something of no catalogue."""
 
 ALIKE = 2_000
 """Residuals from which the model's own idealisation shows between sets with amendments: see

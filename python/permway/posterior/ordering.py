@@ -50,8 +50,8 @@ def weighed(
     frame = fitter.frame.about(best.state.solved, best.covariance, best.state.residuals)
     slopes = Fitter(frame).begin(best.model, best.z, best.hyper)
     again = Fitter(frame.with_idealisation(idealised(slopes)))
-    begun = [again.begin(fit.model, fit.z, fit.hyper, bend=fit.bend) for fit in fits]
-    return again, [finished(again, fit, own) for fit, own in zip(begun, amendments, strict=True)]
+    started = [again.begin(fit.model, fit.z, fit.hyper, bend=fit.bend) for fit in fits]
+    return again, [finished(again, fit, own) for fit, own in zip(started, amendments, strict=True)]
 
 
 def _pruned(fitter: Fitter, members: list[Member], nominal: Model) -> list[Member]:
@@ -63,7 +63,7 @@ def _pruned(fitter: Fitter, members: list[Member], nominal: Model) -> list[Membe
         best = members[0]
         found = []
         for own, z in _smaller(best):
-            fit = _begun(fitter, best, own, z, nominal)
+            fit = _started(fitter, best, own, z, nominal)
             if fit is not None:
                 amendments = tuple(best.amendments[i] for i in own)
                 priors = tuple(best.log_priors[i] for i in own)
@@ -99,7 +99,7 @@ def _over_both(member: Member, index: int, other: int) -> Reals | None:
     return None if None in z else np.array(z, dtype=np.float64)
 
 
-def _begun(fitter: Fitter, member: Member, own: Sequence[int], z: Sequence[Reals], nominal: Model) -> Fit | None:
+def _started(fitter: Fitter, member: Member, own: Sequence[int], z: Sequence[Reals], nominal: Model) -> Fit | None:
     """A set of some of a member's amendments, at these parameters; the discrepancy falls anew."""
     fit, model = member.fit, nominal
     for number, index in enumerate(own, start=1):

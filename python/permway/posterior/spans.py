@@ -64,7 +64,7 @@ def tuned(hypothesis: Hypothesis, band_Hz: tuple[float, float]) -> Hypothesis:
     return replace(hypothesis, free=tuple(free), starts=starts)
 
 
-def begun(hypothesis: Hypothesis) -> Hypothesis:
+def with_starts(hypothesis: Hypothesis) -> Hypothesis:
     """The same with starts on either side, in place of those at which there is nothing: no look shows these."""
     at = next((i for i, f in enumerate(hypothesis.free) if f.name == hypothesis.size), None)
     if at is None:

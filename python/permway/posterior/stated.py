@@ -8,8 +8,9 @@ from permway.campaign.campaign import Campaign
 from permway.campaign.parameters import Known
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where
+from permway.diagnosis.verdict_words import STATED
 
-ID = "owner_value"
+ID = STATED
 DOMAIN: Domain = "path"
 FAMILY = "stated value"
 SUMMARY = "A nominal parameter is farther from its stated value than its tolerance says."
@@ -22,7 +23,7 @@ WIDER = 5.0
 """Standard deviation of how far off a wrongly stated value is, in standard deviations of its tolerance. Twice as
 much lowers the evidence of a wrong value by at most ln 2 nats."""
 
-BEGUN = (-1.0, 1.0)
+STARTS = (-1.0, 1.0)
 """Where a fit begins, in standard deviations of that."""
 
 
@@ -52,7 +53,7 @@ def _of(known: Known, domain: Domain) -> Hypothesis:
         free=(Free("deviations", "1", lambda z: WIDER * z, (-8.0, 8.0)),),
         amend=amend,
         locate=lambda _: Where(what=name),
-        starts=tuple((start,) for start in BEGUN),
+        starts=tuple((start,) for start in STARTS),
         law=lambda v: _words(known, v["deviations"]),
         size="deviations",
         none=0.0,

@@ -49,7 +49,7 @@ _REMARK = re.compile(r"^# (.*)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
-class Found:
+class StatedTable:
     """A table of a campaign file, and those of its keys that the file of recordings does not say."""
 
     table: dict[str, Any]
@@ -66,7 +66,7 @@ class Export:
         From the folder on.
     format : str
         "" if none is known.
-    sensors, forces, records : list of Found
+    sensors, forces, records : list of StatedTable
         Tables of a campaign file that would use it, as `permway look` gives them.
     remarks : list of str
         What was left aside, and why.
@@ -76,9 +76,9 @@ class Export:
 
     path: Path
     format: str
-    sensors: list[Found] = field(default_factory=list)
-    forces: list[Found] = field(default_factory=list)
-    records: list[Found] = field(default_factory=list)
+    sensors: list[StatedTable] = field(default_factory=list)
+    forces: list[StatedTable] = field(default_factory=list)
+    records: list[StatedTable] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     shows: dict[str, Any] = field(default_factory=dict)
 
@@ -116,7 +116,7 @@ def _wanted(inside: Path, path: Path) -> bool:
 def _export(folder: Path, path: Path) -> Export:
     name = path.relative_to(folder)
     try:
-        seen = looked(path)
+        seen = examine(path)
     except InputError as error:
         return Export(name, "", remarks=[f"{error.what}; {error.remedy}".rstrip("; ")])
     part = str(seen.get("campaign", ""))
@@ -139,7 +139,7 @@ def _export(folder: Path, path: Path) -> Export:
     )
 
 
-def looked(path: Path, asked: Asked | None = None) -> dict[str, Any]:
+def examine(path: Path, asked: Asked | None = None) -> dict[str, Any]:
     """A look; of a table whose names do not say what was struck, the file's name does: one point a file.
 
     A table of one response needs no name. Without one its labels would be the same in every file of a folder, and
@@ -189,11 +189,14 @@ def _short(seen: Mapping[str, Any]) -> bool:
     return "responses" not in seen and bool(rows) and all((row["samples"] or 0) < FEWEST_SAMPLES for row in rows)
 
 
-def _tables(part: str, stated: Mapping[str, Any], key: str) -> list[Found]:
+def _tables(part: str, stated: Mapping[str, Any], key: str) -> list[StatedTable]:
     """Tables of one kind, each with the keys that stand there with a remark that the file does not say them."""
     blocks = [block for block in _BLOCK.split(part) if block.startswith(f"[[{key}]]")]
     tables = stated.get(key, ())
-    return [Found(dict(table), set(_UNSTATED.findall(block))) for table, block in zip(tables, blocks, strict=True)]
+    return [
+        StatedTable(dict(table), set(_UNSTATED.findall(block)))
+        for table, block in zip(tables, blocks, strict=True)
+    ]
 
 
 def _shown(seen: dict[str, Any]) -> dict[str, Any]:

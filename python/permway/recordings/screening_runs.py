@@ -92,10 +92,10 @@ def _by_chance(same: Flags) -> int:
 
 
 def spikes(name: str, values: Reals, usable: Flags) -> list[Finding]:
-    """One or two samples far from what their neighbours on both sides foretell, by the local scale of that."""
+    """One or two samples far from what their neighbours on both sides predict, by the local scale of that."""
     centre = float(np.median(values[usable]))
     filled = np.where(usable, values, centre) - centre
-    # What was lost has no neighbours to be foretold from, nor to foretell.
+    # What was lost has no neighbours to be predicted from, nor to predict.
     sure = ~ndimage.binary_dilation(~usable, iterations=_SPIKE_ORDER)
     if sure.sum() < 256:
         return []
@@ -119,7 +119,7 @@ def spikes(name: str, values: Reals, usable: Flags) -> list[Finding]:
         while b < size.size and size[b] > 0.6 * size[top] and error[b] * error[top] > 0.0:
             b += 1
         if b - a <= 2:
-            what = f"{values[top]:.6g}, {size[top] / scale[top]:.0f} local deviations from what is foretold"
+            what = f"{values[top]:.6g}, {size[top] / scale[top]:.0f} local deviations from what is predicted"
             found.append(Finding("spike", "warning", name, what, a, b - 1, value=float(values[top])))
     return found
 
@@ -135,7 +135,7 @@ def _interpolation_error(values: Reals) -> Reals:
     length = int(2 ** np.ceil(np.log2(2 * values.size)))
     power = np.abs(np.fft.rfft(tame - tame.mean(), length)) ** 2
     covariance = np.fft.irfft(power)[: _SPIKE_ORDER + 1]
-    # A floor 40 dB down keeps smooth records from foretelling their own rounding.
+    # A floor 40 dB down keeps smooth records from predicting their own rounding.
     covariance[0] *= 1.0 + 1e-4
     if not covariance[0] > 0.0:
         return np.zeros(values.size)

@@ -10,7 +10,7 @@ from typing import Any
 
 from permway.errors import InputError
 from permway.files import prepare_folder, write_text
-from permway.recordings.lab_folder import Export, Found, read_folder
+from permway.recordings.lab_folder import Export, StatedTable, read_folder
 from permway.recordings.skeleton_model import model_text
 
 CAMPAIGN, MODEL = "campaign.toml", "model.toml"
@@ -92,9 +92,9 @@ class Begun:
 
     def __init__(self, exports: Sequence[Export]) -> None:
         self.exports = exports
-        self.sensors: dict[str, Found] = {}
-        self.forces: dict[str, Found] = {}
-        self.records: list[tuple[str, Found, Export]] = []
+        self.sensors: dict[str, StatedTable] = {}
+        self.forces: dict[str, StatedTable] = {}
+        self.records: list[tuple[str, StatedTable, Export]] = []
         for export in exports:
             names = _named(self.sensors, export.sensors, export, ("quantity", "unit"))
             points = _named(self.forces, export.forces, export, ("unit",))
@@ -104,7 +104,7 @@ class Begun:
                     if key in renamed:
                         renamed[key] = {label: known.get(name, name) for label, name in renamed[key].items()}
                 name = self._record_name(export, record.table)
-                self.records.append((name, Found(renamed, record.unstated), export))
+                self.records.append((name, StatedTable(renamed, record.unstated), export))
 
     def text(self, title: str) -> str:
         """The campaign file."""
@@ -155,7 +155,7 @@ class Begun:
 
 
 def _named(
-    known: dict[str, Found], tables: Sequence[Found], export: Export, alike: Sequence[str]
+    known: dict[str, StatedTable], tables: Sequence[StatedTable], export: Export, alike: Sequence[str]
 ) -> dict[str, str]:
     """Names under which a file's sensors or points are known: one of another unit is another."""
     names: dict[str, str] = {}
@@ -199,7 +199,7 @@ def _asked(line: str, remark: str) -> str:
     return f"# {line:<33}# {remark}"
 
 
-def _unit(one: Found) -> list[str]:
+def _unit(one: StatedTable) -> list[str]:
     keys = [key for key in ("quantity", "unit") if key in one.table]
     lines = [f"{key} = {_quoted(one.table[key])}" for key in keys]
     if "unit" in one.unstated:
@@ -214,7 +214,7 @@ def _condition(name: str, kind: str) -> list[str]:
     return [*lines, _asked("temperature_C = 15.0", "option: how warm? Asked for where a law depends on it")]
 
 
-def _record(name: str, found: Found, export: Export) -> list[str]:
+def _record(name: str, found: StatedTable, export: Export) -> list[str]:
     record = found.table
     struck = record["statistic"] == "frf"
     stated = ", ".join(value for value in export.shows.values() if value)

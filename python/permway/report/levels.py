@@ -85,13 +85,13 @@ def draw_insertion_loss(data: xr.Dataset, folder: str | Path, *, dpi: int = 150)
     return _write(figure, axes, data, "insertion loss, dB", Path(folder) / "insertion-loss.png", dpi)
 
 
-def _write(figure: Figure, axes: Axes, data: xr.Dataset, says: str, path: Path, dpi: int) -> Path:
+def _write(figure: Figure, axes: Axes, data: xr.Dataset, label: str, path: Path, dpi: int) -> Path:
     nominal: Reals = data["band"].values
     bands = bands_between(float(nominal[0]), float(nominal[-1]))
     step = 1 if nominal.size <= _MOST_LABELS else 3
     axes.set_xticks(np.arange(0, nominal.size, step), bands.label[::step])
     axes.set_xlabel("one-third octave, Hz", fontsize=_FONT + 1)
-    axes.set_ylabel(says, fontsize=_FONT + 1)
+    axes.set_ylabel(label, fontsize=_FONT + 1)
     axes.tick_params(labelsize=_FONT)
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(color="0.9", linewidth=0.5)

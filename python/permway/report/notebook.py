@@ -139,7 +139,7 @@ def _reach(line: Line, places: Iterable[float]) -> tuple[float, float]:
 
 
 def _on(locations: Sequence[Location], rows: dict[str, float]) -> list[tuple[str, float, float]]:
-    """Label, x and height of each spot."""
+    """Label, x and height of each mark."""
     return [(f"{body} at {x:g} m", x, rows[body.partition("[")[0]]) for body, x in locations]
 
 

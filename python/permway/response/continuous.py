@@ -130,20 +130,20 @@ def continuous(
     return _bed(line, body, found, rigid, stretch, notes)
 
 
-_Found = list[tuple[str, str, int, float, int]]
+_Layers = list[tuple[str, str, int, float, int]]
 """Upper and lower body, law, scale per metre and joints of each layer."""
 
 
 def _layers(
     line: Line, body: str, stretch: tuple[float, float], rigid: dict[str, str], notes: list[str]
-) -> _Found:
+) -> _Layers:
     """Layers that are beds in the stretch; what stands on less goes to the rigid bodies."""
     table, segments = line.joint_table(), line.segments()
     names = np.array([s.body for s in segments] + ["ground"])
     upper, lower = names[table.upper], names[table.lower]
     inside = (table.x >= stretch[0] - 1e-9) & (table.x < stretch[1] - 1e-9)
     length = stretch[1] - stretch[0]
-    found: _Found = []
+    found: _Layers = []
     for index, layer in enumerate(line.joints):
         rows = inside & (table.layer == index)
         count = int(np.sum(rows & (table.scale != 0.0)))
@@ -161,7 +161,7 @@ def _layers(
     return found
 
 
-def _moving(body: str, found: _Found, rigid: dict[str, str]) -> list[str]:
+def _moving(body: str, found: _Layers, rigid: dict[str, str]) -> list[str]:
     """The carrier, and what it moves through the layers."""
     moving = [body]
     for name in moving:
@@ -175,7 +175,7 @@ def _moving(body: str, found: _Found, rigid: dict[str, str]) -> list[str]:
 def _bed(
     line: Line,
     body: str,
-    found: _Found,
+    found: _Layers,
     rigid: dict[str, str],
     stretch: tuple[float, float],
     notes: list[str],

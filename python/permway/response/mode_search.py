@@ -41,7 +41,7 @@ Response = Callable[[Reals, bool], Complexes]
 
 
 @dataclass(frozen=True)
-class Found:
+class SearchResult:
     """Modes of a band, by ascending frequency.
 
     Attributes
@@ -62,7 +62,7 @@ class Found:
     unsettled_Hz: Reals
 
 
-def search(response: Response, low_Hz: float, high_Hz: float, columns: list[int]) -> Found:
+def search(response: Response, low_Hz: float, high_Hz: float, columns: list[int]) -> SearchResult:
     """Modes between two frequencies.
 
     Parameters
@@ -81,7 +81,7 @@ def search(response: Response, low_Hz: float, high_Hz: float, columns: list[int]
     edges = np.geomspace(low_Hz, high_Hz, count + 1)
     # Windows still to do, the lowest last.
     waiting = [(float(a), float(b)) for a, b in pairwise(edges)][::-1]
-    done: list[Found] = []
+    done: list[SearchResult] = []
     while waiting:
         low, high = waiting.pop()
         answer = _window(response, low, high, columns)
@@ -95,7 +95,7 @@ def search(response: Response, low_Hz: float, high_Hz: float, columns: list[int]
             waiting += [(middle, high), (low, middle)]
             continue
         done.append(answer)
-    return Found(
+    return SearchResult(
         np.concatenate([one.omega for one in done]),
         np.concatenate([one.shape for one in done]),
         np.concatenate([one.modal_mass_kg for one in done]),
@@ -103,7 +103,7 @@ def search(response: Response, low_Hz: float, high_Hz: float, columns: list[int]
     )
 
 
-def _window(response: Response, low_Hz: float, high_Hz: float, columns: list[int]) -> Found | None:
+def _window(response: Response, low_Hz: float, high_Hz: float, columns: list[int]) -> SearchResult | None:
     """Modes above `low_Hz` and up to `high_Hz`; None if the lines do not bear so many poles."""
     directions = min(DIRECTIONS, len(columns))
     # Four sets of lines: left and right, of either fit.
@@ -141,7 +141,9 @@ def _peaks(fit: Pencil, motion: Complexes) -> Reals:
     return np.asarray(np.nan_to_num(peak, nan=0.0))
 
 
-def _read(omega: Complexes, displaced: Complexes, force: Complexes, columns: list[int], loose: Reals) -> Found:
+def _read(
+    omega: Complexes, displaced: Complexes, force: Complexes, columns: list[int], loose: Reals
+) -> SearchResult:
     """Shapes and modal masses from factors of the residues of accelerance, omega phi_r phi_c / (2 m)."""
     top = np.abs(displaced).argmax(axis=0)
     largest = displaced[top, range(omega.size)]
@@ -153,4 +155,4 @@ def _read(omega: Complexes, displaced: Complexes, force: Complexes, columns: lis
     at = np.abs(force).argmax(axis=1)
     each = range(omega.size)
     mass = np.abs(omega * known[each, at] / (2.0 * largest * force[each, at]))
-    return Found(omega, shape, np.where(alike > ONE, mass, np.nan), loose)
+    return SearchResult(omega, shape, np.where(alike > ONE, mass, np.nan), loose)

@@ -19,7 +19,7 @@ from permway.study.netcdf import to_netcdf
 
 
 @dataclass(frozen=True)
-class Answer:
+class CaseResult:
     """What came of a case.
 
     Attributes
@@ -43,7 +43,7 @@ def answer(
     *,
     threads: int | None = None,
     progress: Progress | None = None,
-) -> Answer:
+) -> CaseResult:
     """Compute a case; what goes wrong with it is data.
 
     Parameters
@@ -57,11 +57,11 @@ def answer(
     """
     try:
         data = select(solve(model(), threads=threads, progress=progress), keep)
-        return Answer(content=to_netcdf(data))
+        return CaseResult(content=to_netcdf(data))
     except PermwayError as error:
-        return Answer(error=str(error))
+        return CaseResult(error=str(error))
     except Exception as error:  # noqa: BLE001 - one case's fault must not end the sweep
-        return Answer(error=f"{type(error).__name__}: {error}")
+        return CaseResult(error=f"{type(error).__name__}: {error}")
 
 
 def answer_with_notes(
@@ -70,18 +70,20 @@ def answer_with_notes(
     *,
     threads: int | None = None,
     progress: Progress | None = None,
-) -> Answer:
+) -> CaseResult:
     """As :func:`answer`, with the warnings. Not for several threads at once: they share the filters."""
     with warnings.catch_warnings(record=True) as met:
         warnings.simplefilter("always")
         got = answer(model, keep, threads=threads, progress=progress)
-    return Answer(got.content, got.error, tuple(dict.fromkeys(str(note.message) for note in met)))
+    return CaseResult(got.content, got.error, tuple(dict.fromkeys(str(note.message) for note in met)))
 
 
-def answer_text(text: str, keep: Sequence[str] | None, version: str) -> Answer:
+def answer_text(text: str, keep: Sequence[str] | None, version: str) -> CaseResult:
     """As :func:`answer`, of a model written as JSON: all that a machine elsewhere needs."""
     if version != _core.__version__:
-        return Answer(error=f"the worker has permway {_core.__version__}, the client {version}: install the same")
+        return CaseResult(
+            error=f"the worker has permway {_core.__version__}, the client {version}: install the same"
+        )
     return answer(lambda: model_from_dict(json.loads(text)), keep, threads=1)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from permway import _core
 from permway.errors import InputError, PermwayError, SolveError
-from permway.study.answer import Answer, answer_text
+from permway.study.answer import CaseResult, answer_text
 from permway.study.file import Study
 
 CONNECT_S = 10.0
@@ -19,7 +19,7 @@ FEWEST_UNDER_WAY, MOST_UNDER_WAY = 8, 2000
 """Bounds on the cases that are out at a time; between them three for each thread of the cluster."""
 
 
-def solve_on_cluster(study: Study, cases: Sequence[int], address: str) -> Iterator[tuple[int, Answer]]:
+def solve_on_cluster(study: Study, cases: Sequence[int], address: str) -> Iterator[tuple[int, CaseResult]]:
     """Compute cases on a cluster, in any order.
 
     A case whose worker is lost is computed again by another; one that takes several workers with it has failed.
@@ -34,7 +34,7 @@ def solve_on_cluster(study: Study, cases: Sequence[int], address: str) -> Iterat
 
     Yields
     ------
-    int, Answer
+    int, CaseResult
 
     Raises
     ------
@@ -67,14 +67,16 @@ def solve_on_cluster(study: Study, cases: Sequence[int], address: str) -> Iterat
             client.close(timeout=0.5)
 
 
-def _answers(distributed: Any, client: Any, study: Study, cases: Sequence[int]) -> Iterator[tuple[int, Answer]]:
+def _answers(
+    distributed: Any, client: Any, study: Study, cases: Sequence[int]
+) -> Iterator[tuple[int, CaseResult]]:
     run = uuid.uuid4().hex
     bound = min(max(FEWEST_UNDER_WAY, 3 * sum(client.nthreads().values())), MOST_UNDER_WAY)
     waiting = iter(cases)
     under_way: dict[Any, int] = {}
     ended = distributed.as_completed(loop=client.loop, with_results=True, raise_errors=False)
 
-    def submit(count: int) -> Iterator[tuple[int, Answer]]:
+    def submit(count: int) -> Iterator[tuple[int, CaseResult]]:
         for _ in range(count):
             index = next(waiting, None)
             if index is None:
@@ -82,7 +84,7 @@ def _answers(distributed: Any, client: Any, study: Study, cases: Sequence[int]) 
             try:
                 text = study.model(index).model_dump_json(by_alias=True, exclude_none=True)
             except PermwayError as error:
-                yield index, Answer(error=str(error))
+                yield index, CaseResult(error=str(error))
                 continue
             key = f"permway-case-{index}-{run}"
             future = client.submit(answer_text, text, study.keep, _core.__version__, key=key, pure=False)
@@ -99,7 +101,7 @@ def _answers(distributed: Any, client: Any, study: Study, cases: Sequence[int]) 
         if status == "finished":
             yield index, result
         elif status == "error":
-            yield index, Answer(error=_stated(result))
+            yield index, CaseResult(error=_stated(result))
         else:
             raise SolveError("the scheduler was lost; run the study again to go on")
 

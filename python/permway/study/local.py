@@ -20,7 +20,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 
 from permway.errors import SolveError
-from permway.study.answer import Answer, answer_with_notes
+from permway.study.answer import CaseResult, answer_with_notes
 from permway.study.file import Study
 
 START_S = 5.0
@@ -35,7 +35,7 @@ MOST_ATTEMPTS = 3
 _READY = -1
 
 
-def solve_locally(study: Study, cases: Sequence[int], threads: int | None) -> Iterator[tuple[int, Answer]]:
+def solve_locally(study: Study, cases: Sequence[int], threads: int | None) -> Iterator[tuple[int, CaseResult]]:
     """Compute cases, in any order.
 
     Parameters
@@ -48,7 +48,7 @@ def solve_locally(study: Study, cases: Sequence[int], threads: int | None) -> It
 
     Yields
     ------
-    int, Answer
+    int, CaseResult
     """
     threads = threads or _processors()
     start, done = time.monotonic(), 0
@@ -101,7 +101,7 @@ class _Pool:
         self._processes = processes
         self._attempts: dict[int, int] = {}
 
-    def answers(self) -> Iterator[tuple[int, Answer]]:
+    def answers(self) -> Iterator[tuple[int, CaseResult]]:
         try:
             for _ in range(self._processes):
                 self._start()
@@ -117,7 +117,7 @@ class _Pool:
         worker = _Worker(self._study, self._threads)
         self._workers[worker.connection] = worker
 
-    def _hear(self, worker: _Worker) -> Iterator[tuple[int, Answer]]:
+    def _hear(self, worker: _Worker) -> Iterator[tuple[int, CaseResult]]:
         try:
             index, got = worker.connection.recv()
         except (EOFError, OSError):
@@ -132,7 +132,7 @@ class _Pool:
         if index != _READY:
             yield index, got
 
-    def _mourn(self, worker: _Worker) -> Iterator[tuple[int, Answer]]:
+    def _mourn(self, worker: _Worker) -> Iterator[tuple[int, CaseResult]]:
         del self._workers[worker.connection]
         worker.kill()
         code = worker.process.exitcode
@@ -147,7 +147,7 @@ class _Pool:
                 self._left.append(worker.case)
             else:
                 what = f"the process that computed it died, {attempts} times (exit code {code}): out of memory?"
-                yield worker.case, Answer(error=what)
+                yield worker.case, CaseResult(error=what)
         if self._left:
             self._start()
 

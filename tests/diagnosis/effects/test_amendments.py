@@ -58,7 +58,7 @@ def test_a_springpot_takes_over_stiffness_and_loss(
 @given(
     factor=st.floats(0.4, 2.5), rise=st.floats(0.02, 10.0), hertz=st.floats(4.0, 1000.0), rest=st.floats(0.0, 1.0)
 )
-def test_a_relaxation_rises_by_what_it_says(
+def test_a_relaxation_rises_by_what_it_states(
     campaign: Campaign, factor: float, rise: float, hertz: float, rest: float
 ) -> None:
     before = constant(campaign)

@@ -1,4 +1,4 @@
-"""A channel that one run has and another has not, as where screening found one of its records spoilt."""
+"""A channel that one run has and another has not, as where screening found one of its records bad."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from trains import ON_BOARD, campaign_in, drawn
 MISSING = "floor"
 
 
-def test_every_effect_is_offered_and_the_other_run_tells_of_the_channel(tmp_path: Path) -> None:
-    owner = campaign_in(tmp_path)
-    datasets = drawn(owner, 5)
+def test_every_effect_is_offered_and_the_other_run_constrains_the_channel(tmp_path: Path) -> None:
+    nominal_campaign = campaign_in(tmp_path)
+    datasets = drawn(nominal_campaign, 5)
     left = [name for name in ON_BOARD if name != MISSING]
     last = datasets[-1]
     datasets[-1] = replace(last, data=last.data.sel(channel=left, channel2=left))
-    situation = Situation(recalibrate(gather(owner, datasets, threads=1)), ())
+    situation = Situation(recalibrate(gather(nominal_campaign, datasets, threads=1)), ())
     whole, part = excesses(situation)
     at = np.array([20.0, 40.0])
     assert np.isfinite(whole.score_at(at, MISSING)).all()

@@ -232,14 +232,14 @@ CASES = (
 
 
 @pytest.fixture(scope="module")
-def owner(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
+def nominal_campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
     return campaign_in(tmp_path_factory.mktemp("train"))
 
 
 @pytest.fixture(scope="module")
-def quiet(owner: Campaign) -> Situation:
+def quiet(nominal_campaign: Campaign) -> Situation:
     """Nothing is missing."""
-    return situation_of(owner, 1)
+    return situation_of(nominal_campaign, 1)
 
 
 def hypotheses(situation: Situation, entry: str, place: str = "") -> list[Hypothesis]:
@@ -248,9 +248,9 @@ def hypotheses(situation: Situation, entry: str, place: str = "") -> list[Hypoth
     return [h for h in every if place in h.locate({f.name: f.value(0.0) for f in h.free}).label]
 
 
-def injected(owner: Campaign, case: Case, strength: float) -> Observations:
+def injected(nominal_campaign: Campaign, case: Case, strength: float) -> Observations:
     """What is measured when the effect is there."""
-    return observations_of(owner, 11, amend=lambda truth: case.inject(truth, case.at(strength)))
+    return observations_of(nominal_campaign, 11, amend=lambda truth: case.inject(truth, case.at(strength)))
 
 
 def others(entry: str) -> list[str]:
@@ -275,8 +275,8 @@ MEASURED = [*CASES, *DIPS]
 
 @pytest.mark.injection
 @pytest.mark.parametrize("case", MEASURED, ids=[f"{case.entry}-{[*case.values][-1]}" for case in MEASURED])
-def test_the_strongest_is_named_and_measured(owner: Campaign, case: Case) -> None:
-    found = searched(injected(owner, case, 1.0), case.entry, *others(case.entry))
+def test_the_strongest_is_named_and_measured(nominal_campaign: Campaign, case: Case) -> None:
+    found = searched(injected(nominal_campaign, case, 1.0), case.entry, *others(case.entry))
     own = found.best()
     assert own is not None
     assert own.names == (case.entry,)
@@ -288,26 +288,26 @@ def test_the_strongest_is_named_and_measured(owner: Campaign, case: Case) -> Non
 
 @pytest.mark.injection
 @pytest.mark.parametrize("case", CASES, ids=[f"{case.entry}-{[*case.values][-1]}" for case in CASES])
-def test_more_effect_is_more_gain(owner: Campaign, case: Case) -> None:
+def test_more_effect_is_more_gain(nominal_campaign: Campaign, case: Case) -> None:
     gains = []
     for strength in (0.25, 0.6):
-        found = searched(injected(owner, case, strength), case.entry)
+        found = searched(injected(nominal_campaign, case, strength), case.entry)
         gains.append(found.gain(found.best()))
     assert gains[1] > gains[0]
 
 
-def test_a_wrong_polarity_is_named(owner: Campaign) -> None:
+def test_a_wrong_polarity_is_named(nominal_campaign: Campaign) -> None:
     turned = chain("bogie", lambda _: {"polarity": -1})
-    found = searched(observations_of(owner, 12, amend=lambda c: turned(c, {})), *MINE)
+    found = searched(observations_of(nominal_campaign, 12, amend=lambda c: turned(c, {})), *MINE)
     best = found.best()
     assert best is not None
     assert best.names == ("sensor_polarity",)
     assert "bogie" in best.amendments[0].locate(best.values(0)).label
 
 
-def test_nothing_missing_names_nothing(owner: Campaign) -> None:
+def test_nothing_missing_names_nothing(nominal_campaign: Campaign) -> None:
     """Of all these entries, on one draw of the noise."""
-    found = searched(observations_of(owner, 1), *MINE)
+    found = searched(observations_of(nominal_campaign, 1), *MINE)
     assert found.members[0] is found.empty
 
 
@@ -347,7 +347,7 @@ def test_a_line_without_a_train_has_none_of_it(tmp_path: Path) -> None:
         assert count == (2 if entry in of_sensors else 0), entry
 
 
-def test_every_entry_says_what_it_is() -> None:
+def test_every_entry_states_what_it_is() -> None:
     for entry in MINE:
         module = entries()[entry]
         assert entry == module.ID

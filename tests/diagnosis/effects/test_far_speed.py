@@ -20,7 +20,7 @@ OWN = {"slow": 1.0005, "fast": 0.9992}
 
 
 @pytest.fixture(scope="module")
-def owner(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
+def nominal_campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
     """Whose notes of the speeds are good to half a percent, he says."""
     folder = tmp_path_factory.mktemp("far")
     campaign_in(folder)
@@ -34,12 +34,12 @@ def owner(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
         }
         for name, speed in (("slow", 50.0), ("fast", 71.0))
     ]
-    said = {**CAMPAIGN, "parameters": [*CAMPAIGN["parameters"], *speeds]}
-    (folder / "campaign.toml").write_text(to_toml(said))
+    stated = {**CAMPAIGN, "parameters": [*CAMPAIGN["parameters"], *speeds]}
+    (folder / "campaign.toml").write_text(to_toml(stated))
     return read_campaign(folder / "campaign.toml")
 
 
-def measured(owner: Campaign, factor: float) -> Observations:
+def measured(nominal_campaign: Campaign, factor: float) -> Observations:
     """All runs at `factor` times what was noted, each a little off beside."""
 
     def amend(truth: Campaign) -> Campaign:
@@ -47,24 +47,24 @@ def measured(owner: Campaign, factor: float) -> Observations:
             truth = with_speed(truth, factor * OWN[name], name)
         return truth
 
-    return observations_of(owner, 5, amend=amend)
+    return observations_of(nominal_campaign, 5, amend=amend)
 
 
-def test_a_speed_far_off_is_found_and_measured(owner: Campaign) -> None:
-    observations = measured(owner, 0.94)
+def test_a_speed_far_off_is_found_and_measured(nominal_campaign: Campaign) -> None:
+    observations = measured(nominal_campaign, 0.94)
     best = searched(observations, "speed_error").best()
     assert best is not None
     assert best.fit.hyper.novel < 0.5
     values = best.fit.values()
     for name, noted in (("slow", 50.0), ("fast", 71.0)):
-        # Each run's speed is told by phases; how much of it all have in common, by priors alone.
+        # Each run's speed is constrained by phases; how much of it all have in common, by priors alone.
         assert values["1.factor"] * values[f"speed.{name}"] == pytest.approx(0.94 * OWN[name] * noted, rel=2e-4)
     common = np.exp(np.mean(np.log(list(OWN.values()))))
     assert values["1.factor"] == pytest.approx(0.94 * common, rel=1e-3)
 
 
-def test_one_run_is_begun_near_its_note_and_all_runs_also_far_from_it(owner: Campaign) -> None:
-    situation = Situation(recalibrate(measured(owner, 1.0)), ())
+def test_one_run_is_begun_near_its_note_and_all_runs_also_far_from_it(nominal_campaign: Campaign) -> None:
+    situation = Situation(recalibrate(measured(nominal_campaign, 1.0)), ())
     for hypothesis in speed_error.hypotheses(situation):
         alone = hypothesis.locate({"factor": 1.0}).what != "speed"
         assert hypothesis.starts == (speed_error.STARTS if alone else speed_error.WIDE)

@@ -33,7 +33,7 @@ def receptance(stiffness: float = 1.0, loss: float = 1.0) -> Complexes:
 
 
 def written(folder: Path, responses: list[Complexes], levels: tuple[float | None, ...] = LEVELS) -> Campaign:
-    """A mass on a spring and a dashpot, a record at each level, its noise told by the scatter of lines."""
+    """A mass on a spring and a dashpot, a record at each level, its noise estimated from the scatter of lines."""
     random, place = np.random.default_rng(7), {"body": "mass", "x_m": 0.0}
     records, conditions = [], []
     for number, (response, level) in enumerate(zip(responses, levels, strict=True)):

@@ -33,17 +33,17 @@ def situations(folder: Path) -> Iterator[Situation]:
 
 def plausible(entry: str) -> dict[str, tuple[float, float]]:
     """Lowest and highest plausible value by parameter, for those that have such."""
-    said = {name: RANGE.match(text) for name, text in entries()[entry].PARAMETERS.items()}
-    return {name: (float(m[1]), float(m[2])) for name, m in said.items() if m is not None}
+    matched = {name: RANGE.match(text) for name, text in entries()[entry].PARAMETERS.items()}
+    return {name: (float(m[1]), float(m[2])) for name, m in matched.items() if m is not None}
 
 
 def beyond(free: Free, low: float, high: float) -> float:
     """How far what is plausible goes beyond what can be reached, in shares of the range."""
     reached = sorted(free.value(end) for end in free.limits)
-    said = np.array([low, high])
+    stated = np.array([low, high])
     if low > 0.0:
-        reached, said = list(np.log(reached)), np.log(said)
-    return float(max(reached[0] - said[0], said[1] - reached[1]) / np.ptp(said))
+        reached, stated = list(np.log(reached)), np.log(stated)
+    return float(max(reached[0] - stated[0], stated[1] - reached[1]) / np.ptp(stated))
 
 
 def test_what_is_plausible_can_be_reached(tmp_path: Path) -> None:

@@ -69,7 +69,7 @@ def test_rubber_of_a_rig_is_a_pad_only_where_no_rail_is(campaign: Campaign) -> N
     assert len(list(pad_frequency.hypotheses(Situation(fit, ())))) == 2
 
 
-def test_its_dependence_on_frequency_is_named_and_its_order_told(campaign: Campaign) -> None:
+def test_its_dependence_on_frequency_is_named_and_its_order_reported(campaign: Campaign) -> None:
     found = diagnose(campaign, threads=1).verdict
     assert found.status == "named"
     (effect,) = found.effects

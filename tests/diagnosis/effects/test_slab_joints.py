@@ -55,9 +55,9 @@ def test_joints_by_one_measure_go_on_from_slab_to_slab(
 
 
 def observations_of(
-    owner: Campaign, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
+    nominal_campaign: Campaign, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
 ) -> Observations:
-    return gather(owner, measured(owner, 3, amend), threads=1)
+    return gather(nominal_campaign, measured(nominal_campaign, 3, amend), threads=1)
 
 
 def test_joints_that_go_on_from_slab_to_slab_are_no_pattern_of_each(tmp_path: Path) -> None:
@@ -68,11 +68,11 @@ def test_joints_that_go_on_from_slab_to_slab_are_no_pattern_of_each(tmp_path: Pa
     table = campaign(model)
     for one in table["sensors"]:
         one["body"] = one["body"].replace("slab[1]", "slab")
-    owner = written(tmp_path / "c", table, model)
-    fit = recalibrate(observations_of(owner))
+    nominal_campaign = written(tmp_path / "c", table, model)
+    fit = recalibrate(observations_of(nominal_campaign))
     offered = entries()["slab_joints"].hypotheses(Situation(fit, tuple(places(fit))))
     inject = next(h.amend for h in offered if h.variant == "through" and len(h.free) == 2)
-    changed = observations_of(owner, lambda c: inject(c, {"length_m": 4.8, "offset": 0.0625}))
+    changed = observations_of(nominal_campaign, lambda c: inject(c, {"length_m": 4.8, "offset": 0.0625}))
     found = searched(changed, "slab_joints")
     best = found.best()
     assert best is not None
@@ -87,15 +87,15 @@ def test_a_cut_is_beside_the_sensor_that_it_meets(tmp_path: Path) -> None:
     model = viaduct(1)
     table = campaign(model)
     (sensor,) = [one for one in table["sensors"] if one["body"].startswith("slab")][:1]
-    owner = written(tmp_path / "c", table, model)
-    fit = recalibrate(observations_of(owner))
-    (slab,) = [s for _, s in owner.model.line.beams() if s.body == "slab"]
+    nominal_campaign = written(tmp_path / "c", table, model)
+    fit = recalibrate(observations_of(nominal_campaign))
+    (slab,) = [s for _, s in nominal_campaign.model.line.beams() if s.body == "slab"]
     (cut, *_) = [h for h in entries()["slab_joints"].hypotheses(Situation(fit, ())) if len(h.free) == 2]
     x = float(sensor["x_m"])
     ends = []
     for off in (-1e-4, 1e-4):
         values = {"length_m": 8.0, "offset": ((x + off - slab.start + 4.0) % 8.0 - 4.0) / 8.0}
-        pieces = cut.amend(owner, values).model.line.bodies["slab"].intervals_m
+        pieces = cut.amend(nominal_campaign, values).model.line.bodies["slab"].intervals_m
         near = [end for end, _ in pieces if abs(end - x) < 0.01]
         assert len(near) == 1
         ends += near
@@ -103,4 +103,4 @@ def test_a_cut_is_beside_the_sensor_that_it_meets(tmp_path: Path) -> None:
     # The evidence can be predicted with either.
     for off in (-1e-4, 1e-4):
         values = {"length_m": 8.0, "offset": ((x + off - slab.start + 4.0) % 8.0 - 4.0) / 8.0}
-        fit.observations.predicted(cut.amend(owner, values))
+        fit.observations.predicted(cut.amend(nominal_campaign, values))

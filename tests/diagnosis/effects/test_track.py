@@ -153,8 +153,8 @@ def situations(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tupl
 
     @cache
     def made(line: str) -> tuple[Situation, Campaign]:
-        owner = read(tmp_path_factory.mktemp("line"), line)
-        fit = recalibrate(of(owner, 7))
+        nominal_campaign = read(tmp_path_factory.mktemp("line"), line)
+        fit = recalibrate(of(nominal_campaign, 7))
         return Situation(fit, tuple(places(fit))), fit.campaign
 
     return made
@@ -166,9 +166,9 @@ def read(folder: Path, line: str) -> Campaign:
 
 
 def of(
-    owner: Campaign, seed: int, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
+    nominal_campaign: Campaign, seed: int, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
 ) -> Observations:
-    return gather(owner, measured(owner, seed, amend), threads=1)
+    return gather(nominal_campaign, measured(nominal_campaign, seed, amend), threads=1)
 
 
 def _put(inject: Amend, values: Values, base: Campaign) -> Campaign:
@@ -203,7 +203,7 @@ def test_no_effect_is_the_base_and_the_ends_of_ranges_can_be_solved(
         values = middle(hypothesis)
         none = {**values, hypothesis.size: hypothesis.none} if hypothesis.size else dict.fromkeys(values, 0.0)
         np.testing.assert_allclose(predicted(hypothesis.amend(base, none)), right, rtol=1e-6)
-        # What is said of it changes the prediction.
+        # Its values change the prediction.
         assert np.abs(predicted(hypothesis.amend(base, values)) / right - 1.0).max() > 1e-4
         for ends in itertools.product((0, 1), repeat=len(hypothesis.free)):
             extreme = {f.name: f.value(f.limits[end]) for f, end in zip(hypothesis.free, ends, strict=True)}
@@ -221,24 +221,27 @@ def test_what_is_put_in_is_named_and_measured(
     line, levels, near = INJECTED[entry]
     offered = entries()[entry].hypotheses(situations(line)[0])
     inject = next(h.amend for h in offered if set(levels[0]) <= {f.name for f in h.free})
-    owner, gains = read(tmp_path, line), []
+    nominal_campaign, gains = read(tmp_path, line), []
     family = entries()[entry].FAMILY
     rivals = {*entries()[entry].CONFUSED_WITH, "fastener_loss", "pad_frequency", "deck_attachment", "sensor_gain"}
     rivals = {rival for rival in rivals & set(entries()) if family != entries()[rival].FAMILY}
     for values in levels:
-        found = searched(of(owner, 3, partial(_put, inject, values)), entry, *sorted(rivals))
+        found = searched(of(nominal_campaign, 3, partial(_put, inject, values)), entry, *sorted(rivals))
         gains.append(found.gain(found.best(entry)))
     assert gains[0] < gains[1] < gains[2]
     best = found.best()
     assert best is not None
     assert best.names == (entry,)
-    told = best.values(0)
+    found_values = best.values(0)
     for name, share in near.items():
         in_metres = name in ("centre_m", "x_m") or (name == "length_m" and "centre_m" in values)
-        assert abs(told[name] - values[name]) <= share * (1.0 if in_metres else abs(values[name])), (name, told)
+        assert abs(found_values[name] - values[name]) <= share * (1.0 if in_metres else abs(values[name])), (
+            name,
+            found_values,
+        )
 
 
-def test_absorbers_of_a_stretch_between_fasteners_are_told_from_others(
+def test_absorbers_of_a_stretch_between_fasteners_are_distinguished_from_others(
     situations: Callable[[str], tuple[Situation, Campaign]], tmp_path: Path
 ) -> None:
     """Where they begin and end, and that they do not hang at the fasteners themselves."""
@@ -252,13 +255,13 @@ def test_absorbers_of_a_stretch_between_fasteners_are_told_from_others(
     for other in found.members:
         if len(other.amendments) == 1 and other.amendments[0].form != best.amendments[0].form:
             assert found.gain(best) > found.gain(other) + 4.5
-    told = best.values(0)
+    found_values = best.values(0)
     for end in (-0.5, 0.5):
-        said, true = (v["centre_m"] + end * v["length_m"] for v in (told, values))
-        assert abs(said - true) < 0.35
+        fitted, true = (v["centre_m"] + end * v["length_m"] for v in (found_values, values))
+        assert abs(fitted - true) < 0.35
 
 
-def test_slabs_cut_at_fasteners_are_told_by_their_length(
+def test_slabs_cut_at_fasteners_are_distinguished_by_their_length(
     situations: Callable[[str], tuple[Situation, Campaign]], tmp_path: Path
 ) -> None:
     """The fastener over a cut holds both ends by halves: no cut beside it does the same."""
@@ -271,10 +274,10 @@ def test_slabs_cut_at_fasteners_are_told_by_their_length(
         observations = of(read(tmp_path / str(index), "viaduct"), 3, partial(_put, shared[index].amend, values))
         best = searched(observations, "slab_joints").best()
         assert best is not None
-        told = best.values(0)
-        assert told.keys() == values.keys()
-        assert told["length_m"] == pytest.approx(lengths[index])
-        assert told["dowels_N_per_m"] < 1e8
+        found_values = best.values(0)
+        assert found_values.keys() == values.keys()
+        assert found_values["length_m"] == pytest.approx(lengths[index])
+        assert found_values["dowels_N_per_m"] < 1e8
 
 
 def test_no_stiffness_is_lost_or_won_where_a_fastener_holds_two_ends(
@@ -296,7 +299,7 @@ def test_no_stiffness_is_lost_or_won_where_a_fastener_holds_two_ends(
 @pytest.mark.injection
 @pytest.mark.parametrize("variant", ["", "shared"])
 @pytest.mark.parametrize(("compliance", "frequency_Hz"), [(0.28, 75.0), (0.08, 87.0), (1.0, 19.5)])
-def test_piers_of_one_girder_and_of_two_are_told_apart(
+def test_piers_of_one_girder_and_of_two_are_distinguished(
     variant: str,
     compliance: float,
     frequency_Hz: float,
@@ -326,7 +329,7 @@ def test_a_bearing_apart_is_found(
     best = searched(observations, "bearing_stiffness", *rivals).best()
     assert best is not None
     assert best.names == ("bearing_stiffness",)
-    # One bearing softer or the other stiffer: which of the two, the owner's tolerance tells.
+    # One bearing softer or the other stiffer: which of the two, the prior's tolerance decides.
     line = best.fit.state.solved.campaign.model.line
     table = line.joint_table()
     left, right = table.scale[table.law == list(line.laws).index("bearing")]

@@ -35,7 +35,7 @@ def test_levels_hold_every_fastener_once(tmp_path: Path, monkeypatch: pytest.Mon
     )
 
 
-def test_springs_carry_what_stands_on_them_and_on_an_even_bed_as_winkler_says() -> None:
+def test_springs_carry_what_stands_on_them_and_on_an_even_bed_as_winkler_states() -> None:
     x, wheels, rigidity, spring = np.arange(-12.0, 12.0, 0.1), np.array([-1.25, 1.25]), 6.4e6, 5e6
     carried = _under_wheels._carried(x, np.full(x.size, spring), rigidity, wheels)
     assert carried.sum() == pytest.approx(2.0, rel=1e-6)
@@ -49,7 +49,7 @@ def test_springs_carry_what_stands_on_them_and_on_an_even_bed_as_winkler_says() 
     assert drawn[below].sum() > 1.05 * carried[below].sum()
 
 
-def test_springs_that_pull_hold_no_train_and_are_said() -> None:
+def test_springs_that_pull_hold_no_train_and_are_reported() -> None:
     """An earlier round may have given a layer a negative stiffness: no diagnosis falls over it."""
     x = np.arange(-12.0, 12.0, 0.6)
     with pytest.raises(SolveError, match=r"holds nothing: -5e\+06 N/m"):

@@ -100,12 +100,12 @@ def test_an_effect_is_named_and_sized(name: str, sound: Callable[[bool], Fit]) -
     for free, z, spread in zip(mine.amendments[0].free, mine.fit.z[mine.own(0)], sigma, strict=True):
         # A unit in z is the prior's spread; records that say nothing more leave the prior.
         slope = (free.value(float(z) + 1e-4) - free.value(float(z))) / 1e-4
-        # For the same reason sharp values are less sure than they say.
+        # For the same reason narrow intervals are less sure than they state.
         allowed = max(4.0 * spread * abs(slope), 0.01 * abs(truth[free.name]))
         assert abs(values[free.name] - truth[free.name]) < allowed, free.name
 
 
-def test_pads_that_shift_with_temperature_are_told_from_pads_that_only_stiffen(
+def test_pads_that_shift_with_temperature_are_distinguished_from_pads_that_only_stiffen(
     sound: Callable[[bool], Fit],
 ) -> None:
     """Their springpot, and by how much ten kelvin move it."""

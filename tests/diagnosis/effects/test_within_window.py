@@ -31,15 +31,19 @@ def test_a_spectrum_that_turns_is_off_its_line_by_the_slope_of_the_windows_corre
 
 
 @pytest.mark.parametrize("channel", ["axle2", "axle3", "floor"])
-def test_a_chain_that_is_late_alters_what_channels_share_as_its_slope_says(tmp_path: Path, channel: str) -> None:
+def test_a_chain_that_is_late_alters_what_channels_share_as_its_slope_states(tmp_path: Path, channel: str) -> None:
     """A delay's phase grows from line to line. Predicted anew with it, parts change as their answers to it say."""
-    owner = campaign_in(tmp_path)
-    observations = gather(owner, drawn(owner, 5), threads=1)
-    observations = weighed_by(observations, owner)
+    nominal_campaign = campaign_in(tmp_path)
+    observations = gather(nominal_campaign, drawn(nominal_campaign, 5), threads=1)
+    observations = weighed_by(observations, nominal_campaign)
     late = observations.predicted(
-        with_chain(owner, channel, owner.sensor(channel).chain.model_copy(update={"delay_s": DELAY_S}))
+        with_chain(
+            nominal_campaign,
+            channel,
+            nominal_campaign.sensor(channel).chain.model_copy(update={"delay_s": DELAY_S}),
+        )
     )
-    before = observations.predicted(owner)
+    before = observations.predicted(nominal_campaign)
     seen = 0
     for block, old, new in zip(observations.blocks, before.datasets, late.datasets, strict=True):
         if not isinstance(block, SpectraBlock):
@@ -55,14 +59,14 @@ def test_a_chain_that_is_late_alters_what_channels_share_as_its_slope_says(tmp_p
         turned = -2j * np.pi * DELAY_S * np.eye(len(names), dtype=np.complex128)[names.index(channel)]
         itself, more = moved.answers(turned, 0.0 * turned), moved.answers(0.0 * turned, turned)
         for (what, c, o, at, _), value, rate, true in zip(block._parts, itself, more, changed, strict=True):
-            told = value * block.frequency[at] + rate / block.dataset.record.segment_s
+            expected = value * block.frequency[at] + rate / block.dataset.record.segment_s
             if what == "rest" and channel in (names[c], names[o]) and np.abs(true).max() > 1e-5:
                 # Phases alone change nothing here; how they grow does.
                 assert np.abs(value).max() * block.frequency.max() < 0.01 * np.abs(true).max()
-                np.testing.assert_allclose(told.real, true.real, atol=0.02 * np.abs(true).max())
+                np.testing.assert_allclose(expected.real, true.real, atol=0.02 * np.abs(true).max())
                 seen += 1
             elif what == "transfer":
-                np.testing.assert_allclose(told.imag, true.imag, atol=0.02 * np.abs(true).max() + 1e-9)
+                np.testing.assert_allclose(expected.imag, true.imag, atol=0.02 * np.abs(true).max() + 1e-9)
     assert seen > 1
 
 

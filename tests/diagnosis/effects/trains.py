@@ -129,7 +129,7 @@ CAMPAIGN: dict[str, Any] = {
 
 
 def campaign_in(folder: Path) -> Campaign:
-    """The campaign as its owner believes it; its records are drawn, and their file is empty."""
+    """The campaign with its nominal values; its records are drawn, and their file is empty."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "model.toml").write_text(to_toml(MODEL))
     (folder / "none.csv").write_text("drawn, not read\n")
@@ -188,15 +188,15 @@ def drawn(truth: Campaign, seed: int, *, noise: float = 0.03) -> list[Dataset]:
 
 
 def situation_of(
-    owner: Campaign, seed: int, *, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
+    nominal_campaign: Campaign, seed: int, *, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
 ) -> Situation:
-    """The owner's campaign recalibrated on what was measured of another truth; nothing was located."""
-    return Situation(recalibrate(observations_of(owner, seed, amend=amend)), ())
+    """The nominal campaign recalibrated on what was measured of another truth; nothing was located."""
+    return Situation(recalibrate(observations_of(nominal_campaign, seed, amend=amend)), ())
 
 
 def observations_of(
-    owner: Campaign, seed: int, *, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
+    nominal_campaign: Campaign, seed: int, *, amend: Callable[[Campaign], Campaign] = lambda campaign: campaign
 ) -> Observations:
-    """What was measured of another truth, made ready to be held against the owner's model."""
-    truth = owner.with_values({"pad.k": 6.4e7, "pad.eta": 0.17, "level": 0.7})
-    return gather(owner, drawn(amend(truth), seed), threads=1)
+    """What was measured of another truth, made ready to be held against the nominal model."""
+    truth = nominal_campaign.with_values({"pad.k": 6.4e7, "pad.eta": 0.17, "level": 0.7})
+    return gather(nominal_campaign, drawn(amend(truth), seed), threads=1)

@@ -9,10 +9,10 @@ from typing import Any
 
 from permway.campaign.campaign import Campaign
 from permway.campaign.importers.sheet_form import Sheet, read_sheet
+from permway.campaign.importers.sheet_locations import matched, names_of
 from permway.campaign.importers.sheet_model import model_table
 from permway.campaign.importers.sheet_position import MOVING
 from permway.campaign.importers.sheet_runs import UNITS, Runs, read_runs
-from permway.campaign.importers.sheet_spots import matched, names_of
 from permway.campaign.importers.writing import Draft, write_campaigns
 from permway.errors import InputError
 from permway.files import check_folder

@@ -101,7 +101,7 @@ def _place(value: object) -> object:
     return value
 
 
-Spot = Annotated[tuple[str, Number], BeforeValidator(_place)]
+Location = Annotated[tuple[str, Number], BeforeValidator(_place)]
 """Body and x, m."""
 
 
@@ -110,8 +110,8 @@ class Hammer(_Part):
 
     quantity: str
     lines_Hz: tuple[Number, Number, Number]
-    sensors: tuple[Spot, ...] = Field(min_length=1)
-    points: tuple[Spot, ...] = Field(min_length=1)
+    sensors: tuple[Location, ...] = Field(min_length=1)
+    points: tuple[Location, ...] = Field(min_length=1)
 
 
 def _position(value: object) -> object:

@@ -34,7 +34,7 @@ def model_table(sheet: Sheet, title: str) -> dict[str, Any]:
     _whole(length, layout.slab_length_m, "slab_length_m")
     slabs_m = _row(round(length / layout.slab_length_m), layout.slab_length_m)
     spans_m = _row(layout.spans, layout.span_m)
-    _check_spots(sheet, {"slab": slabs_m, "girder": spans_m})
+    _check_locations(sheet, {"slab": slabs_m, "girder": spans_m})
     rail = values.rail
     struck, struck_m = sheet.hammer.points[0]
     table: dict[str, Any] = {
@@ -127,10 +127,10 @@ def _approaches(sheet: Sheet, length: float) -> list[dict[str, Any]]:
     return [{"between": ["rail", "ground"], "law": "pad", "at": [before, behind]}]
 
 
-def _check_spots(sheet: Sheet, rows: dict[str, list[list[float]]]) -> None:
+def _check_locations(sheet: Sheet, rows: dict[str, list[list[float]]]) -> None:
     """Ask which of two beams is meant by a place where they meet."""
-    for what, spots in (("sensors", sheet.hammer.sensors), ("points", sheet.hammer.points)):
-        for index, (body, x) in enumerate(spots):
+    for what, locations in (("sensors", sheet.hammer.sensors), ("points", sheet.hammer.points)):
+        for index, (body, x) in enumerate(locations):
             for number, (_, end) in enumerate(rows.get(body, [])[:-1], start=1):
                 if abs(x - end) < MEET_M:
                     raise InputError(

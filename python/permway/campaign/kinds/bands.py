@@ -18,6 +18,7 @@ class Bands(RecordKind):
 
     name = "bands"
     statistics = ("bands",)
+    title = "bands"
     variable = "mean_square"
     dimensions = ("channel", "band")
     power = True

@@ -19,9 +19,11 @@ class DecayRates(RecordKind):
 
     name = "decay"
     statistics = ("decay",)
+    title = "decay rates"
     variable = "decay_rate"
     dimensions = ("band",)
     power = True
+    tabular = True
 
     def load(self, campaign: Campaign, record: Record) -> xr.Dataset:
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""

@@ -35,19 +35,28 @@ class RecordKind(ABC):
         Of all its statistics.
     statistics : tuple of str
         As a campaign file has them.
+    title : str
+        In words, of several.
     variable : str
         What is compared of its datasets.
     dimensions : tuple of str
         Of what is held out.
     power : bool
         Whether decibels of the variable are 10 lg.
+    tabular : bool
+        Whether a record is a short table, which is drawn together with others of its kind.
+    noise : str
+        How its noise is known, in words.
     """
 
     name: ClassVar[str]
     statistics: ClassVar[tuple[str, ...]]
+    title: ClassVar[str]
     variable: ClassVar[str]
     dimensions: ClassVar[tuple[str, ...]]
     power: ClassVar[bool] = False
+    tabular: ClassVar[bool] = False
+    noise: ClassVar[str] = "an assumed scatter"
 
     @abstractmethod
     def load(self, campaign: Campaign, record: Record) -> xr.Dataset:

@@ -19,8 +19,10 @@ class Moduli(RecordKind):
 
     name = "material"
     statistics = ("material",)
+    title = "moduli"
     variable = "modulus"
     dimensions = ("point",)
+    tabular = True
 
     def load(self, campaign: Campaign, record: Record) -> xr.Dataset:
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""

@@ -19,8 +19,11 @@ class Modes(RecordKind):
 
     name = "modes"
     statistics = ("modes",)
+    title = "modes"
     variable = "modes"
     dimensions = ("quantity", "frequency")
+    tabular = True
+    noise = "as the table states it"
 
     def load(self, campaign: Campaign, record: Record) -> xr.Dataset:
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""

@@ -19,6 +19,7 @@ class Passages(RecordKind):
 
     name = "passage"
     statistics = ("passage",)
+    title = "passages"
     variable = "spectrum"
     dimensions = ("channel", "frequency")
 

@@ -21,7 +21,6 @@ from permway.campaign.welch import cross_spectra_of
 from permway.errors import InputError
 from permway.recordings.channel import Sensor
 from permway.recordings.estimates.intervals import power_interval
-from permway.recordings.readers import time_blocks
 
 
 class PowerSpectra(RecordKind):
@@ -29,9 +28,11 @@ class PowerSpectra(RecordKind):
 
     name = "spectra"
     statistics = ("csd", "psd")
+    title = "spectra of runs"
     variable = "psd"
     dimensions = ("channel", "frequency")
     power = True
+    noise = "by the effective number of averages"
 
     def load(self, campaign: Campaign, record: Record) -> xr.Dataset:
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""
@@ -145,17 +146,8 @@ def _loaded(campaign: Campaign, record: Record) -> xr.Dataset:
     sensors = [campaign.sensor(name) for name in record.channels.values()]
     if record.averages is not None:
         return _in_SI(spectra.from_file(campaign, record), record, sensors)
-    blocks = time_blocks(
-        campaign.path(record),
-        channels=list(record.channels),
-        units={label: sensor.unit for label, sensor in zip(record.channels, sensors, strict=True)},
-        sampling_Hz=record.sampling_Hz,
-        format=record.format,
-        part=record.part,
-        hints=record.hints,
-    )
     data = cross_spectra_of(
-        blocks,
+        campaign.samples(record),
         segment_s=record.segment_s,
         channels=[sensor.name for sensor in sensors],
         units=[SI_UNITS[sensor.quantity] for sensor in sensors],

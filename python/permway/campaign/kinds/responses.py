@@ -37,8 +37,10 @@ class Responses(RecordKind):
 
     name = "frf"
     statistics = ("frf",)
+    title = "hammer responses"
     variable = "frf"
     dimensions = DIMENSIONS
+    noise = "of each line by coherence and averages"
 
     def load(self, campaign: Campaign, record: Record) -> xr.Dataset:
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""

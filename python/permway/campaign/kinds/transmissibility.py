@@ -20,8 +20,10 @@ class Transmissibility(RecordKind):
 
     name = "transmissibility"
     statistics = ("transmissibility",)
+    title = "transmissibilities"
     variable = "transmissibility"
     dimensions = ("channel", "frequency")
+    tabular = True
 
     def load(self, campaign: Campaign, record: Record) -> xr.Dataset:
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""

@@ -94,7 +94,7 @@ class Effect(ABC):
             "place": self.place,
             "parameters": {item.name: getattr(self, item.name) for item in fields(self)},
             "mechanical": self.mechanical,
-            "twins": list(self.ALTERNATIVES),
+            "alternatives": list(self.ALTERNATIVES),
             "words": list(self.WORDS),
         }
 

@@ -26,7 +26,7 @@ class SensorFault(Effect):
     def fault(self, plan: Plan, gain: Transfer) -> None:
         """Multiply what the sensor reads."""
         if "@" in self.sensor:
-            plan.line_gain.setdefault(_spot(self.sensor), []).append(gain)
+            plan.line_gain.setdefault(_location(self.sensor), []).append(gain)
         else:
             plan.channel_gain.setdefault(self.sensor, []).append(gain)
 
@@ -36,7 +36,7 @@ class SensorFault(Effect):
         return {"channels": [self.sensor]}
 
 
-def _spot(label: str) -> tuple[str, float]:
+def _location(label: str) -> tuple[str, float]:
     body, x = label.split("@")
     return body, float(x)
 
@@ -180,7 +180,7 @@ class NoiseFloor(SensorFault):
     def apply(self, plan: Plan) -> None:
         """Raise the floor."""
         if "@" in self.sensor:
-            plan.line_noise[_spot(self.sensor)] = self.factor
+            plan.line_noise[_location(self.sensor)] = self.factor
         else:
             plan.channel_noise[self.sensor] = self.factor
 

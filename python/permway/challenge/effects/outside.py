@@ -219,7 +219,7 @@ class MortarDelay(Effect):
 
         track.laws["rod"] = rod
         for index in track.stations("mortar"):
-            if inside(track.links[index].spots[0][1], self.stretch_m):
+            if inside(track.links[index].locations[0][1], self.stretch_m):
                 track.links[index] = replace(track.links[index], law="rod")
 
     @property

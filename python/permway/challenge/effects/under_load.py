@@ -142,7 +142,9 @@ class ClosingGap(Effect):
         plan.track.scale("mortar", lambda x: self.open_factor if inside(x, self.stretch_m) else 1.0)
 
         def support(track: Track, worked: Worked) -> Complexes:
-            hollow = [link.law == "mortar" and inside(link.spots[0][1], self.stretch_m) for link in track.links]
+            hollow = [
+                link.law == "mortar" and inside(link.locations[0][1], self.stretch_m) for link in track.links
+            ]
             closed = np.array(hollow) & (worked.would_press > self.gap_m)
             return np.where(closed, 1.0 / self.open_factor, 1.0).astype(np.complex128)
 

@@ -11,7 +11,7 @@ import numpy as np
 from permway.challenge.assembly import lossy
 from permway.challenge.beams import Complexes, Reals, Section
 from permway.challenge.mesh import Mesh
-from permway.challenge.track import Beam, Link, Matrix, Scalar, Spot, Track, grounded, spring
+from permway.challenge.track import Beam, Link, Location, Matrix, Scalar, Track, grounded, spring
 
 STEP_M, PARTS = 0.15, 60
 """Longest element of a track, m: at 400 Hz a rail's wave has 15 of them, and cubic elements are right to 4e-5 of
@@ -56,17 +56,17 @@ class Line:
     chains: dict[str, Transfer] = field(default_factory=dict)
 
     def receptance(
-        self, frequency_Hz: Reals, temperature_C: float, rows: Sequence[Spot], columns: Sequence[Spot]
+        self, frequency_Hz: Reals, temperature_C: float, rows: Sequence[Location], columns: Sequence[Location]
     ) -> Complexes:
         """Deflection at rows per force at columns, m/N, shape (rows, columns, F)."""
         if self.track is None:
             return self._rig(frequency_Hz, temperature_C, rows, columns)
-        one, other = ([_meshed(spot) for spot in spots] for spots in (rows, columns))
+        one, other = ([_meshed(location) for location in locations] for locations in (rows, columns))
         mesh = Mesh(self.track, [*one, *other])
         return np.asarray(np.moveaxis(mesh.receptance(frequency_Hz, temperature_C, one, other), 0, -1))
 
     def _rig(
-        self, frequency_Hz: Reals, temperature_C: float, rows: Sequence[Spot], columns: Sequence[Spot]
+        self, frequency_Hz: Reals, temperature_C: float, rows: Sequence[Location], columns: Sequence[Location]
     ) -> Complexes:
         names = list(self.masses)
         matrix = np.zeros((frequency_Hz.size, len(names), len(names)), dtype=np.complex128)
@@ -86,12 +86,12 @@ class Line:
                 matrix[:, i, j] -= value
                 matrix[:, j, i] -= value
         inverse = np.linalg.inv(matrix)
-        r, c = ([names.index(body) for body, _ in spots] for spots in (rows, columns))
+        r, c = ([names.index(body) for body, _ in locations] for locations in (rows, columns))
         return np.asarray(np.moveaxis(inverse[:, r][:, :, c], 0, -1))
 
 
-def _meshed(spot: Spot) -> Spot:
-    return AS[spot[0].split("[")[0]], spot[1]
+def _meshed(location: Location) -> Location:
+    return AS[location[0].split("[")[0]], location[1]
 
 
 def line_of(table: dict[str, Any]) -> Line:
@@ -123,8 +123,8 @@ def line_of(table: dict[str, Any]) -> Line:
         law = joint["law"]
         # By name, so that an effect may put another spring in its place.
         track.laws[law] = (grounded if lower == "ground" else spring)(_named(line, law))
-        spots = (upper,) if lower == "ground" else (upper, lower)
-        track.links += [Link(tuple((AS[b], x) for b in spots), law) for x in stations[law]]
+        locations = (upper,) if lower == "ground" else (upper, lower)
+        track.links += [Link(tuple((AS[b], x) for b in locations), law) for x in stations[law]]
     return line
 
 
@@ -149,7 +149,7 @@ def scaled(line: Line, law: str, factor: Callable[[int, float], complex]) -> Non
     assert line.track is not None
     for number, index in enumerate(line.track.stations(law)):
         link = line.track.links[index]
-        line.track.links[index] = replace(link, scale=link.scale * factor(number, link.spots[0][1]))
+        line.track.links[index] = replace(link, scale=link.scale * factor(number, link.locations[0][1]))
 
 
 def hang(line: Line, body: str, law: Scalar, name: str, places: Sequence[float], shares: Sequence[float]) -> None:

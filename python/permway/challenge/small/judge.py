@@ -77,7 +77,7 @@ class Judged:
     nominal: tuple[bool, ...] = ()
     effect: tuple[bool, ...] = ()
     claims: tuple[Claim, ...] = ()
-    said: str = ""
+    named: str = ""
     truth: str = ""
     seconds: float = float("nan")
     peak_MB: float = float("nan")
@@ -187,7 +187,7 @@ def _judged(bare: Judged, truth: Mapping[str, Any], verdict: Mapping[str, Any], 
         nominal=tuple(_nominal(truth["parameters"], verdict["recalibrated"])),
         effect=scored.covered,
         claims=claims,
-        said=", ".join(scored.said) if called else "",
+        named=", ".join(scored.named) if called else "",
     )
 
 
@@ -198,9 +198,9 @@ def _holds(effect: Mapping[str, Any], right: set[str]) -> bool:
 
 def _nominal(true: Mapping[str, float], recalibrated: Mapping[str, Any]) -> list[bool]:
     """Of the amended model, or of the base where nothing is called missing."""
-    said = recalibrated["after"] or recalibrated["before"]
+    estimates = recalibrated["after"] or recalibrated["before"]
     return [
-        bool(said[name]["low"] <= value <= said[name]["high"])
+        bool(estimates[name]["low"] <= value <= estimates[name]["high"])
         for name, value in true.items()
-        if name in said and said[name]["low"] is not None
+        if name in estimates and estimates[name]["low"] is not None
     ]

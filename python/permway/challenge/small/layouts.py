@@ -34,7 +34,7 @@ class Layout:
         What states forms of one layout apart.
     line : dict
         The table `line` of a model file.
-    spots : mapping of str to tuple of (low, high)
+    locations : mapping of str to tuple of (low, high)
         Bodies that can be struck or read, and the interval where, m; of a point mass both are its place.
     spacing_m : float
         Of the supports; 0 without rows of supports.
@@ -46,7 +46,7 @@ class Layout:
     name: str
     variant: str
     line: dict[str, Any]
-    spots: dict[str, tuple[float, float]]
+    locations: dict[str, tuple[float, float]]
     spacing_m: float
     length_m: float
     top_Hz: float
@@ -119,8 +119,8 @@ def _deck(random: np.random.Generator) -> Layout:
             {"between": ["deck", "ground"], "law": "bearing", "at": {"of": "deck"}},
         ],
     }
-    spots = {"rail": (0.0, length), "deck": (0.0, length)}
-    return Layout("deck", "", line, spots, spacing, length, float(random.choice([200.0, 260.0])))
+    locations = {"rail": (0.0, length), "deck": (0.0, length)}
+    return Layout("deck", "", line, locations, spacing, length, float(random.choice([200.0, 260.0])))
 
 
 def _ballast(random: np.random.Generator) -> Layout:
@@ -139,9 +139,9 @@ def _ballast(random: np.random.Generator) -> Layout:
             {"between": ["sleeper", "ground"], "law": "ballast", "at": rows},
         ],
     }
-    spots = {"rail": (0.0, length)}
-    spots |= {f"sleeper[{i + 1}]": (v, v) for i, v in enumerate(x) if 0 < i < len(x) - 1}
-    return Layout("ballast", "", line, spots, spacing, length, float(random.choice([260.0, 400.0])))
+    locations = {"rail": (0.0, length)}
+    locations |= {f"sleeper[{i + 1}]": (v, v) for i, v in enumerate(x) if 0 < i < len(x) - 1}
+    return Layout("ballast", "", line, locations, spacing, length, float(random.choice([260.0, 400.0])))
 
 
 def _slab(random: np.random.Generator) -> Layout:
@@ -164,8 +164,8 @@ def _slab(random: np.random.Generator) -> Layout:
             {"between": ["girder", "ground"], "law": "bearing", "at": {"of": "girder"}},
         ],
     }
-    spots = dict.fromkeys(("rail", "slab", "girder"), (0.0, length))
-    return Layout("slab", "", line, spots, spacing, length, float(random.choice([200.0, 260.0])))
+    locations = dict.fromkeys(("rail", "slab", "girder"), (0.0, length))
+    return Layout("slab", "", line, locations, spacing, length, float(random.choice([200.0, 260.0])))
 
 
 def _single(random: np.random.Generator) -> Layout:
@@ -203,15 +203,15 @@ def _rig(random: np.random.Generator) -> Layout:
     bodies: dict[str, Any] = {"block": {"type": "mass", "mass_kg": log_between(random, 40.0, 400.0)}}
     laws = {"pad": _law(random, 2.0e6, 6.0e7, (0.08, 0.3))}
     joints = [{"between": ["block", "ground"], "law": "pad", "at": [0.0]}]
-    spots = {"block": (0.0, 0.0)}
+    locations = {"block": (0.0, 0.0)}
     if stages == 2:
         bodies["frame"] = {"type": "mass", "mass_kg": log_between(random, 100.0, 1500.0)}
         laws["bed"] = _law(random, 2.0e6, 6.0e7, (0.08, 0.3))
         joints[0] = {"between": ["block", "frame"], "law": "pad", "at": [0.0]}
         joints.append({"between": ["frame", "ground"], "law": "bed", "at": [0.0]})
-        spots["frame"] = (0.0, 0.0)
+        locations["frame"] = (0.0, 0.0)
     line = {"bodies": bodies, "laws": laws, "joints": joints}
-    return Layout("rig", f"{stages}", line, spots, 0.0, 0.0, 300.0)
+    return Layout("rig", f"{stages}", line, locations, 0.0, 0.0, 300.0)
 
 
 _DRAWN: dict[str, Callable[[np.random.Generator], Layout]] = {

@@ -82,8 +82,8 @@ def draw_tests(random: np.random.Generator, layout: Layout, *, runs: bool) -> Te
     runs : bool
         Whether a vehicle may run.
     """
-    sensors = _spots(random, layout, int(random.integers(2, 7)))
-    points = _spots(random, layout, int(random.integers(2, 9)))
+    sensors = _locations(random, layout, int(random.integers(2, 7)))
+    points = _locations(random, layout, int(random.integers(2, 9)))
     if random.random() < 0.5 and layout.name != "rig":
         # As most teams do: one sensor beside a hammer point.
         points[0] = sensors[0]
@@ -118,7 +118,7 @@ def draw_tests(random: np.random.Generator, layout: Layout, *, runs: bool) -> Te
         "conditions": conditions,
         "records": records,
     }
-    body, (low, high) = next(iter(layout.spots.items()))
+    body, (low, high) = next(iter(layout.locations.items()))
     middle = {"body": body, "x_m": round(0.5 * (low + high), 3)}
     model: dict[str, Any] = {
         "format": 1,
@@ -139,16 +139,16 @@ def draw_tests(random: np.random.Generator, layout: Layout, *, runs: bool) -> Te
     return Tests(campaign, model, frequency, temperatures, speed)
 
 
-def _spots(random: np.random.Generator, layout: Layout, count: int) -> list[tuple[str, float]]:
+def _locations(random: np.random.Generator, layout: Layout, count: int) -> list[tuple[str, float]]:
     """Places on bodies that are drawn by kind, the first of them on the first body; to 5 cm."""
     kinds: dict[str, list[str]] = {}
-    for name in layout.spots:
+    for name in layout.locations:
         kinds.setdefault(name.split("[")[0], []).append(name)
     found: list[tuple[str, float]] = []
     for number in range(count):
         kind = list(kinds)[0 if number == 0 else int(random.integers(len(kinds)))]
         body = kinds[kind][int(random.integers(len(kinds[kind])))]
-        low, high = layout.spots[body]
+        low, high = layout.locations[body]
         x = round(20.0 * float(random.uniform(low, high))) / 20.0 if high > low else low
         found.append((body, round(min(max(x, low), high), 3)))
     # Two at one place would say the same twice; on a rig there are few places.

@@ -24,7 +24,7 @@ STEP = 1e-3
 
 ROUNDS, STEPS, CUTS = 4, 4, (1.0, 0.5, 0.2, 0.05)
 """Times that slopes are taken, steps by the same slopes, and shares of a step that are tried: with half of each,
-deviances of effects that shift sharp resonances come out up to a fifth higher."""
+deviances of effects that shift narrow resonances come out up to a fifth higher."""
 
 ENOUGH = 0.02
 """Share of the deviance below which a gain is none: deviances have classes three times as wide."""

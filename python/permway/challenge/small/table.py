@@ -112,8 +112,8 @@ def _reliability(found: Iterable[Judged]) -> list[dict[str, Any]]:
     for low, high in pairwise(PROBABILITIES):
         mine = [c for c in claims if low <= c.probability < high or c.probability == high == 1.0]
         if mine:
-            said = round(float(np.mean([c.probability for c in mine])), 3)
-            rows.append({"from": low, "to": high, "said": said, "true": _count([c.true for c in mine])})
+            stated = round(float(np.mean([c.probability for c in mine])), 3)
+            rows.append({"from": low, "to": high, "stated": stated, "true": _count([c.true for c in mine])})
     return rows
 
 
@@ -138,7 +138,7 @@ def _worst(found: Iterable[Judged]) -> list[dict[str, Any]]:
         if kinds[rank] <= WORST // 2 and len(rows) < WORST:
             row: dict[str, Any] = {"case": j.name, "truth": j.truth}
             row |= {"deviance": None if j.deviance is None else round(j.deviance, 1)}
-            rows.append({**row, "said": j.said or j.failure or j.status})
+            rows.append({**row, "verdict": j.named or j.failure or j.status})
     return rows
 
 
@@ -196,7 +196,7 @@ def reliability_markdown(found: dict[str, Any]) -> str:
     """What was stated against what is true."""
     lines = ["| probability stated | mean | true |", "|---|---|---|"]
     for row in found["reliability"]:
-        lines.append(f"| {row['from']:g} to {row['to']:g} | {row['said']:g} | {_cell('true', row['true'])} |")
+        lines.append(f"| {row['from']:g} to {row['to']:g} | {row['stated']:g} | {_cell('true', row['true'])} |")
     return "\n".join(lines) + "\n"
 
 
@@ -205,7 +205,7 @@ def worst_markdown(found: dict[str, Any]) -> str:
     lines = ["| case | concealed | deviance | stated |", "|---|---|---|---|"]
     for row in found["worst"]:
         deviance = "" if row["deviance"] is None else f"{row['deviance']:g}"
-        lines.append(f"| {row['case']} | {row['truth']} | {deviance} | {row['said']} |")
+        lines.append(f"| {row['case']} | {row['truth']} | {deviance} | {row['verdict']} |")
     return "\n".join(lines) + "\n"
 
 

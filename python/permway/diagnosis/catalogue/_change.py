@@ -105,7 +105,7 @@ def with_chain(campaign: Campaign, sensor: str, chain: Chain) -> Campaign:
     return replace(campaign, stated=changed)
 
 
-def hung_mass(mass_kg: float, frequency_Hz: float, loss_factor: float) -> Law:
+def attached_mass(mass_kg: float, frequency_Hz: float, loss_factor: float) -> Law:
     """What a mass on a spring answers where it hangs: a joint to the ground of this law is the resonator.
 
     Parameters

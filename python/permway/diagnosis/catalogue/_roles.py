@@ -61,7 +61,7 @@ class Layer:
 
 
 def layers(line: Line) -> list[Layer]:
-    """All layers that carry: not those that stand for a hung mass or for a loss alone."""
+    """All layers that carry: not those that stand for an attached mass or for a loss alone."""
     table = line.joint_table()
     carrying = {name for name, law in line.laws.items() if _carries(law)}
     return [

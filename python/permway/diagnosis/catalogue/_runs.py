@@ -39,7 +39,7 @@ class Excess:
     frequency_Hz : ndarray, shape (F,)
     by_channel : dict of str to ndarray, shape (F,)
         Logarithm of the power measured over that predicted.
-    sharp : dict of str to ndarray, shape (F,)
+    excess : dict of str to ndarray, shape (F,)
         What stands out of its surroundings, in standard deviations.
     line_Hz : float
         Noise bandwidth of a line.
@@ -50,7 +50,7 @@ class Excess:
     condition: Condition
     frequency_Hz: Reals
     by_channel: dict[str, Reals]
-    sharp: dict[str, Reals]
+    excess: dict[str, Reals]
     line_Hz: float
     profile: Reals
 
@@ -65,9 +65,9 @@ class Excess:
 
         And NaN of a channel that this run was not read by, or whose record of it is bad.
         """
-        if channel and channel not in self.sharp:
+        if channel and channel not in self.excess:
             return np.full(np.shape(frequency_Hz), np.nan)
-        values = self.sharp[channel] if channel else np.mean(list(self.sharp.values()), axis=0)
+        values = self.excess[channel] if channel else np.mean(list(self.excess.values()), axis=0)
         near = np.interp(frequency_Hz, self.frequency_Hz, values, left=np.nan, right=np.nan)
         return np.asarray(np.clip(near, -LARGEST_SCORE, LARGEST_SCORE))
 
@@ -124,14 +124,14 @@ def _found(situation: Situation) -> list[Excess]:
             continue
         frequency = block.dataset.data["frequency"].values
         ratio = np.log(block.dataset.data["psd"].values / expected["psd"].values)
-        sharp = ratio - median_filter(ratio, size=(1, 2 * AROUND_LINES + 1), mode="nearest")
+        excess = ratio - median_filter(ratio, size=(1, 2 * AROUND_LINES + 1), mode="nearest")
         names = [str(name) for name in block.dataset.data["channel"].values]
         found.append(
             Excess(
                 condition,
                 frequency,
                 dict(zip(names, ratio, strict=True)),
-                dict(zip(names, np.sqrt(block.averages) * sharp, strict=True)),
+                dict(zip(names, np.sqrt(block.averages) * excess, strict=True)),
                 LINE_WIDTH / block.dataset.record.segment_s,
                 _profile(situation, frequency, condition.speed_m_per_s),
             )
@@ -192,7 +192,7 @@ def combs(
     for value in per_speed:
         scores = []
         for run in runs:
-            if channel and channel not in run.sharp:
+            if channel and channel not in run.excess:
                 continue
             number = _numbers(run, value, harmonics)
             lines = number * value * run.speed

@@ -23,7 +23,7 @@ SIGNATURE = (
     "towards it, and what passes to the slab falls beyond."
 )
 CONFUSED_WITH = {
-    "rail_absorber": "a sensor on the base plate; the slab hears no less there",
+    "rail_absorber": "a sensor on the base plate; the slab moves no less there",
     "pad_frequency": "the stiffness rises with frequency there",
 }
 SOURCE = "Thompson, Railway Noise and Vibration (2009), chapter 3; Vincent and Thompson (1995)"

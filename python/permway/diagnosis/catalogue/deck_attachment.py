@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from permway.campaign.campaign import Campaign
-from permway.diagnosis.catalogue._change import fresh, hung_mass, with_joints
+from permway.diagnosis.catalogue._change import attached_mass, fresh, with_joints
 from permway.diagnosis.catalogue._roles import girders
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free, log_free
 from permway.model.joints import GROUND, Joints
@@ -15,7 +15,7 @@ from permway.model.joints import GROUND, Joints
 ID = "deck_attachment"
 DOMAIN: Domain = "path"
 FAMILY = "resonator"
-SUMMARY = "A mass m on a spring of loss factor eta, resonant at f0, hung on the girder at x."
+SUMMARY = "A mass m on a spring of loss factor eta, resonant at f0, attached to the girder at x."
 PARAMETERS = {
     "x_m": "m: where it stands",
     "mass_kg": "kg, 100 to 30000",
@@ -51,7 +51,7 @@ def resonators(situation: Situation, body: str, entry: str) -> Iterator[Hypothes
         return with_joints(
             campaign,
             Joints(between=(name, GROUND), law=law, at=(values["x_m"],)),
-            laws={law: hung_mass(values["mass_kg"], values["frequency_Hz"], values["loss_factor"])},
+            laws={law: attached_mass(values["mass_kg"], values["frequency_Hz"], values["loss_factor"])},
         )
 
     # The likeliest first.

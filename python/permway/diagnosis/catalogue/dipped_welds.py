@@ -1,6 +1,6 @@
 """Dips of one shape that do not repeat evenly: welds, squats, soft spots.
 
-The contact is taken never to open: where wheels take off, the depth said is one that would shake as much.
+The contact is taken never to open: where wheels take off, the depth stated is one that would shake as much.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ SOURCE = "Campbell (1909), random pulses; Steenbergen and Esveld (2006), rail we
 EVERY_M = 20.0
 LENGTH_M, LENGTH_FACTOR = 0.5, 2.0
 DEPTH_M, DEPTH_FACTOR = 3e-4, 2.5
-BEGUN_M = ((0.12, 0.17, 0.25, 0.35), (0.5, 0.7, 1.0), (1.4, 2.0, 2.8, 4.0))
+STARTS_M = ((0.12, 0.17, 0.25, 0.35), (0.5, 0.7, 1.0), (1.4, 2.0, 2.8, 4.0))
 """Lengths to begin with, half an octave apart: what a varying level takes up lies between one and the next."""
 
 
@@ -48,7 +48,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         added = Dips(depth_m=values["depth_m"], length_m=values["length_m"], every_m=EVERY_M)
         return with_irregularity(campaign, dips=(*campaign.stated.irregularity.dips, added))
 
-    for begun in BEGUN_M:
+    for lengths_m in STARTS_M:
         yield Hypothesis(
             entry=ID,
             domain=DOMAIN,
@@ -59,7 +59,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             ),
             amend=amend,
             locate=stays("rail"),
-            starts=tuple((-1.0, coordinate(length, LENGTH_M, LENGTH_FACTOR)) for length in begun),
+            starts=tuple((-1.0, coordinate(length, LENGTH_M, LENGTH_FACTOR)) for length in lengths_m),
             law=lambda v: (
                 f"dips of {1e3 * v['depth_m']:.3g} mm over {v['length_m']:.3g} m, as if one in every {EVERY_M:g} m"
             ),

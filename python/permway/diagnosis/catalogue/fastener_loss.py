@@ -1,4 +1,4 @@
-"""Fasteners that carry little or nothing over a stretch: hung, loose or missing."""
+"""Fasteners that carry little or nothing over a stretch: hanging, loose or missing."""
 
 from __future__ import annotations
 

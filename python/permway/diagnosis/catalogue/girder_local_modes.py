@@ -8,7 +8,7 @@ import numpy as np
 
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._attached import spread_over
-from permway.diagnosis.catalogue._change import hung_mass
+from permway.diagnosis.catalogue._change import attached_mass
 from permway.diagnosis.catalogue._roles import girders
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.model.bodies import Beam
@@ -41,7 +41,7 @@ def _of(name: str) -> Hypothesis:
         beam = campaign.model.line.bodies[name]
         assert isinstance(beam, Beam)
         mass = values["mass_share"] * beam.mass_kg_per_m
-        law = hung_mass(mass, values["frequency_Hz"], values["loss_factor"])
+        law = attached_mass(mass, values["frequency_Hz"], values["loss_factor"])
         return spread_over(campaign, name, {f"{name}_part": law})
 
     return Hypothesis(

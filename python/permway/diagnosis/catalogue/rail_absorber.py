@@ -9,7 +9,7 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
-from permway.diagnosis.catalogue._change import fresh, hung_mass, with_factors, with_joints
+from permway.diagnosis.catalogue._change import attached_mass, fresh, with_factors, with_joints
 from permway.diagnosis.catalogue._roles import Layer, fasteners, spacing
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free, log_free
 from permway.model.joints import GROUND, Joints
@@ -18,8 +18,8 @@ ID = "rail_absorber"
 DOMAIN: Domain = "path"
 FAMILY = "resonator"
 SUMMARY = (
-    "A mass m on a spring of loss factor eta, resonant at f0, hung on the rail at every fastener or in the middle "
-    "of every bay, all along or over a stretch."
+    "A mass m on a spring of loss factor eta, resonant at f0, attached to the rail at every fastener or in the "
+    "middle of every bay, all along or over a stretch."
 )
 PARAMETERS = {
     "centre_m": "m: middle of the stretch",
@@ -140,6 +140,6 @@ def _over_a_stretch(rail: str, x: Reals, where: str) -> Hypothesis:
 def _attached(campaign: Campaign, rail: str, x: Reals, values: Mapping[str, float]) -> tuple[Campaign, str]:
     """Masses on springs at some places of a rail, and the name of their law."""
     name = fresh("rail_absorber", campaign.model.line.laws)
-    law = hung_mass(values["mass_kg"], values["frequency_Hz"], values["loss_factor"])
+    law = attached_mass(values["mass_kg"], values["frequency_Hz"], values["loss_factor"])
     masses = Joints(between=(rail, GROUND), law=name, at=tuple(float(one) for one in x))
     return with_joints(campaign, masses, laws={name: law}), name

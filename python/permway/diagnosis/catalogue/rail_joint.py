@@ -53,7 +53,7 @@ SHORTEST_M = 5.0
 
 def _longest(situation: Situation) -> float:
     """Of which the fastest and finest run resolves the comb, m."""
-    datasets = [d for d in situation.fit.observations.datasets if d.record.statistic in ("csd", "psd")]
+    datasets = [d for d in situation.fit.observations.datasets if d.record.spectral]
     reach = [(d.condition.speed_m_per_s or 0.0) * d.record.segment_s for d in datasets]
     return max(reach, default=0.0) / RESOLVED
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._attached import spread_over
-from permway.diagnosis.catalogue._change import hung_mass, with_fields
+from permway.diagnosis.catalogue._change import attached_mass, with_fields
 from permway.diagnosis.catalogue._roles import girders
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, log_free
 from permway.model.bodies import Beam
@@ -48,7 +48,7 @@ def _of(name: str) -> Hypothesis:
         beam = campaign.model.line.bodies[name]
         assert isinstance(beam, Beam)
         dense = beam.density_kg_per_m3 * (1.0 + mass / beam.mass_kg_per_m)
-        law = hung_mass(mass * sprung, values["frequency_Hz"], values["loss_factor"])
+        law = attached_mass(mass * sprung, values["frequency_Hz"], values["loss_factor"])
         return spread_over(with_fields(campaign, name, density_kg_per_m3=dense), name, {"second_rails": law})
 
     return Hypothesis(

@@ -81,8 +81,8 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             yield _cut(name, segments, _either_side(starts, longest, _measured(situation.campaign, name)))
             yield _bending(name, segments, starts)
             if len(segments) > 1:
-                begun = min(segments, key=lambda s: s.start)
-                starts = [*_usual(begun), *(start for x in above for start in _between(x, begun))]
+                leading = min(segments, key=lambda s: s.start)
+                starts = [*_usual(leading), *(start for x in above for start in _between(x, leading))]
                 yield _cut(name, segments, starts, through=True)
             for x in above:
                 first = float(x[x > longest.start - TOUCHING_M].min())

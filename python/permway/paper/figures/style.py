@@ -98,12 +98,12 @@ def both_conventions(
     layouts : dict, optional
         Convention's name to what else of the layout changes with it.
     """
-    owner: list[str] = []
+    figure_of: list[str] = []
     for name, _ in SHOWN:
         for trace, row in draw(name):
             trace.visible = name == SHOWN[0][0]
             figure.add_trace(trace, row=row, col=1)
-            owner.append(name)
+            figure_of.append(name)
     figure.update_layout(
         margin={"t": 46},
         updatemenus=[
@@ -124,7 +124,7 @@ def both_conventions(
                     {
                         "label": label,
                         "method": "update",
-                        "args": [{"visible": [o == name for o in owner]}, (layouts or {}).get(name, {})],
+                        "args": [{"visible": [o == name for o in figure_of]}, (layouts or {}).get(name, {})],
                     }
                     for name, label in SHOWN
                 ],

@@ -18,7 +18,7 @@ _FEWEST = 8
 
 
 class Stationarity(NamedTuple):
-    """Two tests for each channel; small probabilities speak against a stationary record."""
+    """Two tests for each channel; small probabilities are evidence against a stationary record."""
 
     power: Reals
     """Power of each segment over the mean, line by line and then averaged, shape (channel, segment)."""

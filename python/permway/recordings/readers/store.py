@@ -17,7 +17,7 @@ from permway.recordings.readers.scales import hertz_in, seconds_in
 from permway.recordings.readers.store_beside import check_counts
 from permway.recordings.readers.store_columns import Column, columns_of, rank, read_columns
 from permway.recordings.readers.stored import UNITS, Store, Variable, is_one_of
-from permway.recordings.readers.timebase import LEAST_UNSAID_HZ, TimeBase, check_unsaid, unsaid_scale
+from permway.recordings.readers.timebase import LEAST_UNSTATED_HZ, TimeBase, check_unstated, unstated_scale
 from permway.recordings.readers.timefile import TimeFile, Timing
 
 RATES = {
@@ -128,14 +128,14 @@ def _timing_of(store: Store, variable: Variable, rate: float | None, hints: Hint
         scale = None if unit is None else seconds_in(unit, where)
     unstated = scale is None
     if scale is None:
-        scale = unsaid_scale(raw)
+        scale = unstated_scale(raw)
     resolution = variable.step * scale * float(np.abs(raw).max(initial=0.0, where=np.isfinite(raw)))
     base = TimeBase(
         max(2.0 * resolution, variable.resolution * scale), lambda sample: f"{where}, sample {sample}", scale
     )
     base.feed(raw)
     if unstated:
-        check_unsaid(base, variable.leaf)
+        check_unstated(base, variable.leaf)
     found = base.timing(variable.size)
     if rate is None or found.sampling_Hz is None:
         return found if rate is None else Timing(samples=variable.size, sampling_Hz=rate, start_s=found.start_s)
@@ -160,7 +160,7 @@ def _rate(store: Store, attributes: Mapping[str, object], near: str | None) -> f
     if rate is not None and step is not None and abs(rate * step - 1.0) > 1e-4:
         what = f"a rate of {rate:g} Hz and a step of {step:g} s contradict"
         raise InputError(what, where=store.source, remedy="correct whichever is wrong")
-    if rate is None and step is not None and 1.0 / step < LEAST_UNSAID_HZ and not _has_unit(store, STEPS, near):
+    if rate is None and step is not None and 1.0 / step < LEAST_UNSTATED_HZ and not _has_unit(store, STEPS, near):
         raise InputError(
             f"a step without a unit of {step:g}: as seconds {1.0 / step:g} Hz",
             where=store.source,

@@ -16,7 +16,7 @@ from permway.errors import InputError
 from permway.recordings.readers.headers import clean_unit, split_header, time_scale
 from permway.recordings.readers.hints import Hints
 from permway.recordings.readers.scales import seconds_in
-from permway.recordings.readers.timebase import TimeBase, check_unsaid, unsaid_scale
+from permway.recordings.readers.timebase import TimeBase, check_unstated, unstated_scale
 from permway.recordings.readers.timefile import Timing
 
 _UNTIMED = 1.0
@@ -116,7 +116,7 @@ def _by_channel(channel: Any, where: str, times: list[str], channels: Mapping[st
     base = TimeBase(worth * scale, lambda sample: f"{place}, sample {sample}", scale)
     base.feed(raw)
     if unstated:
-        check_unsaid(base, name)
+        check_unstated(base, name)
     return base.timing(samples)
 
 
@@ -136,7 +136,7 @@ def _numbers(channel: Any, name: str, place: str, hints: Hints) -> tuple[Reals, 
         scale = seconds_in(unit, place)
     unstated = scale is None
     if scale is None:
-        scale = unsaid_scale(plain)
+        scale = unstated_scale(plain)
     top = float(np.abs(plain).max(initial=0.0, where=np.isfinite(plain)))
     eps = np.finfo(values.dtype).eps if values.dtype.kind == "f" else 0.0
     return plain, scale, max(2.0 * float(eps) * top, 1.0 if values.dtype.kind in "iu" else 0.0), unstated

@@ -17,7 +17,7 @@ from permway.recordings.readers.stored import is_one_of
 from permway.recordings.readers.text_layout import Layout, find_layout
 from permway.recordings.readers.text_lines import is_number
 from permway.recordings.readers.text_rows import Rows, Times
-from permway.recordings.readers.timebase import unsaid_scale
+from permway.recordings.readers.timebase import unstated_scale
 from permway.recordings.readers.timefile import TimeFile, Timing
 
 
@@ -136,5 +136,5 @@ def _times(source: Path, rows: Rows, index: int, hints: Hints) -> Times:
         scale = seconds_in(unit, where)
     if scale is None:
         first = next(iter(rows.pieces([index])), None)
-        return Times(rows, index, 1.0 if first is None else unsaid_scale(first[:, 0]), unstated=True)
+        return Times(rows, index, 1.0 if first is None else unstated_scale(first[:, 0]), unstated=True)
     return Times(rows, index, scale)

@@ -31,7 +31,7 @@ def numbered_lines(source: Path, encoding: str | None = None) -> Iterator[tuple[
         If it is not text, or not of that character set, or a line is longer than any table's.
     """
     if encoding is not None:
-        yield from _as_said(source, encoding)
+        yield from _as_stated(source, encoding)
         return
     count, rest, first, old_mac = 0, b"", True, False
     with source.open("rb") as file:
@@ -56,7 +56,7 @@ def numbered_lines(source: Path, encoding: str | None = None) -> Iterator[tuple[
             yield count, line
 
 
-def _as_said(source: Path, encoding: str) -> Iterator[tuple[int, str]]:
+def _as_stated(source: Path, encoding: str) -> Iterator[tuple[int, str]]:
     try:
         with source.open(encoding=encoding, newline="\n") as file:
             for index, line in enumerate(iter(lambda: file.readline(_LONGEST_LINE), ""), start=1):

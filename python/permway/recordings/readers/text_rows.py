@@ -14,7 +14,7 @@ from permway.laws.textfile import number
 from permway.recordings.readers.clock import Clock, digits_of
 from permway.recordings.readers.text_layout import Layout
 from permway.recordings.readers.text_lines import is_remark, numbered_lines, with_e
-from permway.recordings.readers.timebase import TimeBase, check_unsaid
+from permway.recordings.readers.timebase import TimeBase, check_unstated
 
 _PIECE_BYTES = 2**22
 _QUOTED_COMMA = re.compile(r'"([^",]*),([^",]*)"')
@@ -212,7 +212,7 @@ class Times:
         if piece is not None:
             base.feed(piece[:, 0])
         if self.unstated:
-            check_unsaid(base, self.rows.layout.names[self.index])
+            check_unstated(base, self.rows.layout.names[self.index])
         return base
 
     def _resolution(self) -> float:

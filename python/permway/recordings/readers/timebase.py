@@ -11,7 +11,7 @@ from permway.arrays import Reals
 from permway.errors import InputError
 from permway.recordings.readers.timefile import RATES_AGREE, Timing
 
-LEAST_UNSAID_HZ, MOST_UNSAID_HZ = 20.0, 1e6
+LEAST_UNSTATED_HZ, MOST_UNSTATED_HZ = 20.0, 1e6
 """Rates outside are not believed of times without a unit: they may count samples, milliseconds or days.
 
 Below 20 Hz hardly a line from 4 Hz on is left, which is where a campaign begins, and milliseconds of all rates up
@@ -23,7 +23,7 @@ accelerometers are sampled with, and below times in days or hours that were take
 _EPOCHS = tuple((946_684_800.0 / scale, 4_102_444_800.0 / scale, scale) for scale in (1e-3, 1e-6, 1e-9))
 """Times since 1970 in ms, us and ns, from 2000 to 2100: no two of these ranges meet, nor does another clock's."""
 
-_MOST_UNSAID_S = 1e11
+_MOST_UNSTATED_S = 1e11
 """Larger times without a unit are no seconds, of whatever clock: 3,000 years."""
 
 _STEP_OFF = 0.01
@@ -145,14 +145,14 @@ def whole_rate(rate_Hz: float, relative: float) -> float:
     return float(whole) if near else rate_Hz
 
 
-def unsaid_scale(times: Reals) -> float:
+def unstated_scale(times: Reals) -> float:
     """Seconds in one of a time without a unit, by its first value: a date of a computer's clock, or seconds."""
     finite = times[np.isfinite(times)]
     first = float(finite[0]) if finite.size else 0.0
     return next((scale for least, most, scale in _EPOCHS if least <= first <= most), 1.0)
 
 
-def check_unsaid(base: TimeBase, label: str) -> None:
+def check_unstated(base: TimeBase, label: str) -> None:
     """Refuse times without a unit where seconds are not to be believed.
 
     Parameters
@@ -168,8 +168,8 @@ def check_unsaid(base: TimeBase, label: str) -> None:
         If the rate is none of vibration.
     """
     step = base.step_s
-    far = abs(base.start_s or 0.0) > _MOST_UNSAID_S
-    if step is None or base.scale != 1.0 or (LEAST_UNSAID_HZ <= 1.0 / step <= MOST_UNSAID_HZ and not far):
+    far = abs(base.start_s or 0.0) > _MOST_UNSTATED_S
+    if step is None or base.scale != 1.0 or (LEAST_UNSTATED_HZ <= 1.0 / step <= MOST_UNSTATED_HZ and not far):
         return
     key = label if re.fullmatch(r"[A-Za-z0-9_-]+", label) else f'"{label}"'
     raise InputError(

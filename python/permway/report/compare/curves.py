@@ -12,9 +12,10 @@ from matplotlib.figure import Figure
 
 from permway.campaign.campaign import Campaign
 from permway.campaign.compare import NEPER_DB, POWER_DB, POWERS
-from permway.diagnosis.compare import KIND, Comparison
+from permway.campaign.kinds import KINDS
+from permway.diagnosis.compare import Comparison
 from permway.report.compare.looks import COLOUR, FONT, MEASURED, NAME, UNITS, logarithmic_hertz, plain
-from permway.report.compare.maps import TABULAR, UNSEEN_DB, groups
+from permway.report.compare.maps import UNSEEN_DB, groups
 from permway.report.compare.writing import file_name
 
 MOST_PANELS = 24
@@ -53,14 +54,14 @@ def curve_pictures(comparison: Comparison) -> Iterator[tuple[str, Figure]]:
                 sensor = file_name(str(record["sensor"].values[channel]))
                 figure = _grid([(record, channel)], columns=1, width=6.3)
                 yield f"curves-{file_name(name)}-{sensor}", figure
-        elif statistic in TABULAR:
+        elif KINDS[statistic].tabular:
             cells = [
                 (comparison.records[i], c) for i in members for c in range(comparison.records[i].sizes["channel"])
             ]
             for start in range(0, len(cells), MOST_PANELS):
                 number = f"-{start // MOST_PANELS + 1}" if len(cells) > MOST_PANELS else ""
                 figure = _grid(cells[start : start + MOST_PANELS], columns=3, width=9.0)
-                yield f"curves-{file_name(KIND[statistic])}{number}", figure
+                yield f"curves-{file_name(KINDS[statistic].title)}{number}", figure
         else:
             cells = [(record, c) for c in range(record.sizes["channel"])]
             yield f"curves-{file_name(name)}", _grid(cells, columns=2, width=9.0)
@@ -126,7 +127,7 @@ def _modulus(axes: Axes, record: xr.Dataset, channel: int) -> None:
     frequency = one["frequency"].values[order]
     measured = np.abs(one["measured"].values)[order]
     material = record.attrs["statistic"] == "material"
-    assumed = record.attrs["statistic"] in TABULAR
+    assumed = KINDS[record.attrs["statistic"]].tabular
     stated = record.attrs["statistic"] == "modes"
     words = "measured, assumed scatter (95 %)" if assumed and not stated else "measured, 95 % interval"
     low, high = one["low"].values[order], one["high"].values[order]
@@ -159,7 +160,7 @@ def _modulus(axes: Axes, record: xr.Dataset, channel: int) -> None:
     axes.set_ylabel(_quantity(one) + (f", {unit}" if unit else ""))
     label = str(one["channel"].values)
     at = f", {record.attrs['temperature_C']:g} °C".replace("-", "−") if "temperature_C" in record.attrs else ""
-    table = record.attrs["statistic"] in TABULAR
+    table = KINDS[record.attrs["statistic"]].tabular
     title = f"{record.attrs['record']}{at}" if table else label.replace("<", "from")
     axes.set_title(title, fontsize=FONT, loc="left")
 

@@ -9,7 +9,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from permway.campaign.campaign import Campaign
-from permway.diagnosis.compare import KIND, Comparison
+from permway.campaign.kinds import KINDS
+from permway.diagnosis.compare import Comparison
 from permway.report.compare.looks import FONT, NAME, colour_map, edges, logarithmic_hertz, name_rows
 from permway.report.compare.writing import file_name
 
@@ -22,17 +23,15 @@ UNSEEN_DB = 3.0
 FEW_ROWS = 60
 """Up to so many rows each has room for its name."""
 
-TABULAR = ("decay", "transmissibility", "material", "modes")
-
 
 def groups(comparison: Comparison) -> Iterator[tuple[str, list[int]]]:
     """What is drawn together: each measurement by itself, all tables of one kind together."""
     statistics = [str(record.attrs["statistic"]) for record in comparison.records]
     for index, record in enumerate(comparison.records):
-        if statistics[index] not in TABULAR:
+        if not KINDS[statistics[index]].tabular:
             yield str(record.attrs["record"]), [index]
-    for statistic in dict.fromkeys(s for s in statistics if s in TABULAR):
-        yield KIND[statistic], [i for i, s in enumerate(statistics) if s == statistic]
+    for statistic in dict.fromkeys(s for s in statistics if KINDS[s].tabular):
+        yield KINDS[statistic].title, [i for i, s in enumerate(statistics) if s == statistic]
 
 
 def ordered(campaign: Campaign, record: xr.Dataset) -> list[int]:

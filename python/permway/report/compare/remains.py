@@ -49,7 +49,7 @@ def parameter_picture(comparison: Comparison) -> Figure:
     axes.set_ylim(count - 0.4, -0.6)
     reach = max(2.6, float(np.max(np.abs(z) + WIDTH * sigma)) * 1.05)
     axes.set_xlim(-reach, reach)
-    axes.set_xlabel("found less believed, standard deviations of the prior")
+    axes.set_xlabel("found less nominal, standard deviations of the prior")
     plain(axes)
     figure.legend(loc="outside upper left", ncols=3, fontsize=FONT - 0.5, frameon=False)
     return figure

@@ -76,15 +76,15 @@ def parameter_rows(comparison: Comparison) -> list[dict[str, Any]]:
             "tolerance": f"{quantity(float(one['low_2sigma']))} to {quantity(float(one['high_2sigma']))}",
         }
         if comparison.fit is not None:
-            stated = "left its tolerance" if bool(one["left"]) else ""
+            note = "left its tolerance" if bool(one["left"]) else ""
             if bool(one["not_informed"]):
-                stated = "the records say nothing of it"
+                note = "the records say nothing of it"
             row |= {
                 "found": quantity(float(one["value"])),
                 "interval": span(float(one["low"]), float(one["high"])),
                 "z": signed(float(one["z"]), 2),
                 "width": f"{100.0 * float(one['sigma_over_prior']):.0f} %",
-                "said": stated,
+                "note": note,
                 "left": bool(one["left"]),
             }
         rows.append(row)

@@ -7,9 +7,8 @@ from importlib.metadata import version
 from typing import Any
 
 from permway import _core
+from permway.campaign.kinds import KINDS, kind_of
 from permway.campaign.rolls import how_trains_run
-from permway.diagnosis.blocks_frf import FrfBlock
-from permway.diagnosis.compare import KIND
 from permway.diagnosis.result import Diagnosis
 from permway.report.compare.tables import calibration_rows, decibels
 
@@ -50,16 +49,5 @@ def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
 
 def _noise(diagnosis: Diagnosis) -> list[tuple[str, str]]:
     """How the noise of each kind of record was had."""
-    words = []
-    observations = diagnosis.base.observations
-    if any(isinstance(block, FrfBlock) for block in observations.blocks):
-        words.append((KIND["frf"], "of each line by coherence and averages"))
-    kinds = dict.fromkeys(d.record.statistic for d in observations.datasets)
-    if "csd" in kinds or "psd" in kinds:
-        words.append((KIND["psd"], "by the effective number of averages"))
-    for kind in kinds:
-        if kind == "modes":
-            words.append((KIND[kind], "as the table states it"))
-        elif kind not in ("frf", "csd", "psd"):
-            words.append((KIND.get(kind, kind), "an assumed scatter"))
-    return words
+    kinds = {kind_of(d.record) for d in diagnosis.base.observations.datasets}
+    return [(kind.title, kind.noise) for kind in dict.fromkeys(KINDS.values()) if kind in kinds]

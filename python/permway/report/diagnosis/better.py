@@ -216,7 +216,7 @@ def parameter_picture(diagnosis: Diagnosis) -> Figure:
     axes.set_yticks(range(len(names)), names)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.set_xlim(-reach, reach)
-    axes.set_xlabel("found less believed, standard deviations of the prior")
+    axes.set_xlabel("found less nominal, standard deviations of the prior")
     plain(axes)
     figure.legend(loc="outside upper left", ncols=3, fontsize=FONT, frameon=False)
     return figure

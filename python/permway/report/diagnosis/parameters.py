@@ -11,13 +11,13 @@ from permway.diagnosis.verdict_parts import Moved
 from permway.report.compare.tables import signed
 
 WENT_BACK = 0.5
-"""Standard deviations of the prior by which a parameter must near its nominal value to be said to."""
+"""Standard deviations of the prior by which a parameter must near its nominal value to have gone back."""
 
 
 def stated_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """Of each parameter: name, stated value and tolerance, then value, 90 % interval and z before and after.
 
-    `left` says whether recalibration alone leaves the tolerance, `said` what the amendment did.
+    `left` says whether recalibration alone leaves the tolerance, `change` what the amendment did.
     """
     verdict, rows = diagnosis.verdict.recalibrated, []
     for known in diagnosis.comparison.campaign.parameters.known.values():
@@ -31,16 +31,16 @@ def stated_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
                 "tolerance": ends(
                     Moved(value=known.nominal, prior=known.nominal, z=0.0, low=low, high=high, unit=unit)
                 ),
-                "before": _told(before),
-                "after": _told(after),
+                "before": _estimate(before),
+                "after": _estimate(after),
                 "left": before is not None and abs(before.z) > LEFT,
-                "said": _went(before, after),
+                "change": _went(before, after),
             }
         )
     return rows
 
 
-def _told(one: Moved | None) -> tuple[str, str, str]:
+def _estimate(one: Moved | None) -> tuple[str, str, str]:
     """Value, interval and z in words."""
     return ("", "", "") if one is None else (estimate(one), ends(one), signed(one.z, 2))
 

@@ -4,7 +4,7 @@ for (const figure of document.querySelectorAll("figure.shape")) {
   const s = JSON.parse(figure.querySelector("script").textContent);
   const bodies = figure.querySelectorAll(".body"), joints = figure.querySelector(".joint");
   const button = figure.querySelector("button"), slider = figure.querySelector(".phase"), size = figure.querySelector(".size");
-  const [said, larger] = figure.querySelectorAll("output");
+  const [shown, larger] = figure.querySelectorAll("output");
   let far = s.far;
   const down = (i, c, d) => i < 0 ? s.ground : s.y[i] + far * (s.re[i] * c - s.im[i] * d);
   const show = (degrees) => {
@@ -17,7 +17,7 @@ for (const figure of document.querySelectorAll("figure.shape")) {
       const x = s.x[a < 0 ? b : a];
       return `M${x},${down(a, c, d).toFixed(1)}L${s.x[b < 0 ? a : b]},${down(b, c, d).toFixed(1)}`;
     }).join(""));
-    slider.value = degrees; said.textContent = `${Math.round(degrees)}°`;
+    slider.value = degrees; shown.textContent = `${Math.round(degrees)}°`;
   };
   let moving = !still, last = 0, phase = s.phase;
   const label = () => { button.textContent = moving ? "Stop" : "Play"; };

@@ -1,4 +1,4 @@
-"""Vehicles coupled to the line in time: each wheel feels how the line differs from place to place.
+"""Vehicles coupled to the line in time: each wheel sees how the line differs from place to place.
 
 u_w(t) = sum_w' integral h(x_w(t), x_w'(t'), t - t') F_w'(t') dt' with forces linear between steps and h by its
 kernels between the nodes of the path; F_w = k (z_w - u_w - r_w) with a linear contact spring; z from the vehicle's

@@ -9,20 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from permway.challenge.mesh import Mesh
-from permway.challenge.track import TOUCH_M, Link, Spot, Track
+from permway.challenge.track import TOUCH_M, Link, Location, Track
 
 CLOSED = ("rail", "base")
 """Bodies that go on where the ring closes; slabs and girders end there, as at every pier."""
 
 
-class Ring:
+class ClosedMesh:
     """Nodes of a deck that goes on into itself.
 
     Parameters
     ----------
     track : Track
         A deck with its approaches, which are left out.
-    spots : sequence of Spot
+    locations : sequence of Location
         Where it will be read.
 
     Attributes
@@ -35,16 +35,16 @@ class Ring:
         Of the deck, and of a lap.
     """
 
-    def __init__(self, track: Track, spots: Sequence[Spot] = ()) -> None:
+    def __init__(self, track: Track, locations: Sequence[Location] = ()) -> None:
         self.length_m = track.beams["girder"].stop
         self.track = self._closed(track)
-        self._mesh = Mesh(self.track, spots)
+        self._mesh = Mesh(self.track, locations)
         self._same = self._numbers()
         self.size = int(self._same.max()) + 1
 
-    def at(self, spot: Spot) -> int:
+    def at(self, location: Location) -> int:
         """The degree of freedom of a place's deflection."""
-        return int(self._same[self._mesh.at(spot)])
+        return int(self._same[self._mesh.at(location)])
 
     def elements(self, body: str) -> list[tuple[NDArray[np.int64], float, float]]:
         """Degrees of freedom of each element of a body, from where to where, m."""
@@ -67,7 +67,7 @@ class Ring:
         return replace(track, beams=beams, links=links)
 
     def _is_end_pad(self, link: Link) -> bool:
-        x = link.spots[0][1]
+        x = link.locations[0][1]
         return link.law == "pad" and (abs(x) < TOUCH_M or abs(x - self.length_m) < TOUCH_M)
 
     def _numbers(self) -> NDArray[np.int64]:
