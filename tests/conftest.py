@@ -40,7 +40,8 @@ LONG = {
         challenge/test_challenge_sliders.py challenge/test_concealed_effects.py
         challenge/test_faults_and_blows.py challenge/test_graded.py challenge/test_parameters.py
         challenge/test_recalibrated.py challenge/test_rolling_train.py challenge/test_run.py
-        challenge/test_small_campaigns.py challenge/test_small_null.py challenge/test_small_rate.py
+        challenge/test_small_campaigns.py challenge/test_small_null.py challenge/test_small_passages.py
+        challenge/test_small_rate.py
         challenge/test_small_strength.py challenge/test_small_suite.py challenge/test_small_tier.py
         challenge/test_spans_on_fasteners.py challenge/test_suite.py challenge/test_tiers.py
         challenge/test_under_train.py challenge/test_weigh.py challenge/test_where_wheels_stand.py

@@ -29,7 +29,8 @@ def challenge_make(
     tier: Annotated[
         str,
         typer.Option(
-            help="null, single, twin, multiple, outside, nonlinear, graded, sparse, running; small, fixture."
+            help="null, single, twin, multiple, outside, nonlinear, graded, sparse, running; "
+            "small, fixture, passages."
         ),
     ] = "single",
     as_json: Json = False,
@@ -160,7 +161,9 @@ def challenge_suite(
     workers: Annotated[int, typer.Option(min=1, max=256, help="Campaigns at the same time.")] = 1,
     tiers: Annotated[
         str | None,
-        typer.Option(help="small, fixture, or both with a comma between: a suite of its own, see below."),
+        typer.Option(
+            help="small, fixture, passages, or several with commas between: a suite of its own, see below."
+        ),
     ] = None,
     method: Annotated[
         str | None,
@@ -182,6 +185,7 @@ def challenge_suite(
 
     With --tiers small: random small campaigns of that seed, 1,000 unless --cases states otherwise.
     With --tiers fixture: forty campaigns of one layout. Writes score.json and table.md.
+    With --tiers passages: trains that pass one accelerometer beside the track, 40 unless --cases states otherwise.
     """
     import json
 

@@ -42,8 +42,9 @@ class PassageBlock:
     """Measured less predicted spectra, real parts, then imaginary parts.
 
     Errors of chains multiply: a log gain that is the same at all frequencies, and log gain and phase that are
-    smooth over them. They act on what is predicted, for of what was measured noise is a part, and a gain would
-    explain it. A drift is no physics: three polynomials of time, of any size, are integrated out.
+    smooth over them, whose size a diagnosis estimates. They act on what is predicted, for of what was measured
+    noise is a part, and a gain would explain it. A drift is no physics: three polynomials of time, of any size,
+    are integrated out.
 
     Parameters
     ----------
@@ -80,6 +81,16 @@ class PassageBlock:
         scale = NEPER_DB * self.sigma / self.size
         columns = (label, label, np.full(label.shape, ""), at, scale)
         self.rows = Rows(*(np.tile(v.reshape(-1), 2) for v in columns))
+
+    @property
+    def relative(self) -> Reals:
+        """What an error of 1 neper does to each line, in standard deviations, (channel, frequency)."""
+        return np.asarray(np.abs(self._reference) / self.sigma)
+
+    @property
+    def phase(self) -> Complexes:
+        """Of the reference, as a number of modulus 1, (channel, frequency)."""
+        return np.asarray(np.exp(1j * np.angle(self._reference)))
 
     def residuals(self, predicted: xr.Dataset) -> Reals:
         """Measured less predicted, in standard deviations."""

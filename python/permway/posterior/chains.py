@@ -9,7 +9,6 @@ import numpy as np
 from scipy import sparse
 
 from permway.arrays import Complexes, Reals
-from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.posterior.matern import STATES, Nodes
@@ -224,7 +223,7 @@ def of_responses(blocks: list[tuple[int, FrfBlock]]) -> Chains:
         sizes.append(relative)
         start += count
     kinds = tuple(name.split(" ", 1)[0] for name in names)
-    return Chains(np.concatenate(rows), np.concatenate(turns), kinds, _joined(parts), np.concatenate(sizes))
+    return Chains(np.concatenate(rows), np.concatenate(turns), kinds, joined(parts), np.concatenate(sizes))
 
 
 def of_spectra(blocks: list[tuple[int, SpectraBlock]]) -> Chains:
@@ -267,23 +266,10 @@ def of_spectra(blocks: list[tuple[int, SpectraBlock]]) -> Chains:
         rows.append(first + np.arange(count))
         start += count
     kinds = tuple("unshared" if part == "unshared" else "channel" for _, part in names)
-    return Chains(np.concatenate(rows), None, kinds, _joined(parts))
+    return Chains(np.concatenate(rows), None, kinds, joined(parts))
 
 
-def _joined(parts: list[Entries]) -> Entries:
+def joined(parts: list[Entries]) -> Entries:
+    """All of several lists."""
     fields = ("row", "process", "x", "value", "slope")
     return Entries(*(np.concatenate([getattr(part, name) for part in parts]) for name in fields))
-
-
-def chains_of(blocks: tuple[Block, ...]) -> list[Chains]:
-    """All chains of a campaign's blocks: those of hammer tests, those on board."""
-    starts = np.cumsum([0, *(block.rows.channel.size for block in blocks)])
-    placed = list(zip(starts[:-1].tolist(), blocks, strict=True))
-    responses = [(first, block) for first, block in placed if isinstance(block, FrfBlock)]
-    spectra = [(first, block) for first, block in placed if isinstance(block, SpectraBlock)]
-    found = []
-    if responses:
-        found.append(of_responses(responses))
-    if spectra:
-        found.append(of_spectra(spectra))
-    return found

@@ -17,7 +17,8 @@ from permway.diagnosis.blocks_passage import PassageBlock
 from permway.diagnosis.blocks_spectra import LEVEL, SpectraBlock
 from permway.diagnosis.gather import first_size
 from permway.diagnosis.observations import Observations, Solved
-from permway.posterior.chains import Chains, Factor, chains_of
+from permway.posterior.chains import Chains, Factor
+from permway.posterior.every_chain import chains_of
 from permway.posterior.hyper import IDEALISATION, LACKING, Hyper
 
 NEPER_PER_DB = float(np.log(10.0)) / 20.0
@@ -193,6 +194,9 @@ def _own(observations: Observations, block: Block) -> dict[str, Reals]:
     whole, stop, found = block.calibration, 0, {}
     for source in whole.sources:
         start, stop = stop, stop + source.count
+        if isinstance(block, PassageBlock) and source.chain:
+            # How large errors of chains are is estimated, as of all records.
+            continue
         unit = np.zeros(sum(o.count for o in whole.sources))
         columns = []
         for index in range(start, stop):

@@ -10,9 +10,13 @@ from permway.challenge.pool import processes
 from permway.challenge.small.diagnose import LIMIT_S, diagnose_all
 from permway.challenge.small.fixture import FIXTURE, fixture_names, make_fixture
 from permway.challenge.small.make import make_small, name_of
+from permway.challenge.small.passages import CASES as OF_PASSAGES
+from permway.challenge.small.passages import make_passages
+from permway.challenge.small.passages import name_of as name_of_passages
+from permway.challenge.small.passages_drawn import PASSAGES
 from permway.errors import InputError
 
-TIERS = ("small", FIXTURE)
+TIERS = ("small", FIXTURE, PASSAGES)
 """Tiers of this suite."""
 
 CASES = 1000
@@ -35,6 +39,8 @@ def names_of(tiers: Sequence[str], seed: int, cases: int | None) -> list[str]:
             raise InputError("is no tier of this suite", where="--tiers", value=tier, remedy=str(list(TIERS)))
         if tier == FIXTURE:
             found += fixture_names()[:cases]
+        elif tier == PASSAGES:
+            found += [name_of_passages(seed, index) for index in range(OF_PASSAGES if cases is None else cases)]
         else:
             found += [name_of(seed, index) for index in range(CASES if cases is None else cases)]
     return found
@@ -61,7 +67,7 @@ def run_small(
         Of :data:`TIERS`.
     seed : int
     cases : int, optional
-        Of each tier; by default 1,000 small ones and all 40 of the fixture.
+        Of each tier; by default 1,000 small ones, all 40 of the fixture, and 40 with passages.
     workers : int
         Processes.
     method : str, optional
@@ -97,4 +103,4 @@ def made(folder: Path, name: str) -> str:
     if tier == FIXTURE:
         return make_fixture(name, folder)
     seed, index = rest
-    return make_small(int(seed), int(index), folder)
+    return (make_passages if tier == PASSAGES else make_small)(int(seed), int(index), folder)

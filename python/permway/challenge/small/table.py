@@ -12,6 +12,7 @@ import numpy as np
 from permway.challenge.calibration import PROBABILITIES
 from permway.challenge.score import NOVEL
 from permway.challenge.small.judge import SURE, Judged
+from permway.challenge.small.passages_drawn import PASSAGES
 from permway.challenge.summary import interval
 
 DEVIANCES = (0.0, 15.0, 50.0, 200.0, float("inf"))
@@ -65,6 +66,7 @@ def _class(value: float | None, ends: Sequence[float], unit: str = "") -> str:
 _GROUPS: dict[str, Callable[[Judged], str]] = {
     "tier": lambda j: j.tier,
     "kind": lambda j: j.kind if j.tier == "small" else "",
+    "concealed": lambda j: j.truth if j.tier == PASSAGES else "",
     "deviance": lambda j: _class(j.deviance, DEVIANCES),
     "change": lambda j: _class(j.change_dB, CHANGES_DB, " dB"),
     "errors": lambda j: "rough" if j.rough else "smooth",
@@ -168,8 +170,8 @@ def markdown(found: dict[str, Any], *, groups: Sequence[str] | None = None) -> s
     found : dict
         As :func:`table` gives it, or `score.json`.
     groups : sequence of str, optional
-        Which rows: "all", "tier", "kind", "deviance", "change", "errors", "layout", "maker", "family"; all by
-        default.
+        Which rows: "all", "tier", "kind", "concealed", "deviance", "change", "errors", "layout", "maker",
+        "family"; all by default.
     """
     lines = [f"| | {' | '.join(HEADS.values())} |", f"|---|{'---|' * len(HEADS)}"]
     for row in found["rows"]:
