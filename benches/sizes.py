@@ -158,6 +158,10 @@ def big(size: Size = BIG, block: int = BLOCK) -> dict[str, Any]:
     }
 
 
+def _ms(seconds: float) -> str:
+    return f"{1e3 * seconds:.3g}" if seconds < 1.0 else f"{1e3 * seconds:.0f}"
+
+
 def table(report: dict[str, Any]) -> str:
     """The report as Markdown."""
     machine = report["machine"]
@@ -172,7 +176,7 @@ def table(report: dict[str, Any]) -> str:
         "|---|---|---|---|---:|---:|",
     ]
     for row in report["rows"]:
-        sizes, times = ", ".join(map(str, row["sizes"])), ", ".join(f"{1e3 * s:.3g}" for s in row["processor_s"])
+        sizes, times = ", ".join(map(str, row["sizes"])), ", ".join(_ms(s) for s in row["processor_s"])
         slopes = f"{row['exponent']:.2f} | {row['exponent_at_the_end']:.2f}"
         lines.append(f"| {row['work']} | {row['against']} | {sizes} | {times} | {slopes} |")
     if (one := report.get("big")) is not None:
