@@ -54,8 +54,9 @@ FURTHER: tuple[tuple[str, str, str, tuple[int, ...], dict[str, int]], ...] = (
     ),
     ("receptance", "points, on one span", "points", (4, 16, 64, 256), {"spans": 1}),
     ("receptance", "sensors, on one span", "sensors", (4, 16, 64, 256), {"spans": 1}),
+    ("receptance", "sensors and points, on one span", "sensors points", (4, 16, 64, 256), {"spans": 1}),
 )
-"""Work, what the row says, the size that changes, and others that are not those of the base: to tell why."""
+"""Work, what the row says, the sizes that change, and others that are not those of the base: to tell why."""
 
 BIG = {"sensors": 40, "points": 1, "lines": 100_000, "spans": 10}
 BLOCK = 5000
@@ -124,7 +125,8 @@ def measured() -> list[dict[str, Any]]:
     rows = []
     cases = [(work, what, what, sizes, {}) for work in WORK for what, sizes in SIZES.items()]
     for work, says, what, sizes, others in (*cases, *FURTHER):
-        seconds = [least(WORK[work]({**BASE, **others, what: n}), ROUNDS) for n in sizes]
+        sized = [{**BASE, **others, **dict.fromkeys(what.split(), n)} for n in sizes]
+        seconds = [least(WORK[work](size), ROUNDS) for size in sized]
         slopes = exponents(list(sizes), seconds)
         row = {"work": work, "against": says, "sizes": sizes, "processor_s": seconds}
         rows.append({**row, "exponent": slopes[0], "exponent_at_the_end": slopes[1]})
@@ -156,6 +158,10 @@ def big(size: Size = BIG, block: int = BLOCK) -> dict[str, Any]:
     }
 
 
+def _ms(seconds: float) -> str:
+    return f"{1e3 * seconds:.3g}" if seconds < 1.0 else f"{1e3 * seconds:.0f}"
+
+
 def table(report: dict[str, Any]) -> str:
     """The report as Markdown."""
     machine = report["machine"]
@@ -170,7 +176,7 @@ def table(report: dict[str, Any]) -> str:
         "|---|---|---|---|---:|---:|",
     ]
     for row in report["rows"]:
-        sizes, times = ", ".join(map(str, row["sizes"])), ", ".join(f"{1e3 * s:.3g}" for s in row["processor_s"])
+        sizes, times = ", ".join(map(str, row["sizes"])), ", ".join(_ms(s) for s in row["processor_s"])
         slopes = f"{row['exponent']:.2f} | {row['exponent_at_the_end']:.2f}"
         lines.append(f"| {row['work']} | {row['against']} | {sizes} | {times} | {slopes} |")
     if (one := report.get("big")) is not None:

@@ -78,15 +78,28 @@ PARTS = (
         ("least", ".2f"),
         True,
     ),
+    Part(
+        "build",
+        "a release build from nothing, dependencies at hand",
+        (
+            (
+                *("-m", "maturin", "build", "--release", "--offline", "-m", "{tree}/rust/bindings/Cargo.toml"),
+                *("--target-dir", "{out}/target", "-o", "{out}"),
+            ),
+        ),
+    ),
 )
+LONG = {"demo": 3, "small": 3, "build": 1}
+"""Rounds at most, of parts that take long."""
 
 
 @dataclass(frozen=True)
 class Side:
-    """A Python, and where it finds permway."""
+    """A Python, where it finds permway, and the sources it is built from."""
 
     python: str
     path: str | None
+    tree: str | None = None
 
     def run(self, words: tuple[str, ...], log: Any) -> tuple[int, str, dict[str, float]]:
         """Status, output, and seconds on the clock and of the processor, the processes it starts included."""
@@ -106,7 +119,9 @@ class Side:
         """One round of a part; None where this side lacks it."""
         for words in part.words:
             with tempfile.TemporaryDirectory() as out, tempfile.TemporaryFile("w+") as log:
-                status, text, spent = self.run(tuple(w.format(out=out, **given) for w in words), log)
+                status, text, spent = self.run(
+                    tuple(w.format(out=out, tree=self.tree, **given) for w in words), log
+                )
                 if status == 0:
                     own = json.loads(text) if SIDE.name in words[0] else {}
                     return {**spent, **{f"own_{key}": value for key, value in own.items()}}
@@ -122,7 +137,7 @@ class Side:
 def measured(part: Part, sides: dict[str, Side], rounds: int, given: dict[str, str]) -> dict[str, Any]:
     """All rounds of a part, sides in turns."""
     found: dict[str, list[dict[str, Any]] | None] = {name: [] for name in sides}
-    for _ in range(rounds):
+    for _ in range(min(rounds, LONG.get(part.name, rounds))):
         for name, side in sides.items():
             if (rows := found[name]) is None:
                 continue
@@ -202,6 +217,7 @@ def main() -> None:
     for side in ("before", "after"):
         parser.add_argument(f"--{side}", default=sys.executable, help="Python")
         parser.add_argument(f"--{side}-path", help="folder in which it finds permway")
+        parser.add_argument(f"--{side}-tree", help="its sources, for the part build, which takes minutes")
         parser.add_argument(f"--{side}-name", default=side, help="a commit, say: stands in the table")
     parser.add_argument("-o", "--output", type=Path, default=HERE / "waits.json")
     parser.add_argument("--rounds", type=int, default=3)
@@ -221,13 +237,17 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     """Results of all parts that are wanted."""
     sides, stated = {}, {}
     for name in ("before", "after"):
-        python, path, label = (getattr(options, f"{name}{end}") for end in ("", "_path", "_name"))
-        sides[name] = Side(python, str(Path(path).resolve()) if path else None)
+        python, path, tree, label = (getattr(options, f"{name}{end}") for end in ("", "_path", "_tree", "_name"))
+        sides[name] = Side(python, *(str(Path(p).resolve()) if p else None for p in (path, tree)))
         status, text, _ = sides[name].run((str(SIDE), "about"), None)
         if status:
             raise SystemExit(f"{name}: no permway here")
         stated[name] = {"name": label, **json.loads(text)}
-    wanted = options.only or [p.name for p in PARTS if p.name != "whole" or options.whole]
+    trees = all(side.tree for side in sides.values())
+    possible = {"whole": bool(options.whole), "build": trees}
+    wanted = options.only or [p.name for p in PARTS if possible.get(p.name, True)]
+    if "build" in wanted and not trees:
+        raise SystemExit("build: name the sources of both by --before-tree and --after-tree")
     if "whole" in wanted and not options.whole:
         raise SystemExit("whole: name its campaign by --whole")
     parts: dict[str, Any] = {}

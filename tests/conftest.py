@@ -48,8 +48,8 @@ LONG = {
     """,
     "programs": """
         cli/test_cli.py cli/test_help.py cli/test_disk_full.py kill report/test_browser.py
-        response/test_processes.py study/test_cluster.py study/test_command.py study/test_interrupted.py
-        study/test_sweep.py
+        response/test_processes.py study/test_cluster.py study/test_cluster_killed.py study/test_command.py
+        study/test_interrupted.py study/test_sweep.py
     """,
     "long": """
         fuzz report/test_paper_page.py report/test_paper_tables.py response/test_rolling.py

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import as_completed
+from contextlib import closing
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from permway.challenge.case import Tier
 from permway.challenge.make import make
 from permway.challenge.pool import processes
 from permway.challenge.run import FAILED, VERDICT, diagnosed, ruled_out, threads_of
 from permway.challenge.tiers import number_of
-from permway.challenge.weigh import Against, weigh_one, whole
+from permway.challenge.weigh import WEIGHTS, Against, weigh_one, whole
 from permway.errors import InputError, SolveError
 
 CASES: dict[Tier, int] = {
@@ -30,6 +33,15 @@ APART = 1000
 """Between the first seeds of tiers whose numbers follow each other."""
 
 Progress = Callable[[int, int], object]
+
+Spread = Callable[
+    [Path, Iterable[tuple[str, Iterable[Path], Callable[[Path], Any]]], tuple[str, ...]], Iterator[tuple[str, Any]]
+]
+"""Does jobs on other machines. Given the folder; of each job its name, what it needs of the folder, and its work;
+and patterns of the files that say that one is done. Yields names, with `value` and `error` of each."""
+
+DONE = (f"*/{VERDICT}", f"*/{FAILED}", "truth/*.json", f"{WEIGHTS}/*.json")
+"""Files that say how far a campaign is."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +80,7 @@ def run_suite(
     *,
     cases: int | None = None,
     workers: int = 1,
+    spread: Spread | None = None,
     progress: Progress | None = None,
 ) -> dict[str, int]:
     """Bring campaigns of a suite to their scores, those first that come first; what is there is left as it is.
@@ -83,6 +96,8 @@ def run_suite(
         How many of them; by default all.
     workers : int
         Campaigns at the same time.
+    spread : callable, optional
+        Does the work elsewhere; then `workers` counts for nothing.
     progress : callable, optional
         Called with campaigns done and how many there are.
 
@@ -104,13 +119,40 @@ def run_suite(
         )
     chosen = suite_of(seed)[:cases]
     fine = 0
-    with processes(workers) as pool:
-        jobs = [pool.submit(_one, Path(folder), one, threads_of(workers), against) for one in chosen]
-        for done, job in enumerate(as_completed(jobs), start=1):
-            fine += job.result()
+    with closing(_each(Path(folder), chosen, against, workers, spread)) as each:
+        for done, good in enumerate(each, start=1):
+            fine += good
             if progress is not None:
                 progress(done, len(chosen))
     return {"verdicts": fine, "failed": len(chosen) - fine}
+
+
+def _each(
+    folder: Path, chosen: list[Numbered], against: Against, workers: int, spread: Spread | None
+) -> Generator[bool]:
+    """Whether each campaign came to its verdict, in any order."""
+    if spread is None:
+        with processes(workers) as pool:
+            jobs = [pool.submit(_one, folder, one, threads_of(workers), against) for one in chosen]
+            for job in as_completed(jobs):
+                yield job.result()
+        return
+    folder.mkdir(exist_ok=True)
+    work = partial(_one, threads=1, against=against)
+    elsewhere = ((one.name, files_of(folder, one.name), partial(work, one=one)) for one in chosen)
+    for name, outcome in spread(folder, elsewhere, DONE):
+        if outcome.error:
+            failed = folder / "verdicts" / name / FAILED
+            failed.parent.mkdir(parents=True, exist_ok=True)
+            whole(failed, f"{outcome.error}\n")
+        yield outcome.value is True
+
+
+def files_of(folder: Path, name: str) -> list[Path]:
+    """All that a folder of campaigns holds of one of them."""
+    below = [path for part in (name, f"verdicts/{name}") for path in (folder / part).rglob("*")]
+    beside = [folder / part / f"{name}.json" for part in ("truth", WEIGHTS)]
+    return [path for path in (*below, *beside) if path.is_file()]
 
 
 def _one(folder: Path, one: Numbered, threads: int, against: Against) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,6 +11,7 @@ import typer
 from permway.cli.output import (
     Json,
     Outside,
+    Scheduler,
     Threads,
     examples,
     print_message,
@@ -18,6 +19,7 @@ from permway.cli.output import (
     progress_bar,
     stage_bar,
 )
+from permway.errors import InputError
 
 campaigns = typer.Typer(rich_markup_mode=None)
 
@@ -58,14 +60,18 @@ def compare(
     epilog=examples(
         "permway diagnose campaign/campaign.toml -o diagnosis",
         "permway diagnose campaign/campaign.toml --no-report --json",
+        "permway diagnose */campaign.toml -o diagnoses --scheduler tcp://cluster:8786",
     )
 )
 def diagnose(
-    campaign: Annotated[Path, typer.Argument(help="Campaign file (TOML).")],
+    campaigns: Annotated[list[Path], typer.Argument(help="Campaign file (TOML), or several.")],
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", help="Folder for report, verdict and model; by default beside the campaign."
+            "--output",
+            "-o",
+            help="Folder for report, verdict and model; by default beside the campaign. Of several campaigns it "
+            "gets a folder each, named as theirs.",
         ),
     ] = None,
     rule_out: Annotated[
@@ -74,6 +80,7 @@ def diagnose(
     ] = None,
     no_report: Annotated[bool, typer.Option("--no-report", help="Without report.html.")] = False,
     allow_outside: Outside = False,
+    scheduler: Scheduler = None,
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
@@ -82,28 +89,65 @@ def diagnose(
     First states what is probably stated wrongly, as `permway check` does. Then weighs sets of effects against each
     other and against nothing missing, names what is probable enough or states that the records do not decide, and
     says how much better it predicts records that are left out. Writes report.html, verdict.json and amended.toml;
-    takes minutes.
+    takes minutes. Of several campaigns those that have been diagnosed are left as they are.
     """
     from permway.campaign.campaign import read_campaign
-    from permway.checking.check import check
     from permway.diagnosis.catalogue import known
-    from permway.files import prepare_folder
-    from permway.posterior.diagnose import diagnose as run
-    from permway.posterior.journal import FOLDER, keeping, key_of
-    from permway.report.diagnosis import write_diagnosis
+    from permway.study.diagnoses import diagnose_into
 
     ruled_out = known(rule_out or ())
-    described = read_campaign(campaign, allow_outside=allow_outside)
-    folder = prepare_folder(output or campaign.parent / "diagnosis")
-    checked = check(described, threads=threads)
-    for blunder in checked.blunders:
-        print_message(f"{'asked' if blunder.asked else 'put right first'}: {blunder.sentence}")
-    with keeping(folder / FOLDER, key_of(described, ruled_out)) as steps:
-        with stage_bar("diagnosing", as_json) as progress:
-            result = run(described, ruled_out=ruled_out, threads=threads, progress=progress)
-        written = write_diagnosis(result.with_blunders(checked), folder, page=not no_report)
-        steps.close()
+    if len(campaigns) > 1 or scheduler is not None:
+        if allow_outside:
+            raise InputError(
+                "is for one campaign on this machine", where="--allow-outside", remedy="diagnose it by itself"
+            )
+        _many(campaigns, output, ruled_out, not no_report, scheduler, threads, as_json)
+        return
+    campaign = campaigns[0]
+    written = diagnose_into(
+        read_campaign(campaign, allow_outside=allow_outside),
+        output or campaign.parent / "diagnosis",
+        ruled_out=ruled_out,
+        page=not no_report,
+        threads=threads,
+        say=print_message,
+        progress=lambda: stage_bar("diagnosing", as_json),
+    )
     print_result(written if as_json else _in_words(written), as_json)
+
+
+def _many(
+    campaigns: list[Path],
+    output: Path | None,
+    ruled_out: Collection[str],
+    page: bool,
+    scheduler: str | None,
+    threads: int | None,
+    as_json: bool,
+) -> None:
+    """Diagnoses of several campaigns, and how many came to their end; status 1 if one did not."""
+    from permway.files import prepare_folder
+    from permway.study.diagnoses import diagnose_many
+
+    if output is None:
+        folders = [campaign.parent / "diagnosis" for campaign in campaigns]
+    else:
+        folders = [prepare_folder(output) / campaign.resolve().parent.name for campaign in campaigns]
+    with stage_bar("diagnosing", as_json) as progress:
+        found = diagnose_many(
+            campaigns,
+            folders,
+            ruled_out=ruled_out,
+            page=page,
+            scheduler=scheduler,
+            threads=threads,
+            progress=progress,
+        )
+    failed = [{"folder": name, "error": error} for name, error in found.failed.items()]
+    shown = {"diagnosed": len(found.done), "already_there": len(found.already_there), "failed": failed}
+    print_result(shown, as_json)
+    if failed:
+        raise typer.Exit(1)
 
 
 @campaigns.command(epilog=examples("permway separability campaign/campaign.toml --json"))

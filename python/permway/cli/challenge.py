@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from permway.cli.output import Folder, Json, examples, print_result, progress_bar, stage_bar
+from permway.cli.output import Folder, Json, Scheduler, examples, over, print_result, progress_bar, stage_bar
 from permway.errors import InputError
 
 if TYPE_CHECKING:
     from permway.challenge.follow import Advice
+    from permway.challenge.suite import Spread
 
 challenges = typer.Typer(
     help="Concealed effects: make, diagnose, score.",
@@ -176,6 +177,7 @@ def challenge_suite(
     limit: Annotated[
         float, typer.Option(min=1.0, help="Of small campaigns: processor time of one diagnosis, s.")
     ] = 120.0,
+    scheduler: Scheduler = None,
     as_json: Json = False,
 ) -> None:
     """All tiers made, diagnosed, weighed and scored.
@@ -194,8 +196,11 @@ def challenge_suite(
     from permway.challenge.weigh import whole
     from permway.posterior.deviance import against_folder
 
+    spread = over(scheduler)
+    if scheduler is not None and method is not None:
+        raise InputError("is on this machine only", where="--diagnose", value=method, remedy="without --scheduler")
     if tiers is not None:
-        print_result(_small(output, tiers, seed, cases, workers, method, limit, as_json), as_json)
+        print_result(_small(output, tiers, seed, cases, workers, method, limit, spread, as_json), as_json)
         return
     if method is not None:
         raise InputError("goes with --tiers", where="--diagnose", value=method)
@@ -206,6 +211,7 @@ def challenge_suite(
             against_folder,
             cases=cases,
             workers=workers,
+            spread=spread,
             progress=progress,
         )
     count = "" if cases is None else f" --cases {cases}"
@@ -223,6 +229,7 @@ def _small(
     workers: int,
     method: str | None,
     limit: float,
+    spread: Spread | None,
     as_json: bool,
 ) -> dict[str, object]:
     """The suite of small campaigns and its table."""
@@ -244,6 +251,7 @@ def _small(
             workers=workers,
             method=method,
             limit_s=limit,
+            spread=spread,
             progress=progress,
         )
     count = "" if cases is None else f" --cases {cases}"

@@ -18,7 +18,7 @@ from permway.cli.imports import imports
 from permway.cli.levels import levels
 from permway.cli.look import looking
 from permway.cli.modes import shapes
-from permway.cli.output import Json, Threads, examples, print_message, print_result, progress_bar
+from permway.cli.output import Json, Scheduler, Threads, examples, print_message, print_result, progress_bar
 from permway.cli.track import tracks
 from permway.errors import InputError, PermwayError
 
@@ -215,9 +215,7 @@ def sweep(
         Path | None,
         typer.Option("--output", "-o", help="Folder for a file per case; by default beside the study."),
     ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(help="Address of a Dask scheduler; by default this machine computes.")
-    ] = None,
+    scheduler: Scheduler = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Discard results that lie in the folder.")] = False,
     threads: Threads = None,
     as_json: Json = False,

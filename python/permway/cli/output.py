@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -23,6 +24,9 @@ Outside = Annotated[
     bool,
     typer.Option("--allow-outside", help="Read files outside the campaign's folder, if the campaign names such."),
 ]
+Scheduler = Annotated[
+    str | None, typer.Option(help="Address of a Dask scheduler; by default this machine computes.")
+]
 Folder = Annotated[Path, typer.Argument(help="Folder to read.")]
 
 
@@ -30,6 +34,15 @@ def examples(*lines: str) -> str:
     """What stands at the end of a command's help: lines as they would be typed."""
     # The first character keeps the lines from being filled into a paragraph.
     return "\b\n" + "\n".join(["Examples:" if len(lines) > 1 else "Example:", *(f"  {line}" for line in lines)])
+
+
+def over(scheduler: str | None) -> Any:
+    """What does jobs on files of a folder on a cluster; None for this machine."""
+    if scheduler is None:
+        return None
+    from permway.study.folders import on_cluster_in_folder
+
+    return partial(on_cluster_in_folder, scheduler)
 
 
 def print_message(message: object) -> None:

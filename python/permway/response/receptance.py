@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence, Sized
+from dataclasses import replace
 from functools import partial
 from typing import get_args
 
@@ -45,7 +46,8 @@ def receptance(
     frequency_Hz : array_like, shape (F,)
         Ascending, positive.
     forces, sensors : sequence of Place
-        Where unit forces act, and where displacement is read.
+        Where unit forces act, and where displacement is read. Solved from the side that has fewer: the line is
+        reciprocal.
     temperature_C : float, optional
         Needed if a law of the line depends on it.
     formulation : "chain" or "receptance"
@@ -139,11 +141,15 @@ def between(
         raise InputError(
             "must be a number", where="temperature_C", value=temperature_C, remedy="in degrees Celsius"
         )
-    points = {"forces": check_places(line, forces, "forces"), "sensors": check_places(line, sensors, "sensors")}
-    return run(
+    pushed, read = check_places(line, forces, "forces"), check_places(line, sensors, "sensors")
+    # Every line is reciprocal: it is of linear bodies and joints alone, and a place is pushed by what does work on
+    # what is read there. A force costs a solve at every frequency, a sensor nearly nothing, so the side that has
+    # fewer is pushed. What joints extend by belongs to the forces that are asked for.
+    turned = not extensions and 0 < read["x"].size < pushed["x"].size
+    solved = run(
         line,
         frequency,
-        points,
+        {"forces": read, "sensors": pushed} if turned else {"forces": pushed, "sensors": read},
         temperature_C=temperature_C,
         formulation=formulation,
         extensions=extensions,
@@ -151,6 +157,7 @@ def between(
         progress=progress,
         on_error=on_error,
     )
+    return replace(solved, receptance=solved.receptance.transpose(0, 2, 1)) if turned else solved
 
 
 def check_line(line: object, where: str = "line") -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import as_completed
+from functools import partial
 from pathlib import Path
 
 from permway.challenge.pool import processes
@@ -14,13 +15,18 @@ from permway.challenge.small.passages import CASES as OF_PASSAGES
 from permway.challenge.small.passages import make_passages
 from permway.challenge.small.passages import name_of as name_of_passages
 from permway.challenge.small.passages_drawn import PASSAGES
-from permway.errors import InputError
+from permway.challenge.suite import DONE, Spread, files_of
+from permway.errors import InputError, SolveError
 
 TIERS = ("small", FIXTURE, PASSAGES)
 """Tiers of this suite."""
 
 CASES = 1000
 """Small campaigns of a suite, unless others are asked for."""
+
+EACH = 10
+"""Campaigns of one piece of work that goes elsewhere, lost with a machine at most. Importing the method takes as
+long as a third of a diagnosis."""
 
 Progress = Callable[[str, int, int], object]
 
@@ -55,6 +61,7 @@ def run_small(
     workers: int = 1,
     method: str | None = None,
     limit_s: float = LIMIT_S,
+    spread: Spread | None = None,
     progress: Progress | None = None,
 ) -> list[str]:
     """Make and diagnose the campaigns of a suite; their names.
@@ -74,11 +81,21 @@ def run_small(
         See :func:`permway.challenge.small.diagnose.interpreter_of`.
     limit_s : float
         Processor time of each diagnosis.
+    spread : callable, optional
+        See :data:`permway.challenge.suite.Spread`; of this installation's method alone.
     progress : callable, optional
         Called with the stage, campaigns done and how many there are.
+
+    Raises
+    ------
+    SolveError
+        If work that went elsewhere failed there; what came back is kept.
     """
     folder = Path(folder)
     names = names_of(tiers, seed, cases)
+    if spread is not None:
+        _elsewhere(folder, names, limit_s, spread, progress)
+        return names
     missing = [name for name in names if not (folder / "truth" / f"{name}.json").is_file()]
     if missing:
         with processes(workers) as pool:
@@ -104,3 +121,37 @@ def made(folder: Path, name: str) -> str:
         return make_fixture(name, folder)
     seed, index = rest
     return (make_passages if tier == PASSAGES else make_small)(int(seed), int(index), folder)
+
+
+def _elsewhere(
+    folder: Path, names: Sequence[str], limit_s: float, spread: Spread, progress: Progress | None
+) -> None:
+    """Make and diagnose on other machines what has no verdict and no failure yet."""
+    left = [name for name in names if not _done(folder, name)]
+    parts = [left[first : first + EACH] for first in range(0, len(left), EACH)]
+    jobs = (
+        (part[0], [path for name in part for path in files_of(folder, name)], partial(_whole, part, limit_s))
+        for part in parts
+    )
+    sizes, done, failures = {part[0]: len(part) for part in parts}, len(names) - len(left), []
+    folder.mkdir(exist_ok=True)
+    for name, outcome in spread(folder, jobs, DONE):
+        done += sizes[name]
+        if outcome.error:
+            failures.append(f"{name}: {outcome.error}")
+        if progress is not None:
+            progress("made and diagnosed", done, len(names))
+    if failures:
+        raise SolveError(f"{len(failures)} pieces of work failed, call again to repeat them; {failures[0]}")
+
+
+def _done(folder: Path, name: str) -> bool:
+    verdicts = folder / "verdicts" / name
+    judged = (verdicts / "verdict.json").is_file() or (verdicts / "failed.txt").is_file()
+    return judged and (folder / "truth" / f"{name}.json").is_file()
+
+
+def _whole(names: Sequence[str], limit_s: float, folder: Path) -> None:
+    for name in names:
+        made(folder, name)
+    diagnose_all([(folder / n / "campaign.toml", folder / "verdicts" / n) for n in names], limit_s=limit_s)
