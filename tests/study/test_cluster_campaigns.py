@@ -39,7 +39,7 @@ def here(tmp_path_factory):
     return folder
 
 
-def said(path):
+def stated(path):
     """A verdict without what depends on the machine."""
     verdict = json.loads(path.read_text())
     return {key: value for key, value in verdict.items() if key not in ("seconds", "campaign", "made_by")}
@@ -62,7 +62,7 @@ def test_a_suite_of_small_campaigns(cluster, here, tmp_path, monkeypatch):
     assert {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()} == files
     for name in names:
         assert (folder / "truth" / f"{name}.json").read_bytes() == (here / "truth" / f"{name}.json").read_bytes()
-        assert said(folder / "verdicts" / name / "verdict.json") == said(here / "verdicts" / name / "verdict.json")
+        assert stated(folder / "verdicts" / name / "verdict.json") == stated(here / "verdicts" / name / "verdict.json")
     # Called again there is nothing left to do; of a verdict that is gone there is.
     asked = []
 
@@ -95,19 +95,19 @@ def test_diagnoses_of_many_campaigns(cluster, here, tmp_path):
     assert killed
     assert (len(found.done), found.already_there, found.failed) == (CASES, (), {})
     for name, folder in zip(names, folders, strict=True):
-        status = said(folder / "verdict.json")["status"]
-        assert status == said(here / "verdicts" / name / "verdict.json")["status"]
+        status = stated(folder / "verdict.json")["status"]
+        assert status == stated(here / "verdicts" / name / "verdict.json")["status"]
         assert (folder / "amended.toml").is_file()
     # Of one record that is changed the diagnosis is made anew, of the others it is there.
     with (campaigns[0]).open("a") as file:
-        file.write("\n# said differently\n")
-    campaigns[1].write_text(campaigns[1].read_text().replace("format = 1", 'format = 1\ntitle = "another"', 1))
+        file.write("\n# stated differently\n")
+    campaigns[1].write_text(campaigns[1].read_text().replace('title = "', 'title = "Another ', 1))
     again = diagnose_many(campaigns, folders, **options)
     assert again.done == (str(folders[1]),)
     assert len(again.already_there) == CASES - 1
 
 
-def test_failures_elsewhere_are_told(tmp_path, monkeypatch):
+def test_failures_elsewhere_are_named(tmp_path, monkeypatch):
     """Pieces that fail on workers are named, what came back is kept, and two diagnoses never share a folder."""
     from permway.study.cluster import Outcome
 
@@ -115,7 +115,7 @@ def test_failures_elsewhere_are_told(tmp_path, monkeypatch):
         for name, _, _ in jobs:
             yield name, Outcome(error="worker out of memory")
 
-    with pytest.raises(SolveError, match=r"1 pieces of work failed.*small-480-0: worker out of memory"):
+    with pytest.raises(SolveError, match=r"1 pieces of work failed.*small-480-0000: worker out of memory"):
         run_small(tmp_path / "out", ["small"], SEED, cases=2, spread=spread)
     with pytest.raises(InputError, match="two campaigns would write there"):
         diagnose_many([tmp_path / "a", tmp_path / "b"], [tmp_path / "out", tmp_path / "out"])
