@@ -62,7 +62,9 @@ def test_a_suite_of_small_campaigns(cluster, here, tmp_path, monkeypatch):
     assert {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()} == files
     for name in names:
         assert (folder / "truth" / f"{name}.json").read_bytes() == (here / "truth" / f"{name}.json").read_bytes()
-        assert stated(folder / "verdicts" / name / "verdict.json") == stated(here / "verdicts" / name / "verdict.json")
+        assert stated(folder / "verdicts" / name / "verdict.json") == stated(
+            here / "verdicts" / name / "verdict.json"
+        )
     # Called again there is nothing left to do; of a verdict that is gone there is.
     asked = []
 

@@ -69,8 +69,9 @@ PREFIXED = ("N", "Pa")
 def _words(known: Known, deviations: float) -> str:
     """As an engineer says it: the value, how far it is from the stated one, and in standard deviations."""
     value, unit = known.value(deviations), known.parameter.unit
-    share = f"{100.0 * abs(value / known.nominal - 1.0):.0f} % {'below' if value < known.nominal else 'above'} "
-    far = share if known.nominal > 0.0 else ""
+    far = "below " if value < known.nominal else "above "
+    if known.nominal > 0.0:
+        far = f"{100.0 * abs(value / known.nominal - 1.0):.0f} % {far}"
     return (
         f"about {_size(value, unit, '#.3g')}, {far}the stated {_size(known.nominal, unit, '.3g')}, "
         f"{abs(deviations):.1f} standard deviations of its tolerance"
