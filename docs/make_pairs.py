@@ -43,8 +43,8 @@ named with 0.9, none falsely.
 
 Causes of misses, by kind. *Prior*: a constant 1 dB passes for an error of the chain (the gain; the spring of two
 damped carts); a spring 26 % off its 3 % is improbable. *Likelihood*: noise smears silverbox's resonance, which
-passes for loss. *Model*: all records of the beam have a resonance at 23.8 Hz, which in the base's own is lost in errors of a
-seventh of an octave. The bolted beam's frequency falls and rises with the level, which no entry does.
+passes for loss. *Model*: all records of the beam have a resonance at 23.8 Hz, lost in errors of a seventh of an
+octave in the base's own. The bolted beam's frequency falls and rises with the level, which no entry does.
 """
 """Below the table."""
 
@@ -61,8 +61,8 @@ deviations), chains err by 2 %.
 PASSAGES_NOTES = """
 Asked: loads within 3 %, speeds within 0.3 %, intervals 85 to 95 %. Five fits of constant forces rest at another
 optimum, stiffness 12 to 30 % off; each says that something is missing. Entries come out 0.4 ms early, for the
-model's constant loss (the other code's is viscous), so intervals hold the truth too rarely. Fits then took errors
-of chains for 2 %; they are estimated now.
+model's constant loss (the other code's is viscous), so intervals hold the truth too rarely. Errors
+of chains were taken for 2 % here.
 """
 
 
