@@ -28,7 +28,17 @@ ALLOWED = {"numpy", "scipy", "pyuff", *sys.stdlib_module_names}
 
 BY_THE_TOOL = {
     f"permway.challenge.small.{name}"
-    for name in ("alone", "by_model", "fixture", "make", "outside_model", "stated", "stretches", "write")
+    for name in (
+        "alone",
+        "by_model",
+        "fixture",
+        "make",
+        "outside_model",
+        "passages",
+        "stated",
+        "stretches",
+        "write",
+    )
 }
 """Makes small campaigns by the tool's own model on purpose, reads or diagnoses them."""
 

@@ -85,8 +85,8 @@ def test_on_an_interrupt_nothing_goes_on() -> None:
 
 def test_on_sigterm_workers_and_commands_end_and_begin_nothing_more(tmp_path: Path) -> None:
     """A pool with jobs that wait, whose worker runs a command that would write a file after a while."""
-    script = "import pathlib, sys, time; pathlib.Path(sys.argv[1]).touch(); time.sleep(3); "
-    script += "pathlib.Path(sys.argv[1] + '.late').touch()"
+    late = "import pathlib, sys, time; pathlib.Path(sys.argv[1]).touch(); time.sleep(3); "
+    late += "pathlib.Path(sys.argv[1] + '.late').touch()"
     script = tmp_path / "script.py"
     script.write_text(
         "import os, pathlib, subprocess, sys\n"
@@ -94,7 +94,7 @@ def test_on_sigterm_workers_and_commands_end_and_begin_nothing_more(tmp_path: Pa
         "def work(index):\n"
         f"    folder = pathlib.Path({str(tmp_path)!r})\n"
         "    (folder / f'worker.{os.getpid()}').touch()\n"
-        f"    subprocess.run([sys.executable, '-c', {script!r}, str(folder / f'job{{index}}')])\n"
+        f"    subprocess.run([sys.executable, '-c', {late!r}, str(folder / f'job{{index}}')])\n"
         "if __name__ == '__main__':\n"
         "    with processes(1) as pool:\n"
         "        for job in [pool.submit(work, index) for index in range(4)]:\n"
