@@ -50,6 +50,7 @@ def measured(nominal_campaign: Campaign, factor: float) -> Observations:
     return observations_of(nominal_campaign, 5, amend=amend)
 
 
+@pytest.mark.injection
 def test_a_speed_far_off_is_found_and_measured(nominal_campaign: Campaign) -> None:
     observations = measured(nominal_campaign, 0.94)
     best = searched(observations, "speed_error").best()

@@ -261,6 +261,7 @@ def test_absorbers_of_a_stretch_between_fasteners_are_distinguished_from_others(
         assert abs(fitted - true) < 0.35
 
 
+@pytest.mark.injection
 def test_slabs_cut_at_fasteners_are_distinguished_by_their_length(
     situations: Callable[[str], tuple[Situation, Campaign]], tmp_path: Path
 ) -> None:
