@@ -48,7 +48,7 @@ false names, 1 of 47 called, 98 of 105 names of 0.9 true. Elements of no catalog
 (three false names), and a pier was stated by its mass (one); all four are right now.
 
 Whole campaigns by the second method, some changes ago: the sealed ones, in `tests/sealed`. Against the first
-method's verdicts below it adds an effect in `-d`, `-f`, `-g` and `-j`.
+method's verdicts below it adds an effect in `-f`, `-g` and `-j`.
 """
 
 

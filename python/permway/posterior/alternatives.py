@@ -34,7 +34,7 @@ def without_each(fitter: Fitter, member: Member, nominal: Model) -> Iterator[tup
         yield index, Member(amendments, left, tuple(member.log_priors[i] for i in kept))
 
 
-def alternatives(found: Member, index: int, starts: Sequence[Cell]) -> list[Cell]:
+def alternatives(found: Member, index: int, starts: Sequence[Cell], *, sized: bool = False) -> list[Cell]:
     """Starts of other forms than one amendment of a set, with its values where parameters have the same name.
 
     Parameters
@@ -44,21 +44,28 @@ def alternatives(found: Member, index: int, starts: Sequence[Cell]) -> list[Cell
         Of the amendment.
     starts : sequence of Cell
         Of all hypotheses.
+    sized : bool
+        Whether the size is shared, too: then of forms that have the same, each once.
     """
     last = found.amendments[index]
     units = {free.name: free.unit for free in last.free}
     values = found.values(index)
-    moved = []
+    moved: dict[tuple[object, ...], Cell] = {}
     for cell in starts:
         hypothesis = cell.hypothesis
-        if hypothesis.form == last.form:
+        if hypothesis.form == last.form or (sized and hypothesis.size != last.size):
             continue
-        z, shared = cell.z.copy(), False
+        z, shared = cell.z.copy(), set()
         for place, free in enumerate(hypothesis.free):
-            if free.name != hypothesis.size and units.get(free.name) == free.unit:
+            if (sized or free.name != hypothesis.size) and units.get(free.name) == free.unit:
                 own = coordinate(free, values[free.name])
                 if own is not None and abs(own) < FAR:
-                    z[place], shared = own, True
-        if shared:
-            moved.append(replace(cell, z=z))
-    return moved
+                    z[place] = own
+                    shared.add(free.name)
+        if shared and (not sized or hypothesis.size in shared):
+            other = replace(cell, z=z)
+            rest = tuple(round(float(v), 6) for v in other.values.values())
+            where = hypothesis.locate(other.values)
+            key = (hypothesis.form, rest, where.what, where.x_m) if sized else (len(moved),)
+            moved.setdefault(key, other)
+    return list(moved.values())

@@ -47,7 +47,7 @@ PREDICTED = 0.03
 """The same by a linear look, which predicts too much: it has no penalty for what parameters could have been."""
 
 GROWS = 0.5
-"""Share of the best's gain, by which a change that is not yet fitted to the end may be behind it."""
+"""Share of the best's gain, or of what an amendment gains, by which what is not yet fitted may be behind it."""
 
 MOVING = 5.0
 """Nats that a small change may lack before it is moved to better neighbours."""
@@ -151,7 +151,9 @@ def _alike(
     progress: Progress,
     what: str,
 ) -> list[Member]:
-    """Sets with another amendment where the leader has one, if they may come as near as a class shows.
+    """Sets with another amendment where the leader has one.
+
+    If they may come as near as a class shows, or gain half as much before they are fitted.
 
     Parameters
     ----------
@@ -166,16 +168,26 @@ def _alike(
     what : str
     """
     fit, without = leader.fit, others.fit
-    starts = small(alternatives(leader, index, _offered(others, without, ruled_out)))
-    scores = screened(without, starts, _saying(progress, f"alternatives, {what}", len(starts)), ())
+    offered = _offered(others, without, ruled_out)
+    starts = small(alternatives(leader, index, offered))
+    large = alternatives(leader, index, offered, sized=True)
     count = fit.state.residuals.size
-    behind = 0.5 * (without.objective - scores.gain - fit.objective)
+    say = _saying(progress, f"alternatives, {what}", len(starts) + len(large))
+    scores = screened(without, starts, say, ())
+    nats = 0.5 * (without.objective - scores.gain - fit.objective)
     worth = []
-    for i, (cell, nats) in enumerate(zip(starts, behind.tolist(), strict=True)):
-        lacking = tempered(nats, count) + leader.log_priors[index] - cell.log_prior
+    for i, cell in enumerate(starts):
+        lacking = tempered(float(nats[i]), count) + leader.log_priors[index] - cell.log_prior
         if lacking < LEFT:
             other = resized(cell, float(scores.measure[i]))
             worth.append((lacking, other.hypothesis, Trial.of(others, other, fit.hyper)))
+    # A large change bends what it does: with the same values another form may do nearly the same.
+    nats = 0.5 * (screened(without, large, say).objective - fit.objective)
+    seen = np.isfinite(scores.objective)
+    nothing = 0.5 * (float(scores.objective[seen].max(initial=fit.objective)) - fit.objective)
+    for i in np.flatnonzero(nats < (1.0 - GROWS) * nothing).tolist():
+        lacking = tempered(float(nats[i]), count) + leader.log_priors[index] - large[i].log_prior
+        worth.append((lacking, large[i].hypothesis, Trial.of(others, large[i], fit.hyper)))
     trials = chosen(worth, WIDTHS[2], PER_FORM[2])
     return completed(fitter, others, trials, _saying(progress, f"alternatives, {what}, to the end", len(trials)))
 
