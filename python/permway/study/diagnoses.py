@@ -59,7 +59,7 @@ def diagnose_into(
         Whether to write the page.
     threads : int, optional
     say : callable
-        Told what is probably stated wrongly, before the diagnosis.
+        Called with each thing that is probably stated wrongly, before the diagnosis.
     progress : callable, optional
         Makes a context manager whose value is called with stages, while the diagnosis runs.
 

@@ -24,7 +24,7 @@ FAMILY = "bearing and pier"
 SUMMARY = "Below every bearing, or those of two girders together, a mass on a spring with loss: pier and soil."
 PARAMETERS = {
     "compliance": "1, 0.002 to 120: of the soil's spring, over that of one bearing at 10 Hz",
-    "frequency_Hz": "Hz, 1 to 2000: at which pier and foundation would ring on the soil alone",
+    "frequency_Hz": "Hz, 1 to 2000: natural frequency of pier and foundation on the soil alone",
     "loss_factor": "1, 0.005 to 5: of the soil's spring",
     "radiation": "1, 0 to 25: loss factor at 10 Hz of the dashpot that radiation into the soil is",
 }
@@ -44,8 +44,8 @@ SHARED_M = 1.5
 """Ends of two girders no farther apart may stand on one pier."""
 
 COMPLIANCE, PIER_HZ = (0.5, 3.0), (40.0, 2.5)
-"""Usual, and the factor of one standard deviation: of the soil, over a bearing's; and where the pier would ring on
-the soil alone. With that frequency what a stiff soil changes is in proportion to its compliance."""
+"""Usual, and the factor of one standard deviation: compliance of the soil over a bearing's, and natural frequency
+of the pier on the soil alone. While that is kept, what a stiff soil changes is in proportion to its compliance."""
 
 COMPLIANCES = (0.1, 0.4, 1.6)
 """Begun from."""
