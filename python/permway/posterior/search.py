@@ -183,9 +183,7 @@ def _alike(
             worth.append((lacking, other.hypothesis, Trial.of(others, other, fit.hyper)))
     # A large change bends what it does: with the same values another form may do nearly the same.
     nats = 0.5 * (screened(without, large, say).objective - fit.objective)
-    seen = np.isfinite(scores.objective)
-    nothing = 0.5 * (float(scores.objective[seen].max(initial=fit.objective)) - fit.objective)
-    for i in np.flatnonzero(nats < (1.0 - GROWS) * nothing).tolist():
+    for i in np.flatnonzero(nats < (1.0 - GROWS) * 0.5 * (without.objective - fit.objective)).tolist():
         lacking = tempered(float(nats[i]), count) + leader.log_priors[index] - large[i].log_prior
         worth.append((lacking, large[i].hypothesis, Trial.of(others, large[i], fit.hyper)))
     trials = chosen(worth, WIDTHS[2], PER_FORM[2])
