@@ -5,13 +5,16 @@ from __future__ import annotations
 import os
 import tempfile
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from permway.errors import InputError
 from permway.laws import AnyLaw, law_from_dict, law_to_dict
 from permway.laws.base import Law
-from permway.laws.identify import Identification
 from permway.laws.toml import to_toml
 from permway.reading import read_toml
+
+if TYPE_CHECKING:
+    from permway.laws.identify import Identification
 
 _FORMAT = 1
 
@@ -33,11 +36,11 @@ def save_law(path: str | Path, law: Identification | Law) -> None:
     """
     target = Path(path)
     content: dict[str, object] = {"format": _FORMAT}
-    if isinstance(law, Identification):
+    if isinstance(law, Law):
+        content["law"] = law_to_dict(law)
+    else:
         content["law"] = law_to_dict(law.law)
         content["identification"] = _account(law)
-    else:
-        content["law"] = law_to_dict(law)
     text = to_toml(content)
     try:
         # In the same folder, for only within one file system is a rename a single step.

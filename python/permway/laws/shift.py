@@ -8,7 +8,6 @@ from typing import Annotated, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field, model_validator
-from scipy.interpolate import PchipInterpolator
 
 from permway.arrays import ABSOLUTE_ZERO_C, Reals, check_temperature
 from permway.errors import InputError
@@ -208,6 +207,9 @@ class Free(Shift):
                 value=float(np.atleast_1d(temperature_C)[np.atleast_1d(outside)][0]),
                 remedy="measure there, or identify a WLF or an Arrhenius shift",
             )
+        # It takes a third of a second to import, which most models do not need.
+        from scipy.interpolate import PchipInterpolator
+
         return np.asarray(PchipInterpolator(self.temperatures_C, self.log10_shift)(temperature_C))
 
 

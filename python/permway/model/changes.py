@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from pydantic import Field, model_validator
-from scipy.special import ndtri
 
 from permway.arrays import Reals
 from permway.errors import InputError
@@ -75,6 +74,9 @@ class Scatter(FrozenModel):
 
     def factors(self, count: int) -> Reals:
         """Factors of `count` joints."""
+        # It takes a third of a second to import, which most models do not need.
+        from scipy.special import ndtri
+
         # The raw stream of PCG64 is guaranteed by numpy; that of its normal numbers is not.
         raw = np.atleast_1d(np.random.PCG64(self.seed).random_raw(count))
         uniform = ((raw >> np.uint64(11)).astype(np.float64) + 0.5) * 2.0**-53
