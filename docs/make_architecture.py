@@ -17,9 +17,9 @@ BOXES = {
     "rust/core": (5.2, 2.9, 2.6, "chain and receptance\nformulations, threads;\nno Python in it"),
     "problem": (1.7, 7.1, 2.6, "a line and what is asked\nof it; formats: its file"),
     "recordings": (8.7, 7.1, 2.6, "readers, estimates,\nscreening"),
-    "campaign": (8.7, 5.0, 2.6, "records, sensors, conditions;\nprediction of every sensor"),
+    "campaign": (8.7, 5.0, 2.6, "records, sensors,\nconditions; prediction\nof every sensor"),
     "study": (8.7, 2.9, 2.6, "many models, resumable,\non a Dask cluster"),
-    "diagnosis": (12.2, 5.0, 2.6, "recalibration, catalogue,\ndecision, verdict;\nposterior: a second method"),
+    "diagnosis": (12.2, 5.0, 2.6, "recalibration, catalogue,\ndecision, verdict;\nposterior: search, evidence"),
     "challenge": (12.2, 2.9, 2.6, "campaigns by finite\nelements of its own;\nruns and scores"),
     "report": (12.2, 7.1, 2.6, "pages and pictures"),
     "paper": (5.2, 7.1, 2.6, "the paper's numbers,\nreproduced"),
@@ -45,7 +45,7 @@ HEIGHT = 1.15
 def draw() -> Figure:
     """Boxes for packages, arrows for data."""
     rcParams["svg.hashsalt"] = "permway"
-    figure = Figure(figsize=(10.6, 4.6))
+    figure = Figure(figsize=(8.4, 4.7))
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(0.1, 13.9), ylim=(2.1, 7.9))
     axes.axis("off")

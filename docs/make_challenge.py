@@ -63,13 +63,13 @@ COVERED = (0.85, 0.95)
 
 RIVAL_BARS = {"placed": "right place", "family": "right family", "false_name": "false name"}
 
-HEAD = """# Challenge results
+HEAD = """# Challenge results of the first method
 
 Campaigns in which effects were concealed, diagnosed and scored. The campaigns come from finite elements that
 share no code with the solver. [The guide](how-to/challenge.md) says how to repeat this.
 `docs/make_challenge.py` writes this page.
 
-**These figures are of the first of [two methods](baseline.md)**, which `permway diagnose` is no more.
+**These figures are of a first method. `permway diagnose` now uses [another](baseline.md).**
 
 The *deviance* is the misfit that an effect leaves after the best recalibration of the nominal model. Below 15 an
 effect is too small, and the right answer is "the data do not decide". It is hard to find from 15 on, medium from

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from permway.campaign.campaign import read_campaign
 from permway.demo.run import run
 
-WIDTH_PX, HEIGHT_PX, DPI = 1600, 640, 160
+WIDTH_PX, HEIGHT_PX, DPI = 1360, 600, 160
 MEASURED, BEFORE, AFTER, PLACE = "#20242c", "#c8431a", "#0a6fb4", "#f6d5c8"
 
 
@@ -85,7 +85,8 @@ def _where(axes: Axes, found: dict[str, Any], place: dict[str, Any]) -> None:
         ylim=(0.0, 18.5),
         xticks=range(0, 17, 4),
     )
-    axes.legend(fontsize=8.5, frameon=False, loc="upper right")
+    # Beside the shaded place, not over it.
+    axes.legend(fontsize=8.5, frameon=False, loc="upper right", bbox_to_anchor=(1.07, 1.0), handlelength=1.4)
 
 
 def _error_dB(found: dict[str, Any], model: str, force: int) -> float:
@@ -136,6 +137,6 @@ def _better(axes: Axes, held_out: dict[str, dict[str, float]]) -> None:
     axes.set(
         title="How much better",
         ylim=(0, 13.0),
-        xlabel="records left out of the fit, by",
+        xlabel="left-out records, by",
         ylabel="error of the prediction, dB",
     )

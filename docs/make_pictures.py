@@ -17,7 +17,7 @@ from permway.paper.printed import PRINTED, TEMPERATURES_C
 from permway.paper.readings import MINIMUM_BAND_HZ, Curves, extremum
 
 IMAGES = Path(__file__).parent / "images"
-WIDTH_PX, HEIGHT_PX, DPI = 1600, 720, 160
+WIDTH_PX, HEIGHT_PX, DPI = 1360, 660, 160
 
 
 def curves() -> dict[int, Curves]:

@@ -27,6 +27,9 @@ Written by `python docs/make_validation.py` from the cases of `tests/literature`
 rows against what is computed.
 *Ratio* is computed over printed. Where it is not 1 to the digits printed, the last column says what is known.
 
+```{rst-class} remarks
+```
+
 | case | quantity | unit | printed | computed | ratio | source, remark |
 |---|---|---|---:|---:|---:|---|
 """
@@ -56,7 +59,7 @@ def beams() -> Iterator[Case]:
     """Girder, free slab, natural frequencies."""
     import test_beams as b
 
-    form = "closed form, printed in the project's reference values"
+    form = "closed form"
     for f, printed in (("1", "1.668317e-9"), ("5.72", "1.603321e-8"), ("50", "1.648455e-10")):
         value = b.respond(b.alone(b.GIRDER), [float(f)], 16.25, formulation="chain")[0, 0]
         yield Case(

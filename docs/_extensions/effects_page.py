@@ -19,15 +19,27 @@ TITLES = {
 MARKER = re.compile(r"^% effects.*$", re.MULTILINE)
 """The line of the page that the effects replace."""
 
+RANGE = re.compile(r"^(?P<unit>\S+), (?P<range>\S+ to \S+): ")
+"""How most parameters begin: "Hz, 4 to 1000: ", or "1, 0 to 1: " where there is no unit."""
+
 
 def _section(entry: Entry) -> list[str]:
     lines = [f"({entry.ID})=", f"### `{entry.ID}`", "", entry.SUMMARY, ""]
-    lines += ["| parameter | unit, range, meaning |", "|---|---|"]
-    lines += [f"| `{name}` | {_cell(text)} |" for name, text in entry.PARAMETERS.items()]
+    lines += ["| parameter | range and meaning |", "|---|---|"]
+    lines += [f"| `{name}` | {_cell(_ranged(text))} |" for name, text in entry.PARAMETERS.items()]
     lines += ["", f"- **Signature.** {entry.SIGNATURE}"]
     lines += [f"- **Confused with** `{other}`: {_cell(text)}." for other, text in entry.CONFUSED_WITH.items()]
     lines += [f"- **Family** {entry.FAMILY}. **Source**: {entry.SOURCE}.", ""]
     return lines
+
+
+def _ranged(text: str) -> str:
+    """The unit behind the range, and no "1" for a ratio: beside a range it looks like a value."""
+    found = RANGE.match(text)
+    if found is None:
+        return text.removeprefix("1, ")
+    unit = "" if found["unit"] == "1" else f" {found['unit']}"
+    return f"{found['range']}{unit}: {text[found.end() :]}"
 
 
 def _cell(text: str) -> str:

@@ -27,7 +27,8 @@ def _turned(match: re.Match[str]) -> str:
         "CONTRIBUTING.md": "contributing.md",
         "CHANGELOG.md": "changelog.md",
     }
-    return f"({pages.get(target, '#file')})"
+    path, hash_, heading = target.partition("#")
+    return f"({pages[path]}{hash_}{heading})" if path in pages else "(#file)"
 
 
 def _read(app: Sphinx, docname: str, source: list[str]) -> None:

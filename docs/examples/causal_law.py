@@ -45,7 +45,7 @@ def picture(found: dict[str, tuple[Law, LawCheck]]) -> Figure:
     for name, (law, _) in found.items():
         left.semilogx(FREQUENCY_HZ, law.storage(FREQUENCY_HZ) / 1e6, label=name)
         right.semilogx(FREQUENCY_HZ, law.loss_factor(FREQUENCY_HZ))
-    left.set(xlabel="frequency, Hz", ylabel="storage, MN/m", ylim=(0, 45))
+    left.set(xlabel="frequency, Hz", ylabel="storage, MN/m", ylim=(0, 50))
     right.set(xlabel="frequency, Hz", ylabel="loss factor", ylim=(0, 0.25))
     left.legend(frameon=False)
     return figure

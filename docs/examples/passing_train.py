@@ -53,7 +53,7 @@ def picture(found: dict[str, np.ndarray]) -> Figure:
     left.plot(SPEEDS_KM_PER_H, found["peak"], "o-", markersize=4)
     left.set(xlabel="speed, km/h", ylabel="largest acceleration, m/s$^2$")
     right.plot(found["time"], found["history"], linewidth=0.8)
-    right.set(xlabel="time, s", ylabel="at 325 km/h, m/s$^2$", xlim=(-1, 8))
+    right.set(xlabel="time, s", ylabel="acceleration at 325 km/h, m/s$^2$", xlim=(-1, 8))
     return figure
 
 
