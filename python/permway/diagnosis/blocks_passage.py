@@ -13,7 +13,7 @@ from permway.arrays import Complexes, Reals
 from permway.campaign.compare import NEPER_DB, flat
 from permway.campaign.load import Dataset
 from permway.campaign.passage import spectrum_of
-from permway.diagnosis.blocks import FLOOR, Rows
+from permway.diagnosis.blocks import DECIMALS, FLOOR, Block, Prediction, Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
 from permway.diagnosis.gaussian_process import GaussianProcess
 
@@ -38,7 +38,7 @@ class Apart:
         return np.eye(self.count)
 
 
-class PassageBlock:
+class PassageBlock(Block):
     """Measured less predicted spectra, real parts, then imaginary parts.
 
     Errors of chains multiply: a log gain that is the same at all frequencies, and log gain and phase that are
@@ -59,6 +59,7 @@ class PassageBlock:
     """
 
     log_determinant = 0.0
+    chained = "passages"
 
     def __init__(
         self,
@@ -92,6 +93,11 @@ class PassageBlock:
         """Of the reference, as a number of modulus 1, (channel, frequency)."""
         return np.asarray(np.exp(1j * np.angle(self._reference)))
 
+    @property
+    def processes(self) -> list[tuple[list[str], int]]:
+        """Names of the chains that act on the spectra, with the axis that they are along."""
+        return [([f"channel {name}" for name in self.names], 0)]
+
     def residuals(self, predicted: xr.Dataset) -> Reals:
         """Measured less predicted, in standard deviations."""
         return _parts((self.measured - predicted["spectrum"].values) / self.sigma)
@@ -112,13 +118,13 @@ class PassageBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
         return self._as(dataset, self._reference)
 
-    def with_reference(self, reference: xr.Dataset) -> PassageBlock:
-        """The same with another prediction that errors of chains act on."""
-        return self._as(self.dataset, reference["spectrum"].values)
+    def about(self, prediction: Prediction, errors: Reals) -> PassageBlock:
+        """The same with a fit's prediction, which errors of chains then act on."""
+        return self._as(self.dataset, prediction.data["spectrum"].values)
 
-    def with_floor(self, floor: float) -> PassageBlock:
-        """The same with another relative error."""
-        return self._as(self.dataset, self._reference, floor)
+    def bare(self) -> PassageBlock:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        return self._as(self.dataset, self._reference, DECIMALS)
 
     def _as(self, dataset: Dataset, spectrum: Complexes, floor: float | None = None) -> PassageBlock:
         reference = dataset.data[["spectrum"]].copy(data={"spectrum": spectrum})

@@ -9,29 +9,12 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
-from permway.campaign.predict import added_to, away_from_lines
 from permway.diagnosis.blocks import Block
-from permway.diagnosis.blocks_frf import FrfBlock
-from permway.diagnosis.blocks_noise import NoiseBlock
-from permway.diagnosis.blocks_passage import PassageBlock
-from permway.diagnosis.blocks_spectra import LEVEL, SpectraBlock
-from permway.diagnosis.gather import first_size
 from permway.diagnosis.observations import Observations, Solved
-from permway.posterior.chains import Chains, Factor
-from permway.posterior.every_chain import chains_of
+from permway.posterior.chains import Chains, Factor, chains_of
 from permway.posterior.hyper import IDEALISATION, LACKING, Hyper
 
 NEPER_PER_DB = float(np.log(10.0)) / 20.0
-
-FLOOR = 0.0005
-"""Relative error that a response has beside its noise whatever the discrepancy, neper: of its last decimals."""
-
-PAIR = 1e-9
-"""Neper: calibration errors of single pairs of sensor and point, which the discrepancy stands for."""
-
-UNSHARED = 0.05
-"""Neper: what channels of a run do not share is more or less than predicted, on all lines alike. What the window
-and uneven transfers tear apart comes to that: in six runs with nothing missing it was 0.05 more."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +49,7 @@ class Frame:
     @staticmethod
     def of(observations: Observations) -> Frame:
         """From the records."""
-        blocks = tuple(_bare(b) for b in observations.blocks)
+        blocks = tuple(block.bare() for block in observations.blocks)
         observations = observations.with_blocks(blocks)
         statistic = np.concatenate(
             [np.full(b.rows.channel.size, b.dataset.record.statistic, dtype="U16") for b in blocks]
@@ -94,22 +77,11 @@ class Frame:
         # Of a model that lacks something, errors of chains take up what it lacks.
         lacking = covariance.hyper.novel > LACKING
         errors = np.zeros_like(residuals) if lacking else covariance.errors(residuals)
-        blocks: list[Block] = []
-        for index, (block, prediction) in enumerate(zip(self.observations.blocks, solved.datasets, strict=True)):
-            if isinstance(block, FrfBlock):
-                first, count = int(starts[index]), block.measured.size
-                mine = errors[first : first + count] + 1j * errors[first + count : first + 2 * count]
-                block = block.with_reference(prediction, mine.reshape(block.measured.shape))
-            elif isinstance(block, SpectraBlock):
-                need = solved.needs[index]
-                if need is not None:
-                    campaign, answer = solved.campaign, solved.answers[need.key]
-                    away = away_from_lines(campaign, block.dataset, need, answer)
-                    block = block.expecting(prediction, added_to(campaign, block.dataset), away)
-            elif isinstance(block, PassageBlock):
-                block = block.with_reference(prediction)
-            blocks.append(block)
-        return Frame.of(self.observations.with_blocks(tuple(blocks)))
+        blocks = tuple(
+            block.about(solved.of(index), errors[starts[index] : starts[index + 1]])
+            for index, block in enumerate(self.observations.blocks)
+        )
+        return Frame.of(self.observations.with_blocks(blocks))
 
     @property
     def whole(self) -> Reals:
@@ -155,15 +127,6 @@ class Frame:
         return Covariance(self, hyper, weights, noise, tuple(factors))
 
 
-def _bare(block: Block) -> Block:
-    """Without the errors that the discrepancy stands for, and without tails that are too light."""
-    if isinstance(block, NoiseBlock):
-        return block.as_student()
-    if isinstance(block, FrfBlock):
-        return block.with_floor(FLOOR).with_pair(PAIR)
-    return block.with_floor(FLOOR) if isinstance(block, PassageBlock) else block
-
-
 def _columns(observations: Observations, blocks: tuple[Block, ...]) -> Reals:
     """Columns of errors that are no chain's, scaled to unit variance; one source met by two records is one."""
     total = sum(b.rows.channel.size for b in blocks)
@@ -172,39 +135,10 @@ def _columns(observations: Observations, blocks: tuple[Block, ...]) -> Reals:
     for block in blocks:
         rows = slice(start, start + block.rows.channel.size)
         start = rows.stop
-        for name, columns in _own(observations, block).items():
+        for name, columns in block.spanned(observations.sizes).items():
             whole = found.setdefault(name, np.zeros((total, columns.shape[1])))
             whole[rows] += columns
     return np.hstack(list(found.values())) if found else np.zeros((total, 0))
-
-
-def _own(observations: Observations, block: Block) -> dict[str, Reals]:
-    """Of one block, by source."""
-    if isinstance(block, FrfBlock):
-        return {}
-    if isinstance(block, SpectraBlock):
-        apart = {f"unshared {block.dataset.record.name}": UNSHARED * block.unshared[:, None]}
-        speed = block.dataset.condition.speed_m_per_s
-        if speed is None:
-            return apart
-        half = np.full(block.dataset.data["channel"].size, 0.5, dtype=np.complex128)
-        step = 1.0 / (block.dataset.record.segment_s * speed)
-        level = block.moved.columns(half, LEVEL, block.frequency / speed, step)
-        return {"irregularity": first_size(observations.campaign, "irregularity") * level, **apart}
-    whole, stop, found = block.calibration, 0, {}
-    for source in whole.sources:
-        start, stop = stop, stop + source.count
-        if isinstance(block, PassageBlock) and source.chain:
-            # How large errors of chains are is estimated, as of all records.
-            continue
-        unit = np.zeros(sum(o.count for o in whole.sources))
-        columns = []
-        for index in range(start, stop):
-            unit[index] = 1.0
-            columns.append(whole.columns.times(unit))
-            unit[index] = 0.0
-        found[source.name] = observations.sizes[source.name] * np.stack(columns, axis=1)
-    return found
 
 
 @dataclass(frozen=True)
