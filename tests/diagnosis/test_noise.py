@@ -123,7 +123,7 @@ def test_few_sensors_constrain_nothing_of_each_other(tmp_path: Path) -> None:
 def test_a_few_sensors_constrain_the_scale_as_loosely_as_student_has_it(count: int, tmp_path: Path) -> None:
     """Odds of a distance against none are those of Student's density."""
     (block,) = blocks_of(gather(campaign(tmp_path, 1, 1.0)))
-    heavy = block.as_student()
+    heavy = block.bare()
     heavy.own, heavy.scatter = np.linspace(-6.0, 6.0, count), 1.0
     nothing = xr.Dataset({"noise_factor": ("sensor", np.ones(count))})
     density = stats.t(count - 1)

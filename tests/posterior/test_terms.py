@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from permway.diagnosis.blocks_spectra import SpectraBlock
+from permway.diagnosis.blocks_spectra import UNSHARED, SpectraBlock
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather, observations_of
 from permway.diagnosis.observations import Observations
-from permway.posterior.covariance import UNSHARED, Frame
+from permway.posterior.covariance import Frame
 from permway.posterior.fit import Fitter, Model
 from permway.posterior.hyper import IDEALISATION
 from permway.posterior.idealised import LARGEST, SHOWN, idealised

@@ -7,21 +7,25 @@ Beside them it says how the calibration errors of measuring chains and of the ir
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 import xarray as xr
 
 from permway.arrays import Reals
+from permway.campaign.campaign import Campaign
 from permway.campaign.load import Dataset
+from permway.campaign.predict import Request, Result
 from permway.diagnosis.calibration_errors import CalibrationErrors
 
 SURE = 0.25
 """Relative error of a response or a transfer below which it counts by its logarithm."""
 
-FLOOR = 0.003
-"""Relative error that no record is free of: rounding, discretisation, the last decimals (0.026 dB)."""
+FLOOR, DECIMALS = 0.003, 0.0005
+"""Relative error that no record is free of: rounding, discretisation, the last decimals (0.026 dB); and that of
+the last decimals alone, where a discrepancy stands for the rest."""
 
 
 @dataclass(frozen=True)
@@ -46,11 +50,47 @@ class Rows:
     scale_dB: Reals
 
 
+@dataclass(frozen=True)
+class Prediction:
+    """What a model predicts of one dataset, and what it was made from.
+
+    Attributes
+    ----------
+    campaign : Campaign
+    data : Dataset of xarray
+    solved : (Request, Result), optional
+        Receptances; of some kinds there are none.
+    """
+
+    campaign: Campaign
+    data: xr.Dataset
+    solved: tuple[Request, Result] | None
+
+
 class Block(Protocol):
-    """A dataset that residuals are taken of."""
+    """A dataset that residuals are taken of.
+
+    Attributes
+    ----------
+    dataset : Dataset
+    rows : Rows
+    is_record : bool
+        Whether it is a record itself, and not the noise of one.
+    is_thinned : bool
+        Whether it is taken at fewer lines where there are many.
+    chained : "responses", "spectra", "passages" or None
+        With which others its chains' errors, processes over frequency, are estimated; with none if all errors
+        act by columns.
+    pair : float
+        Size of an error that each pair of sensor and point has of its own, neper; 0 without pairs.
+    """
 
     dataset: Dataset
     rows: Rows
+    is_record: ClassVar[bool] = True
+    is_thinned: ClassVar[bool] = False
+    chained: ClassVar[str | None] = None
+    pair: float = 0.0
 
     @property
     def log_determinant(self) -> float:
@@ -71,6 +111,32 @@ class Block(Protocol):
     @property
     def calibration(self) -> CalibrationErrors:
         """What calibration errors would do."""
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether any of its rows counts."""
+        return True
+
+    def bare(self) -> Block:
+        """The same without errors that a discrepancy stands for, and without tails that are too light."""
+        return self
+
+    def about(self, prediction: Prediction, errors: Reals, spanned: Mapping[str, Reals]) -> Block:
+        """The same weighed by what a fit predicts, and by the errors that it leaves.
+
+        Parameters
+        ----------
+        prediction : Prediction
+        errors : ndarray, shape (n,)
+            Of chains.
+        spanned : mapping of source to ndarray, shape (c,)
+            Coefficients of what :meth:`spanned` has; of some sources only, where a fit is relied on.
+        """
+        return self
+
+    def spanned(self, sizes: Mapping[str, float]) -> dict[str, Reals]:
+        """By source, errors that no process over frequency stands for: columns of unit variance, (n, c)."""
+        return self.calibration.of_unit_variance(sizes, chains=self.chained is None)
 
 
 @dataclass

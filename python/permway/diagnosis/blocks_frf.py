@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from copy import copy
 from functools import cached_property
 
@@ -11,7 +12,7 @@ import xarray as xr
 from permway.arrays import Complexes, Reals
 from permway.campaign.compare import flat
 from permway.campaign.load import Dataset
-from permway.diagnosis.blocks import FLOOR, SURE, Basis, Rows
+from permway.diagnosis.blocks import DECIMALS, FLOOR, SURE, Basis, Block, Prediction, Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PairColumns, as_complex, as_parts
 from permway.diagnosis.frf_lines import noise_variance, widened
 from permway.diagnosis.gaussian_process import GaussianProcess
@@ -19,8 +20,11 @@ from permway.diagnosis.gaussian_process import GaussianProcess
 REACH = 2
 """Lines to either side over which the variance of noise is taken together."""
 
+PAIR = 1e-9
+"""Neper: errors of single pairs of sensor and point, where a discrepancy stands for them."""
 
-class FrfBlock:
+
+class FrfBlock(Block):
     """Frequency responses: complex residuals by the noise of each line, from coherence, and a floor.
 
     Errors of chains multiply: a deviation is the logarithm of measured over predicted, in units of the measured
@@ -47,6 +51,8 @@ class FrfBlock:
     """
 
     KNOTS_PER_OCTAVE = 3.0
+    is_thinned = True
+    chained = "responses"
 
     def __init__(
         self,
@@ -112,6 +118,20 @@ class FrfBlock:
         """Of what is there, as a factor of modulus 1, shape (sensors, points, F)."""
         return self._phase
 
+    @property
+    def processes(self) -> list[tuple[list[str], int]]:
+        """Names of the chains that act on the measured responses, each list with the axis that it is along."""
+        data = self.dataset.data
+        return [
+            ([f"{kind} {name}" for name in data[kind].values.astype(str)], axis)
+            for axis, kind in enumerate(("sensor", "force"))
+        ]
+
+    @property
+    def is_usable(self) -> bool:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        return bool((self.weight > 0.0).any())
+
     def _labelled(self, decibels: Reals) -> Rows:
         """Labels of the rows: all real parts, then all imaginary parts."""
         names = [self.dataset.data[key].values.astype(str) for key in ("sensor", "force")]
@@ -139,6 +159,20 @@ class FrfBlock:
     def with_floor(self, floor: float | Reals) -> FrfBlock:
         """The same with another relative error, of all lines or pair by pair."""
         return self._other(floor=floor)
+
+    def bare(self) -> FrfBlock:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        return self.with_floor(DECIMALS).with_pair(PAIR)
+
+    def about(self, prediction: Prediction, errors: Reals, spanned: Mapping[str, Reals]) -> FrfBlock:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        count = self.measured.size
+        both = errors[:count] + 1j * errors[count:]
+        return self.with_reference(prediction.data, both.reshape(self.measured.shape))
+
+    def spanned(self, sizes: Mapping[str, float]) -> dict[str, Reals]:
+        """None: all are those of chains."""
+        return {}
 
     def with_reference(self, reference: xr.Dataset, errors: Complexes) -> FrfBlock:
         """The same with another prediction, and errors of chains, where noise hides what is there."""
@@ -239,14 +273,11 @@ class FrfBlock:
     def calibration(self) -> CalibrationErrors:
         """Of each sensor's chain and of the hammer's at each point: log gain and phase."""
         process = GaussianProcess(*self._span)
-        sensors, points = (self.dataset.data[kind].values.astype(str) for kind in ("sensor", "force"))
         # Measured is what is there times the error: residuals grow by it.
         gains = self._relative[..., None] * process.values(self.frequency)
         gains -= self._directions @ (self._shrink[..., None] * self._within(gains))
-        names = [*(f"sensor {name}" for name in sensors), *(f"force {name}" for name in points)]
-        return CalibrationErrors(
-            tuple(ErrorSource(name, process, 2) for name in names), PairColumns(gains, self._phase)
-        )
+        sources = tuple(ErrorSource(name, process, 2) for names, _ in self.processes for name in names)
+        return CalibrationErrors(sources, PairColumns(gains, self._phase))
 
 
 def _square(values: Complexes) -> Reals:

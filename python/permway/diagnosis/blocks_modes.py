@@ -9,7 +9,7 @@ from permway.arrays import Reals
 from permway.campaign.compare import NEPER_DB
 from permway.campaign.load import Dataset
 from permway.campaign.predictions.modes import FARTHEST, LIGHTEST
-from permway.diagnosis.blocks import Rows
+from permway.diagnosis.blocks import Block, Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, PlainColumns
 from permway.errors import InputError
 
@@ -17,7 +17,7 @@ MISSED = (float(np.log(FARTHEST)), 0.0)
 """Neper, of frequency and of damping: what a mode counts as that the model does not have, whatever its sign."""
 
 
-class ModesBlock:
+class ModesBlock(Block):
     """Natural frequencies, then the damping ratios that are stated.
 
     A mode that the model lacks counts as off by as much as the farthest that would be matched to it: finite, so

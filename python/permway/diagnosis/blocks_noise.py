@@ -10,7 +10,7 @@ import xarray as xr
 
 from permway.arrays import Reals
 from permway.campaign.load import Dataset
-from permway.diagnosis.blocks import Rows
+from permway.diagnosis.blocks import Block, Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
 
 FEWEST = 5
@@ -44,7 +44,7 @@ class Level:
         return np.eye(1)
 
 
-class NoiseBlock:
+class NoiseBlock(Block):
     """Logarithms of noise by sensor, in power of the response.
 
     What hammer and ground do, all sensors of a test have in common; what is left is each one's own. How far these
@@ -60,6 +60,7 @@ class NoiseBlock:
     """
 
     log_determinant = 0.0
+    is_record = False
 
     def __init__(self, dataset: Dataset, *, student: bool = False) -> None:
         self.dataset, self._student = dataset, student
@@ -105,7 +106,7 @@ class NoiseBlock:
         """See :class:`permway.diagnosis.blocks.Block`; how far sensors may differ, each test states itself."""
         return NoiseBlock(dataset, student=self._student)
 
-    def as_student(self) -> NoiseBlock:
+    def bare(self) -> NoiseBlock:
         """The same, with distances that are Student's."""
         return NoiseBlock(self.dataset, student=True)
 

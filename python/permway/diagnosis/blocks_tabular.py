@@ -10,7 +10,7 @@ import xarray as xr
 from permway.arrays import Reals
 from permway.campaign.compare import flat
 from permway.campaign.load import Dataset
-from permway.diagnosis.blocks import Rows
+from permway.diagnosis.blocks import Block, Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
 from permway.diagnosis.gaussian_process import GaussianProcess
 
@@ -18,7 +18,7 @@ SCATTER_DB = {"decay_rate": 1.0, "transmissibility": 0.3, "modulus": 0.5}
 """One standard deviation of a value, where the record says none: 10 lg of a decay rate, 20 lg of the others."""
 
 
-class TableBlock:
+class TableBlock(Block):
     """Values of a table, each with the same scatter in its logarithm.
 
     Parameters

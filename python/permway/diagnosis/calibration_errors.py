@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -76,6 +77,16 @@ class CalibrationErrors:
 
     sources: tuple[ErrorSource, ...]
     columns: Columns
+
+    def of_unit_variance(self, sizes: Mapping[str, float], *, chains: bool) -> dict[str, Reals]:
+        """By source, its columns for coefficients of unit variance, (n, c); with those of chains or without."""
+        unit, found, stop = np.eye(sum(source.count for source in self.sources)), {}, 0
+        for source in self.sources:
+            start, stop = stop, stop + source.count
+            if chains or not source.chain:
+                columns = [self.columns.times(one) for one in unit[start:stop]]
+                found[source.name] = sizes[source.name] * np.stack(columns, axis=1)
+        return found
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,6 @@ import xarray as xr
 from permway.campaign.campaign import Campaign
 from permway.campaign.compare import NEPER_DB, POWER_DB
 from permway.campaign.kinds import kind_of
-from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.fit import WIDTH, Fit
 from permway.diagnosis.observations import Observations
 from permway.diagnosis.recalibrated_values import recalibrated_of
@@ -64,7 +63,7 @@ def calibration_of(observations: Observations) -> xr.Dataset:
         if source in {o.name for o in observations.columns.sources}
     }
     for block in observations.blocks:
-        if isinstance(block, FrfBlock):
+        if block.pair:
             sizes[f"pairs of {block.dataset.record.name}"] = block.pair * NEPER_DB
     return xr.Dataset(
         {

@@ -13,7 +13,6 @@ from permway.campaign.kinds import kind_of
 from permway.campaign.load import Dataset
 from permway.campaign.predict import predict, why_not
 from permway.diagnosis.block_of import block_of
-from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_noise import NoiseBlock
 from permway.diagnosis.frf_lines import LINES_PER_FREQUENCY, thinned
 from permway.diagnosis.observations import Observations
@@ -119,7 +118,7 @@ def _blocked(
         for dataset, prediction in zip(loaded, predicted, strict=True)
     ]
     for block in blocks:
-        if isinstance(block, FrfBlock) and not (block.weight > 0.0).any():
+        if not block.is_usable:
             raise InputError(
                 "no line of it can be used",
                 where=f"records.{block.dataset.record.name}",

@@ -21,8 +21,7 @@ from permway.campaign.predict import (
     request_of,
     solve,
 )
-from permway.diagnosis.blocks import Block, Rows
-from permway.diagnosis.blocks_noise import NoiseBlock
+from permway.diagnosis.blocks import Block, Prediction, Rows
 from permway.diagnosis.frf_lines import thinned
 from permway.diagnosis.gaussian_process import FIRST_LENGTH
 from permway.diagnosis.side_by_side import threads_of_solver
@@ -37,6 +36,12 @@ class Solved:
     needs: tuple[Request | None, ...]
     answers: Mapping[Key, Result]
     datasets: list[xr.Dataset]
+
+    def of(self, index: int) -> Prediction:
+        """Of one block."""
+        need = self.needs[index]
+        solved = None if need is None else (need, self.answers[need.key])
+        return Prediction(self.campaign, self.datasets[index], solved)
 
 
 def _answered(needs: Sequence[Request | None], campaign: Campaign, near: Solved | None) -> dict[Key, Result]:
@@ -212,7 +217,7 @@ class Observations:
     @property
     def records(self) -> list[int]:
         """Indices of the blocks that are records themselves, and no noise of one."""
-        return [index for index, block in enumerate(self.blocks) if not isinstance(block, NoiseBlock)]
+        return [index for index, block in enumerate(self.blocks) if block.is_record]
 
     def selected(self, keep: Sequence[int]) -> Observations:
         """Of some blocks only."""

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy import sparse
 
 from permway.arrays import Complexes, Reals
+from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
+from permway.diagnosis.blocks_passage import PassageBlock
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.posterior.matern import STATES, Nodes
 from permway.posterior.tridiagonal import Tridiagonal
@@ -193,32 +197,27 @@ class Factor:
         return np.asarray(self.chains.acts @ self.states(weighted))
 
 
-def of_responses(blocks: list[tuple[int, FrfBlock]]) -> Chains:
-    """Errors of sensors and of the hammer at each point, of all frequency responses together.
+def of_products(blocks: list[tuple[int, FrfBlock | PassageBlock]]) -> Chains:
+    """Errors that multiply complex values, of all blocks together: one chain has the same in each.
 
     Parameters
     ----------
-    blocks : list of (int, FrfBlock)
+    blocks : list of (int, block)
         Each with its first row.
     """
     names: dict[str, int] = {}
     rows, turns, parts, sizes, start = [], [], [], [], 0
     for first, block in blocks:
-        data = block.dataset.data
-        sensors = [f"sensor {name}" for name in data["sensor"].values.astype(str)]
-        points = [f"force {name}" for name in data["force"].values.astype(str)]
-        for name in (*sensors, *points):
-            names.setdefault(name, len(names))
-        shape = block.measured.shape
-        count = block.measured.size
-        index = np.arange(count).reshape(shape)
+        shape, count = block.measured.shape, block.measured.size
+        at = np.arange(count)
         x = np.broadcast_to(np.log2(block.frequency), shape).reshape(-1)
         relative = block.relative.reshape(-1)
-        for of, axis in ((sensors, 0), (points, 1)):
-            which = np.array([names[name] for name in of])
-            process = np.broadcast_to(np.moveaxis(which.reshape(-1, 1, 1), 0, axis), shape).reshape(-1)
-            parts.append(Entries(start + index.reshape(-1), process, x, relative, np.zeros(count)))
-        rows.append(first + np.stack([np.arange(count), count + np.arange(count)], axis=1))
+        for of, axis in block.processes:
+            which = np.array([names.setdefault(name, len(names)) for name in of])
+            along = np.moveaxis(which.reshape(-1, *[1] * (len(shape) - 1)), 0, axis)
+            process = np.broadcast_to(along, shape).reshape(-1)
+            parts.append(Entries(start + at, process, x, relative, np.zeros(count)))
+        rows.append(first + np.stack([at, count + at], axis=1))
         turns.append(block.phase.conj().reshape(-1))
         sizes.append(relative)
         start += count
@@ -273,3 +272,19 @@ def joined(parts: list[Entries]) -> Entries:
     """All of several lists."""
     fields = ("row", "process", "x", "value", "slope")
     return Entries(*(np.concatenate([getattr(part, name) for part in parts]) for name in fields))
+
+
+CHAINS: dict[str, Callable[[list[tuple[int, Any]]], Chains]] = {
+    "responses": of_products,
+    "spectra": of_spectra,
+    "passages": of_products,
+}
+"""By what :class:`permway.diagnosis.blocks.Block` names as its `chained`."""
+
+
+def chains_of(blocks: tuple[Block, ...]) -> list[Chains]:
+    """All chains of a campaign's blocks."""
+    starts = np.cumsum([0, *(block.rows.channel.size for block in blocks)])
+    placed = list(zip(starts[:-1].tolist(), blocks, strict=True))
+    each = [(make, [one for one in placed if one[1].chained == what]) for what, make in CHAINS.items()]
+    return [make(mine) for make, mine in each if mine]

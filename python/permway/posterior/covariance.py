@@ -9,29 +9,13 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
-from permway.campaign.predict import added_to, away_from_lines
 from permway.diagnosis.blocks import Block
-from permway.diagnosis.blocks_frf import FrfBlock
-from permway.diagnosis.blocks_noise import NoiseBlock
-from permway.diagnosis.blocks_passage import PassageBlock
-from permway.diagnosis.blocks_spectra import LEVEL, SpectraBlock
-from permway.diagnosis.gather import first_size
+from permway.diagnosis.blocks_passage import UNEVENNESS
 from permway.diagnosis.observations import Observations, Solved
-from permway.posterior.chains import Chains, Factor
-from permway.posterior.every_chain import chains_of
+from permway.posterior.chains import Chains, Factor, chains_of
 from permway.posterior.hyper import IDEALISATION, LACKING, Hyper
 
 NEPER_PER_DB = float(np.log(10.0)) / 20.0
-
-FLOOR = 0.0005
-"""Relative error that a response has beside its noise whatever the discrepancy, neper: of its last decimals."""
-
-PAIR = 1e-9
-"""Neper: calibration errors of single pairs of sensor and point, which the discrepancy stands for."""
-
-UNSHARED = 0.05
-"""Neper: what channels of a run do not share is more or less than predicted, on all lines alike. What the window
-and uneven transfers tear apart comes to that: in six runs with nothing missing it was 0.05 more."""
 
 
 @dataclass(frozen=True)
@@ -44,15 +28,16 @@ class Frame:
         Records as residuals whitened by their noise.
     chains : list of Chains
     columns : ndarray, shape (m, b)
-        Errors of unit variance that act by few columns: an irregularity's level, tables, the idealisation.
+        Errors of unit variance that act by few columns: an irregularity's level, tables, the idealisation, what
+        unevenness does.
     spanned : ndarray of int, shape (m,)
         The rows that they act on.
     sigma : ndarray, shape (n,)
         Of each row's noise, neper.
     statistic : ndarray of str, shape (n,)
         Of each row's record.
-    idealised : int
-        The last so many columns are of the idealisation, of a unit that its size multiplies.
+    sources : ndarray of str, shape (b,)
+        Of each column.
     """
 
     observations: Observations
@@ -61,21 +46,21 @@ class Frame:
     spanned: np.ndarray
     sigma: Reals
     statistic: np.ndarray
-    idealised: int = 0
+    sources: np.ndarray
 
     @staticmethod
     def of(observations: Observations) -> Frame:
         """From the records."""
-        blocks = tuple(_bare(b) for b in observations.blocks)
+        blocks = tuple(block.bare() for block in observations.blocks)
         observations = observations.with_blocks(blocks)
         statistic = np.concatenate(
             [np.full(b.rows.channel.size, b.dataset.record.statistic, dtype="U16") for b in blocks]
         )
         sigma = NEPER_PER_DB * np.concatenate([b.rows.scale_dB for b in blocks])
-        columns = _columns(observations, blocks)
+        columns, sources = _columns(observations, blocks)
         spanned = np.flatnonzero(np.any(columns, axis=1))
         chains = tuple(chains_of(blocks))
-        return Frame(observations, chains, columns[spanned], spanned, np.maximum(sigma, 1e-9), statistic)
+        return Frame(observations, chains, columns[spanned], spanned, np.maximum(sigma, 1e-9), statistic, sources)
 
     def about(self, solved: Solved, covariance: Covariance, residuals: Reals) -> Frame:
         """The same records weighed by what a fit predicts and, if it lacks nothing, by the errors that it leaves.
@@ -94,22 +79,12 @@ class Frame:
         # Of a model that lacks something, errors of chains take up what it lacks.
         lacking = covariance.hyper.novel > LACKING
         errors = np.zeros_like(residuals) if lacking else covariance.errors(residuals)
-        blocks: list[Block] = []
-        for index, (block, prediction) in enumerate(zip(self.observations.blocks, solved.datasets, strict=True)):
-            if isinstance(block, FrfBlock):
-                first, count = int(starts[index]), block.measured.size
-                mine = errors[first : first + count] + 1j * errors[first + count : first + 2 * count]
-                block = block.with_reference(prediction, mine.reshape(block.measured.shape))
-            elif isinstance(block, SpectraBlock):
-                need = solved.needs[index]
-                if need is not None:
-                    campaign, answer = solved.campaign, solved.answers[need.key]
-                    away = away_from_lines(campaign, block.dataset, need, answer)
-                    block = block.expecting(prediction, added_to(campaign, block.dataset), away)
-            elif isinstance(block, PassageBlock):
-                block = block.with_reference(prediction)
-            blocks.append(block)
-        return Frame.of(self.observations.with_blocks(tuple(blocks)))
+        spanned = {} if lacking else covariance.coefficients(residuals)
+        blocks = tuple(
+            block.about(solved.of(index), errors[starts[index] : starts[index + 1]], spanned)
+            for index, block in enumerate(self.observations.blocks)
+        )
+        return Frame.of(self.observations.with_blocks(blocks))
 
     @property
     def whole(self) -> Reals:
@@ -120,19 +95,27 @@ class Frame:
 
     def with_idealisation(self, more: Reals) -> Frame:
         """The same with what the idealisation may do to the residuals, (n, c), in place of what is there."""
-        columns = np.hstack([self.whole[:, : self.columns.shape[1] - self.idealised], more])
+        other = self.sized != IDEALISATION
+        columns = np.hstack([self.whole[:, other], more])
         spanned = np.flatnonzero(np.any(columns, axis=1))
-        return replace(self, columns=columns[spanned], spanned=spanned, idealised=more.shape[1])
+        sources = np.append(self.sources[other], [IDEALISATION] * more.shape[1])
+        return replace(self, columns=columns[spanned], spanned=spanned, sources=sources)
+
+    @cached_property
+    def sized(self) -> np.ndarray:
+        """Of each column the hyperparameter that multiplies it; empty where it has its size."""
+        first = [str(source).split(" ", 1)[0] for source in self.sources]
+        return np.array([name if name in (IDEALISATION, UNEVENNESS) else "" for name in first], dtype=str)
 
     @property
     def idealisation(self) -> Reals:
         """Its columns at all rows, (n, c)."""
-        return self.whole[:, self.columns.shape[1] - self.idealised :]
+        return self.whole[:, self.sized == IDEALISATION]
 
     def first(self) -> Hyper:
         """Hyperparameters at the medians of their priors."""
         kinds = dict.fromkeys(kind for chains in self.chains for kind in chains.kinds)
-        return Hyper.first(tuple(kinds), tuple(self.of_statistic))
+        return Hyper.first(tuple(kinds), tuple(self.of_statistic), uneven=UNEVENNESS in self.sized)
 
     @cached_property
     def of_statistic(self) -> dict[str, np.ndarray]:
@@ -155,56 +138,22 @@ class Frame:
         return Covariance(self, hyper, weights, noise, tuple(factors))
 
 
-def _bare(block: Block) -> Block:
-    """Without the errors that the discrepancy stands for, and without tails that are too light."""
-    if isinstance(block, NoiseBlock):
-        return block.as_student()
-    if isinstance(block, FrfBlock):
-        return block.with_floor(FLOOR).with_pair(PAIR)
-    return block.with_floor(FLOOR) if isinstance(block, PassageBlock) else block
+def _columns(observations: Observations, blocks: tuple[Block, ...]) -> tuple[Reals, np.ndarray]:
+    """Columns of errors that are no chain's, scaled to unit variance, and the source of each.
 
-
-def _columns(observations: Observations, blocks: tuple[Block, ...]) -> Reals:
-    """Columns of errors that are no chain's, scaled to unit variance; one source met by two records is one."""
+    One source met by two records is one.
+    """
     total = sum(b.rows.channel.size for b in blocks)
     found: dict[str, Reals] = {}
     start = 0
     for block in blocks:
         rows = slice(start, start + block.rows.channel.size)
         start = rows.stop
-        for name, columns in _own(observations, block).items():
+        for name, columns in block.spanned(observations.sizes).items():
             whole = found.setdefault(name, np.zeros((total, columns.shape[1])))
             whole[rows] += columns
-    return np.hstack(list(found.values())) if found else np.zeros((total, 0))
-
-
-def _own(observations: Observations, block: Block) -> dict[str, Reals]:
-    """Of one block, by source."""
-    if isinstance(block, FrfBlock):
-        return {}
-    if isinstance(block, SpectraBlock):
-        apart = {f"unshared {block.dataset.record.name}": UNSHARED * block.unshared[:, None]}
-        speed = block.dataset.condition.speed_m_per_s
-        if speed is None:
-            return apart
-        half = np.full(block.dataset.data["channel"].size, 0.5, dtype=np.complex128)
-        step = 1.0 / (block.dataset.record.segment_s * speed)
-        level = block.moved.columns(half, LEVEL, block.frequency / speed, step)
-        return {"irregularity": first_size(observations.campaign, "irregularity") * level, **apart}
-    whole, stop, found = block.calibration, 0, {}
-    for source in whole.sources:
-        start, stop = stop, stop + source.count
-        if isinstance(block, PassageBlock) and source.chain:
-            # How large errors of chains are is estimated, as of all records.
-            continue
-        unit = np.zeros(sum(o.count for o in whole.sources))
-        columns = []
-        for index in range(start, stop):
-            unit[index] = 1.0
-            columns.append(whole.columns.times(unit))
-            unit[index] = 0.0
-        found[source.name] = observations.sizes[source.name] * np.stack(columns, axis=1)
-    return found
+    sources = [name for name, columns in found.items() for _ in columns.T]
+    return np.hstack([np.zeros((total, 0)), *found.values()]), np.array(sources, dtype=str)
 
 
 @dataclass(frozen=True)
@@ -245,9 +194,8 @@ class Covariance:
 
     @property
     def _sizes(self) -> Reals:
-        """By which the frame's columns count: those of the idealisation by their size."""
-        count = self.frame.columns.shape[1]
-        return np.where(np.arange(count) < count - self.frame.idealised, 1.0, self.hyper[IDEALISATION])
+        """By which the frame's columns count."""
+        return np.array([self.hyper[name] if name else 1.0 for name in self.frame.sized])
 
     @property
     def columns(self) -> Reals:
@@ -304,6 +252,11 @@ class Covariance:
                     each = np.where(chains.relative[:, None] > 0.0, moved / chains.relative[:, None], 0.0)
                 found[chains.rows] = each
         return found
+
+    def coefficients(self, residuals: Reals) -> dict[str, Reals]:
+        """Most probable errors that columns span: by source, of its columns as the frame has them."""
+        found = self._sizes * (self.columns.T @ self.apply(residuals[:, None])[:, 0])
+        return {str(name): found[self.frame.sources == name] for name in np.unique(self.frame.sources)}
 
     def apply(self, values: Reals) -> Reals:
         """Inverse times values, shape (n, k)."""

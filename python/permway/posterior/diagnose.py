@@ -9,7 +9,6 @@ import numpy as np
 from permway.campaign.campaign import Campaign
 from permway.campaign.load import Dataset
 from permway.diagnosis.advise import advise
-from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.catalogue import known
 from permway.diagnosis.clock import Clock, Progress
 from permway.diagnosis.compare import RECALIBRATED, assemble
@@ -115,7 +114,7 @@ def _enough(campaign: Campaign, kept: Sequence[Dataset], whole: Observations) ->
     found, lines = whole, LINES_PER_FREQUENCY
     while found.rows.channel.size > ENOUGH and lines > FEWEST:
         count = found.rows.channel.size
-        responses = sum(block.rows.channel.size for block in found.blocks if isinstance(block, FrfBlock))
+        responses = sum(block.rows.channel.size for block in found.blocks if block.is_thinned)
         share = (ENOUGH - (count - responses)) / max(responses, 1)
         lines = max(lines * min(max(share, 0.5), 0.95), FEWEST)
         found = gather(campaign, kept, threads=whole.threads, lines=lines)
