@@ -29,7 +29,8 @@ LONG = {
         checking/test_blunders.py diagnosis/effects diagnosis/test_awaited.py diagnosis/test_bent_valley.py
         diagnosis/test_diagnose.py diagnosis/test_elsewhere.py diagnosis/test_frf_block.py
         diagnosis/test_nearby.py diagnosis/test_noise.py diagnosis/test_one_place.py
-        diagnosis/test_passage.py diagnosis/test_recalibrate.py diagnosis/test_ruled_out.py
+        diagnosis/test_passage.py diagnosis/test_passage_unevenness.py diagnosis/test_recalibrate.py
+        diagnosis/test_ruled_out.py
         diagnosis/test_separability.py diagnosis/test_side_by_side.py diagnosis/test_small_sizes.py
         diagnosis/test_calibration_errors.py diagnosis/test_table_of_modes.py diagnosis/test_tolerances.py
     """,
@@ -55,7 +56,8 @@ LONG = {
         fuzz report/test_paper_page.py report/test_paper_tables.py response/test_rolling.py
         laws/test_law_recordings.py property recordings/test_readers_fuzz.py recordings/test_readers_drawn.py
         recordings/test_estimates_coverage.py recordings/test_import_whole.py recordings/test_inputs_shared.py
-        recordings/test_campaign_passage.py recordings/test_campaigns_shared.py docs/test_five_exports.py
+        recordings/test_campaign_passage.py recordings/test_campaigns_shared.py
+        recordings/test_scatter_by_unevenness.py docs/test_five_exports.py
     """,
 }
 """By marker, files and folders that `pytest` alone leaves out; the tests of all others are marked "quick"."""

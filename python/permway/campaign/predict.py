@@ -11,6 +11,7 @@ from permway.campaign.campaign import Campaign
 from permway.campaign.dataset import Dataset
 from permway.campaign.factors import campaign_under, factors_of
 from permway.campaign.kinds import kind_of
+from permway.campaign.kinds.passage import by_unevenness
 from permway.campaign.kinds.power import added_to, away_from_lines
 from permway.campaign.predictions.sweeps import Key, Request, Result, Sweep, plan, solve
 from permway.errors import InputError
@@ -23,11 +24,13 @@ __all__ = [
     "Sweep",
     "added_to",
     "away_from_lines",
+    "by_unevenness",
     "plan",
     "predict",
     "predict_one",
     "request_of",
     "solve",
+    "solved_of",
     "why_not",
 ]
 
@@ -106,6 +109,12 @@ def request_of(campaign: Campaign, dataset: Dataset) -> Request | None:
     request = kind_of(record).request(under, dataset, condition)
     factors = tuple((path, factor) for path, factor in factors_of(condition) if path.startswith("line"))
     return replace(request, factors=factors) if request is not None and factors else request
+
+
+def solved_of(campaign: Campaign, dataset: Dataset) -> tuple[Request, Result] | None:
+    """What one dataset needs, and its receptances."""
+    request = request_of(campaign, dataset)
+    return None if request is None else (request, solve(plan([request])[0], campaign.model))
 
 
 def predict_one(

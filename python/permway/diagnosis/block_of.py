@@ -9,7 +9,8 @@ import xarray as xr
 from permway.campaign.campaign import Campaign
 from permway.campaign.dataset import Dataset
 from permway.campaign.kinds import kind_of
-from permway.campaign.predict import added_to
+from permway.campaign.predict import added_to, by_unevenness, solved_of
+from permway.campaign.predictions.passage import Scatter
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_frf import FrfBlock
 from permway.diagnosis.blocks_modes import ModesBlock
@@ -24,10 +25,19 @@ BLOCKS: dict[str, Callable[[Campaign, Dataset, xr.Dataset, Span], Block]] = {
     "spectra": lambda campaign, dataset, predicted, span: SpectraBlock(
         dataset, predicted, added=added_to(campaign, dataset), span=span
     ),
-    "passage": lambda _, dataset, predicted, span: PassageBlock(dataset, reference=predicted, span=span),
+    "passage": lambda campaign, dataset, predicted, span: PassageBlock(
+        dataset, reference=predicted, scatter=_scatter(campaign, dataset), span=span
+    ),
     "modes": lambda _, dataset, predicted, span: ModesBlock(dataset, predicted),
 }
 """By the name of a kind, from campaign, dataset, prediction and the band of all records of the kind."""
+
+
+def _scatter(campaign: Campaign, dataset: Dataset) -> Scatter | None:
+    """By an unevenness that axles meet; None without one, for which nothing is solved."""
+    axles = campaign.condition(dataset.condition.name).axles
+    solved = None if axles is None or axles.irregularity is None else solved_of(campaign, dataset)
+    return None if solved is None else by_unevenness(campaign, dataset, *solved)
 
 
 def block_of(campaign: Campaign, dataset: Dataset, predicted: xr.Dataset, spans: Mapping[str, Span]) -> Block:

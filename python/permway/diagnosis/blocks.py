@@ -121,8 +121,17 @@ class Block(Protocol):
         """The same without errors that a discrepancy stands for, and without tails that are too light."""
         return self
 
-    def about(self, prediction: Prediction, errors: Reals) -> Block:
-        """The same weighed by what a fit predicts, and by the errors of chains that it leaves, shape (n,)."""
+    def about(self, prediction: Prediction, errors: Reals, spanned: Mapping[str, Reals]) -> Block:
+        """The same weighed by what a fit predicts, and by the errors that it leaves.
+
+        Parameters
+        ----------
+        prediction : Prediction
+        errors : ndarray, shape (n,)
+            Of chains.
+        spanned : mapping of source to ndarray, shape (c,)
+            Coefficients of what :meth:`spanned` has; of some sources only, where a fit is relied on.
+        """
         return self
 
     def spanned(self, sizes: Mapping[str, float]) -> dict[str, Reals]:

@@ -164,7 +164,7 @@ class FrfBlock(Block):
         """See :class:`permway.diagnosis.blocks.Block`."""
         return self.with_floor(DECIMALS).with_pair(PAIR)
 
-    def about(self, prediction: Prediction, errors: Reals) -> FrfBlock:
+    def about(self, prediction: Prediction, errors: Reals, spanned: Mapping[str, Reals]) -> FrfBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
         count = self.measured.size
         both = errors[:count] + 1j * errors[count:]

@@ -164,7 +164,7 @@ class SpectraBlock(Block):
                 parts.append(np.full(at.size, np.nan))
         return np.asarray(self.residuals(predicted) * self.rows.scale_dB * np.concatenate(parts))
 
-    def about(self, prediction: Prediction, errors: Reals) -> SpectraBlock:
+    def about(self, prediction: Prediction, errors: Reals, spanned: Mapping[str, Reals]) -> SpectraBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
         if prediction.solved is None:
             return self

@@ -10,6 +10,7 @@ from scipy import linalg
 
 from permway.arrays import Reals
 from permway.diagnosis.blocks import Block
+from permway.diagnosis.blocks_passage import UNEVENNESS
 from permway.diagnosis.observations import Observations, Solved
 from permway.posterior.chains import Chains, Factor, chains_of
 from permway.posterior.hyper import IDEALISATION, LACKING, Hyper
@@ -27,15 +28,16 @@ class Frame:
         Records as residuals whitened by their noise.
     chains : list of Chains
     columns : ndarray, shape (m, b)
-        Errors of unit variance that act by few columns: an irregularity's level, tables, the idealisation.
+        Errors of unit variance that act by few columns: an irregularity's level, tables, the idealisation, what
+        unevenness does.
     spanned : ndarray of int, shape (m,)
         The rows that they act on.
     sigma : ndarray, shape (n,)
         Of each row's noise, neper.
     statistic : ndarray of str, shape (n,)
         Of each row's record.
-    idealised : int
-        The last so many columns are of the idealisation, of a unit that its size multiplies.
+    sources : ndarray of str, shape (b,)
+        Of each column.
     """
 
     observations: Observations
@@ -44,7 +46,7 @@ class Frame:
     spanned: np.ndarray
     sigma: Reals
     statistic: np.ndarray
-    idealised: int = 0
+    sources: np.ndarray
 
     @staticmethod
     def of(observations: Observations) -> Frame:
@@ -55,10 +57,10 @@ class Frame:
             [np.full(b.rows.channel.size, b.dataset.record.statistic, dtype="U16") for b in blocks]
         )
         sigma = NEPER_PER_DB * np.concatenate([b.rows.scale_dB for b in blocks])
-        columns = _columns(observations, blocks)
+        columns, sources = _columns(observations, blocks)
         spanned = np.flatnonzero(np.any(columns, axis=1))
         chains = tuple(chains_of(blocks))
-        return Frame(observations, chains, columns[spanned], spanned, np.maximum(sigma, 1e-9), statistic)
+        return Frame(observations, chains, columns[spanned], spanned, np.maximum(sigma, 1e-9), statistic, sources)
 
     def about(self, solved: Solved, covariance: Covariance, residuals: Reals) -> Frame:
         """The same records weighed by what a fit predicts and, if it lacks nothing, by the errors that it leaves.
@@ -77,8 +79,9 @@ class Frame:
         # Of a model that lacks something, errors of chains take up what it lacks.
         lacking = covariance.hyper.novel > LACKING
         errors = np.zeros_like(residuals) if lacking else covariance.errors(residuals)
+        spanned = {} if lacking else covariance.coefficients(residuals)
         blocks = tuple(
-            block.about(solved.of(index), errors[starts[index] : starts[index + 1]])
+            block.about(solved.of(index), errors[starts[index] : starts[index + 1]], spanned)
             for index, block in enumerate(self.observations.blocks)
         )
         return Frame.of(self.observations.with_blocks(blocks))
@@ -92,19 +95,27 @@ class Frame:
 
     def with_idealisation(self, more: Reals) -> Frame:
         """The same with what the idealisation may do to the residuals, (n, c), in place of what is there."""
-        columns = np.hstack([self.whole[:, : self.columns.shape[1] - self.idealised], more])
+        other = self.sized != IDEALISATION
+        columns = np.hstack([self.whole[:, other], more])
         spanned = np.flatnonzero(np.any(columns, axis=1))
-        return replace(self, columns=columns[spanned], spanned=spanned, idealised=more.shape[1])
+        sources = np.append(self.sources[other], [IDEALISATION] * more.shape[1])
+        return replace(self, columns=columns[spanned], spanned=spanned, sources=sources)
+
+    @cached_property
+    def sized(self) -> np.ndarray:
+        """Of each column the hyperparameter that multiplies it; empty where it has its size."""
+        first = [str(source).split(" ", 1)[0] for source in self.sources]
+        return np.array([name if name in (IDEALISATION, UNEVENNESS) else "" for name in first], dtype=str)
 
     @property
     def idealisation(self) -> Reals:
         """Its columns at all rows, (n, c)."""
-        return self.whole[:, self.columns.shape[1] - self.idealised :]
+        return self.whole[:, self.sized == IDEALISATION]
 
     def first(self) -> Hyper:
         """Hyperparameters at the medians of their priors."""
         kinds = dict.fromkeys(kind for chains in self.chains for kind in chains.kinds)
-        return Hyper.first(tuple(kinds), tuple(self.of_statistic))
+        return Hyper.first(tuple(kinds), tuple(self.of_statistic), uneven=UNEVENNESS in self.sized)
 
     @cached_property
     def of_statistic(self) -> dict[str, np.ndarray]:
@@ -127,8 +138,11 @@ class Frame:
         return Covariance(self, hyper, weights, noise, tuple(factors))
 
 
-def _columns(observations: Observations, blocks: tuple[Block, ...]) -> Reals:
-    """Columns of errors that are no chain's, scaled to unit variance; one source met by two records is one."""
+def _columns(observations: Observations, blocks: tuple[Block, ...]) -> tuple[Reals, np.ndarray]:
+    """Columns of errors that are no chain's, scaled to unit variance, and the source of each.
+
+    One source met by two records is one.
+    """
     total = sum(b.rows.channel.size for b in blocks)
     found: dict[str, Reals] = {}
     start = 0
@@ -138,7 +152,8 @@ def _columns(observations: Observations, blocks: tuple[Block, ...]) -> Reals:
         for name, columns in block.spanned(observations.sizes).items():
             whole = found.setdefault(name, np.zeros((total, columns.shape[1])))
             whole[rows] += columns
-    return np.hstack(list(found.values())) if found else np.zeros((total, 0))
+    sources = [name for name, columns in found.items() for _ in columns.T]
+    return np.hstack([np.zeros((total, 0)), *found.values()]), np.array(sources, dtype=str)
 
 
 @dataclass(frozen=True)
@@ -179,9 +194,8 @@ class Covariance:
 
     @property
     def _sizes(self) -> Reals:
-        """By which the frame's columns count: those of the idealisation by their size."""
-        count = self.frame.columns.shape[1]
-        return np.where(np.arange(count) < count - self.frame.idealised, 1.0, self.hyper[IDEALISATION])
+        """By which the frame's columns count."""
+        return np.array([self.hyper[name] if name else 1.0 for name in self.frame.sized])
 
     @property
     def columns(self) -> Reals:
@@ -238,6 +252,11 @@ class Covariance:
                     each = np.where(chains.relative[:, None] > 0.0, moved / chains.relative[:, None], 0.0)
                 found[chains.rows] = each
         return found
+
+    def coefficients(self, residuals: Reals) -> dict[str, Reals]:
+        """Most probable errors that columns span: by source, of its columns as the frame has them."""
+        found = self._sizes * (self.columns.T @ self.apply(residuals[:, None])[:, 0])
+        return {str(name): found[self.frame.sources == name] for name in np.unique(self.frame.sources)}
 
     def apply(self, values: Reals) -> Reals:
         """Inverse times values, shape (n, k)."""

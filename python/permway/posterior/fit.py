@@ -170,9 +170,7 @@ class Fit:
         rows = np.isin(self.frame.observations.block_of, kept)
         frame = Frame.of(self.frame.observations.with_blocks(tuple(blocks[i] for i in kept)))
         columns = self.frame.whole[rows]
-        frame = replace(
-            frame, columns=columns, spanned=np.arange(columns.shape[0]), idealised=self.frame.idealised
-        )
+        frame = replace(frame, columns=columns, spanned=np.arange(columns.shape[0]), sources=self.frame.sources)
         solved = self.state.solved
         solved = replace(
             solved, needs=tuple(solved.needs[i] for i in kept), datasets=[solved.datasets[i] for i in kept]

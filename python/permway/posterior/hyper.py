@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from permway.arrays import Reals
+from permway.diagnosis.blocks_passage import UNEVENNESS
 
 SIZE, SIZE_FACTOR = 0.04, 3.0
 """Calibration errors, neper or rad: median (0.35 dB) and the factor of one standard deviation (0.12 to 1 dB)."""
@@ -36,6 +37,11 @@ IDEAL, IDEAL_FACTOR = 0.0002, 2.0
 """Share by which the idealisation has a stiffness or a mass off, see :mod:`permway.posterior.idealised`: median,
 and the factor of one standard deviation. In 50 campaigns with nothing missing it is 0.0001 to 0.0004."""
 
+UNEVENNESS_FACTOR = 2.0
+"""Of the forces by unevenness over those of the stated spectrum: the factor of one standard deviation about 1 (6
+dB); neighbouring classes of the FRA's track are 1.1 to 2.5 apart. With half its logarithm a wrong spectrum is held
+on to; with twice, what is missing passes for rough track more easily."""
+
 COARSEST = 2.0
 """Neper: the largest discrepancy."""
 
@@ -55,7 +61,8 @@ class Hyper:
     Attributes
     ----------
     names : tuple of str
-        Kinds of chains, "length", "discrepancy " of each statistic, and "idealisation".
+        Kinds of chains, "length", "discrepancy " of each statistic, "idealisation", and "unevenness" where axles
+        meet one.
     log : ndarray, shape (h,)
     """
 
@@ -63,13 +70,15 @@ class Hyper:
     log: Reals
 
     @staticmethod
-    def first(kinds: Sequence[str], statistics: Sequence[str]) -> Hyper:
+    def first(kinds: Sequence[str], statistics: Sequence[str], *, uneven: bool = False) -> Hyper:
         """The medians of the priors."""
         values = dict.fromkeys(kinds, SIZE)
         if kinds:
             values["length"] = LENGTH
         values |= {f"discrepancy {name}": EXACT for name in statistics}
         values[IDEALISATION] = IDEAL
+        if uneven:
+            values[UNEVENNESS] = 1.0
         return Hyper(tuple(values), np.log(np.array(list(values.values()))))
 
     def __getitem__(self, name: str) -> float:
@@ -113,7 +122,8 @@ class Hyper:
     @property
     def _kinds(self) -> list[str]:
         """Of chains."""
-        return [n for n in self.names if n not in ("length", IDEALISATION) and not n.startswith("discrepancy")]
+        others = ("length", IDEALISATION, UNEVENNESS)
+        return [n for n in self.names if n not in others and not n.startswith("discrepancy")]
 
     def bounds(self) -> tuple[Reals, Reals]:
         """Of the logarithms."""
@@ -147,6 +157,8 @@ def _bounds(name: str) -> tuple[float, float]:
         return SHORTEST, LONGEST
     if name == IDEALISATION:
         return 1e-5, 0.005
+    if name == UNEVENNESS:
+        return 0.02, 50.0
     return (1e-4, COARSEST) if name.startswith("discrepancy") else (1e-3, 0.5)
 
 
@@ -167,6 +179,8 @@ def _log_prior(name: str, log: float) -> float:
         return float(np.log(_normal(log, LENGTH, LENGTH_FACTOR)))
     if name == IDEALISATION:
         return float(np.log(_normal(log, IDEAL, IDEAL_FACTOR)))
+    if name == UNEVENNESS:
+        return float(np.log(_normal(log, 1.0, UNEVENNESS_FACTOR)))
     if name.startswith("discrepancy"):
         return float(np.log(sum(_components(log)) + 1e-300))
     return float(np.log(_normal(log, SIZE, SIZE_FACTOR)))

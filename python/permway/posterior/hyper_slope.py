@@ -17,7 +17,7 @@ from permway.arrays import Reals
 from permway.posterior.chains import Factor
 from permway.posterior.covariance import Covariance
 from permway.posterior.fit import Fit
-from permway.posterior.hyper import IDEALISATION, Hyper
+from permway.posterior.hyper import Hyper
 from permway.posterior.matern import STATES
 
 STEP = 1e-4
@@ -47,8 +47,8 @@ def hyper_slope(fit: Fit, covariance: Covariance) -> Reals:
     for name, rows in frame.of_statistic.items():
         grown = 2.0 * (1.0 / weights[rows] - 1.0)
         found[f"discrepancy {name}"] = float(grown @ (inverse[rows] - off[rows] ** 2))
-    ideal = slice(frame.columns.shape[1] - frame.idealised, frame.columns.shape[1])
-    found[IDEALISATION] = float(2.0 * (1.0 - unknown.squares[ideal]).sum())
+    for name in set(frame.sized) - {""}:
+        found[name] = float(2.0 * (1.0 - unknown.squares[np.flatnonzero(frame.sized == name)]).sum())
     for factor, states in zip(covariance.factors, unknown.states, strict=True):
         chains, length = factor.chains, hyper["length"]
         squares = _mean_squares(factor, states)

@@ -11,6 +11,7 @@ from permway.arrays import Complexes, Reals
 from permway.errors import InputError
 from permway.model.bodies import Metres
 from permway.model.faults import fault
+from permway.model.irregularity import AnyIrregularity
 from permway.model.vehicle import STANDARD_GRAVITY
 from permway.records import FloatTuple, FrozenModel, Number
 from permway.response.passby.loads import check_axles
@@ -79,6 +80,10 @@ class PassingAxles(FrozenModel):
     ramp_m : float, optional
         Over which loads come on and go off at both ends; by default none at an end of the body, elsewhere a tenth
         of the stretch and at most 10 m.
+    suspension : Suspension, optional
+        With which the axles' forces follow the motion of the line; by default they are the loads.
+    irregularity : irregularity, optional
+        Unevenness that axles with a suspension meet, each at its time, as a model file names one.
     """
 
     loads_N: FloatTuple = Field(min_length=1)
@@ -91,12 +96,15 @@ class PassingAxles(FrozenModel):
     to_m: Metres | None = None
     ramp_m: float | None = Field(default=None, ge=0.0)
     suspension: Suspension | None = None
+    irregularity: AnyIrregularity | None = None
 
     @model_validator(mode="after")
     def _check(self) -> PassingAxles:
         check_axles(self.lags_m, self.loads_N)
         if self.from_m is not None and self.to_m is not None and not self.from_m < self.to_m:
             raise fault(f"does not lie beyond from_m = {self.from_m:g}", "to_m", value=self.to_m)
+        if self.irregularity is not None and self.suspension is None:
+            raise fault("pushes axles that have a suspension: describe it", "irregularity")
         return self
 
     @property

@@ -7,11 +7,12 @@ import xarray as xr
 from permway.arrays import Complexes
 from permway.campaign.campaign import Campaign
 from permway.campaign.dataset import SI_UNITS, Dataset
+from permway.campaign.factors import campaign_under
 from permway.campaign.kinds.kind import RecordKind, of_solved
 from permway.campaign.parts import Condition, Record
 from permway.campaign.passage import passage as recorded
 from permway.campaign.predictions import hammer, passage
-from permway.campaign.predictions.sweeps import Request
+from permway.campaign.predictions.sweeps import Request, Result
 
 
 class Passages(RecordKind):
@@ -47,3 +48,10 @@ class Passages(RecordKind):
     def unit(self, campaign: Campaign, dataset: Dataset, channel: str) -> str:
         """Of the sensor, times s."""
         return f"({SI_UNITS[campaign.sensor(channel).quantity]}) s"
+
+
+def by_unevenness(campaign: Campaign, dataset: Dataset, request: Request, answer: Result) -> passage.Scatter:
+    """See :func:`permway.campaign.predictions.passage.by_unevenness`."""
+    condition = campaign.condition(dataset.condition.name)
+    under, names = campaign_under(campaign, condition), dataset.names("channel")
+    return passage.by_unevenness(under, condition, names, dataset.data, request, answer.of(request))

@@ -6,6 +6,8 @@ solved once. Axles with a suspension push harder or less hard where the line mov
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import xarray as xr
 from scipy.fft import irfft
@@ -14,7 +16,7 @@ from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.parts import Condition
 from permway.campaign.passage import offset_m, path_under, points_of, spectrum_of
-from permway.campaign.predictions.suspended import suspended
+from permway.campaign.predictions.suspended import AxlesOnSprings, Waves
 from permway.campaign.predictions.sweeps import Location, Request
 from permway.errors import InputError
 from permway.model.bodies import Beam
@@ -27,6 +29,9 @@ from permway.response.passby.window import FLAT
 
 SEAM, LATE = 0.01, (0.8, 0.9)
 """Largest motion late in the rest after the train, over the largest of all, and where in the rest that is."""
+
+PROFILE = "profile"
+"""Variable of a record's data: amplitudes of waves of the unevenness, m, over rad/m."""
 
 RIGID = 5.0
 """Growth of the response from the first frequency down to its share, above which nothing holds the line."""
@@ -68,20 +73,117 @@ def predicted(
     InputError
         For a line that nothing holds, a sensor whose beam does not bend as Euler's does.
     """
-    sensors = [campaign.sensor(name) for name in names]
-    path = path_under(campaign.model, condition, sensors, _highest(data))
-    if np.abs(receptance[0]).max() > RIGID * np.abs(receptance[1]).max():
-        raise InputError("nothing holds the line at rest", where="line", remedy="hold it, or give from_m and to_m")
-    held = receptance.copy()
-    held[0] = held[0].real
-    frequency = _lines(data)
-    read = _read(campaign.model, sensors, request.rows)
-    moments = _moments(condition, path, frequency, request, held)
-    spectrum, _ = carried(path.coefficients(np.einsum("sr,frp->fsp", read, held)), moments)
-    share = np.arange(frequency.size) / max(frequency.size - 1, 1)
-    low_pass = 0.5 * (1.0 + np.cos(np.pi * np.clip((share - FLAT) / (1.0 - FLAT), 0.0, 1.0)))
-    turned = spectrum.T * low_pass * np.stack([s.transfer(frequency) for s in sensors])
-    return _recorded(turned, frequency, condition, path, data)
+    passing = _Passing(campaign, condition, names, data, request, receptance)
+    moments, axles = passing.loaded(), passing.axles()
+    return passing.recorded(moments if axles is None else axles.carrying(moments, profile_of(data)))
+
+
+class Scatter(NamedTuple):
+    """What an unevenness makes of a record.
+
+    Attributes
+    ----------
+    waves : Waves
+        Profiles whose sum by independent normal coefficients it is.
+    spectra : ndarray of complex128, shape (channel, frequency, profiles)
+        By each of them. Their products are the covariance of the record's lines: as it leaves the same chains,
+        filter and window, lines that share an axle's way correlate.
+    known : ndarray of complex128, shape (channel, frequency)
+        By the profile that predictions of the record have.
+    """
+
+    waves: Waves
+    spectra: Complexes
+    known: Complexes
+
+
+def by_unevenness(
+    campaign: Campaign,
+    condition: Condition,
+    names: list[str],
+    data: xr.Dataset,
+    request: Request,
+    receptance: Complexes,
+) -> Scatter:
+    """Of a record, as of :func:`predicted`."""
+    passing = _Passing(campaign, condition, names, data, request, receptance)
+    axles, blank = passing.axles(), np.zeros((*data["spectrum"].shape, 1), dtype=np.complex128)
+
+    def spectra(waves: Waves) -> Complexes:
+        found = [] if axles is None else [passing.recorded(one)[0] for one in axles.on(waves)]
+        return np.concatenate([blank[..., :0], *(one[..., None] for one in found)], axis=-1)
+
+    waves = Waves.none() if axles is None else axles.waves()
+    return Scatter(waves, spectra(waves), spectra(profile_of(data)).sum(axis=-1))
+
+
+def profile_of(data: xr.Dataset) -> Waves:
+    """The profile that predictions of a record have: none before a fit has estimated it."""
+    if PROFILE not in data:
+        return Waves.none()
+    return Waves(data["wavenumber"].values, data[PROFILE].values[:, None])
+
+
+def with_profile(data: xr.Dataset, waves: Waves, coefficients: Reals) -> xr.Dataset:
+    """A record's data, predictions of which have the sum of some profiles by these coefficients."""
+    other = data.drop_dims("wavenumber", errors="ignore").assign_coords(wavenumber=waves.wavenumber)
+    return other.assign({PROFILE: ("wavenumber", waves.amplitude @ coefficients)})
+
+
+class _Passing:
+    """A line under the axles of a condition, and what sensors make of their forces."""
+
+    def __init__(
+        self,
+        campaign: Campaign,
+        condition: Condition,
+        names: list[str],
+        data: xr.Dataset,
+        request: Request,
+        receptance: Complexes,
+    ) -> None:
+        sensors = [campaign.sensor(name) for name in names]
+        self._condition, self._data, self._request = condition, data, request
+        self.path = path_under(campaign.model, condition, sensors, _highest(data))
+        if np.abs(receptance[0]).max() > RIGID * np.abs(receptance[1]).max():
+            remedy = "hold it, or give from_m and to_m"
+            raise InputError("nothing holds the line at rest", where="line", remedy=remedy)
+        self._held = receptance.copy()
+        self._held[0] = self._held[0].real
+        self.frequency_Hz = _lines(data)
+        read = _read(campaign.model, sensors, request.rows)
+        self._coefficients = self.path.coefficients(np.einsum("sr,frp->fsp", read, self._held))
+        share = np.arange(self.frequency_Hz.size) / max(self.frequency_Hz.size - 1, 1)
+        self._low_pass = 0.5 * (1.0 + np.cos(np.pi * np.clip((share - FLAT) / (1.0 - FLAT), 0.0, 1.0)))
+        self._transfer = np.stack([s.transfer(self.frequency_Hz) for s in sensors])
+
+    def loaded(self) -> Complexes:
+        """Moments of all loads on the clock of the records, (F, panels, order)."""
+        axles, speed = self._condition.axles, self._condition.speed_m_per_s
+        assert axles is not None
+        assert speed is not None
+        omega = 2.0 * np.pi * self.frequency_Hz
+        sign = 1.0 if axles.direction == "forward" else -1.0
+        # Along -x the same integral over x, whose element is then negative.
+        moments = sign * harmonic_moments(self.path, omega, sign * speed)
+        loads = arrivals(omega, axles.loads, axles.arrivals_s(speed, self.path.start, self.path.stop))
+        return np.asarray(moments * loads[:, None, None])
+
+    def axles(self) -> AxlesOnSprings | None:
+        """Those on springs; None where forces are the loads."""
+        axles, speed, path = self._condition.axles, self._condition.speed_m_per_s, self.path
+        assert axles is not None
+        assert speed is not None
+        if axles.suspension is None:
+            return None
+        nodes = [self._request.rows.index((path.body, float(x))) for x in path.nodes.ravel()]
+        return AxlesOnSprings(axles, speed, path, self.frequency_Hz, path.coefficients(self._held[:, nodes]))
+
+    def recorded(self, moments: Complexes) -> tuple[Complexes, float]:
+        """Spectra of the record by forces of these moments, and the motion at the seam."""
+        spectrum, _ = carried(self._coefficients, moments)
+        turned = spectrum.T * self._low_pass * self._transfer
+        return _recorded(turned, self.frequency_Hz, self._condition, self.path, self._data)
 
 
 def _highest(data: xr.Dataset) -> float:
@@ -144,25 +246,6 @@ def check_seam(record: str, data: xr.Dataset, seam: float) -> None:
             where=f"records.{record}.window_s",
             remedy=f"give it {2.0 * window:.3g}, so that the line comes to rest after the train",
         )
-
-
-def _moments(
-    condition: Condition, path: Path, frequency_Hz: Reals, request: Request, receptance: Complexes
-) -> Complexes:
-    """Of all loads on the clock of the records, (F, panels, order)."""
-    axles, speed = condition.axles, condition.speed_m_per_s
-    assert axles is not None
-    assert speed is not None
-    omega = 2.0 * np.pi * frequency_Hz
-    sign = 1.0 if axles.direction == "forward" else -1.0
-    # Along -x the same integral over x, whose element is then negative.
-    moments = sign * harmonic_moments(path, omega, sign * speed)
-    loads = arrivals(omega, axles.loads, axles.arrivals_s(speed, path.start, path.stop))
-    found = moments * loads[:, None, None]
-    if axles.suspension is None:
-        return np.asarray(found)
-    nodes = [request.rows.index((path.body, float(x))) for x in path.nodes.ravel()]
-    return suspended(axles, speed, path, frequency_Hz, path.coefficients(receptance[:, nodes]), found)
 
 
 def _recorded(
