@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -13,6 +14,7 @@ from permway.errors import InputError
 from permway.model.bodies import AnyBody
 from permway.model.changes import changed
 from permway.model.joints import GROUND, Joints
+from permway.model.kept import Kept
 from permway.model.segments import Integers, Segment, end_places, find, is_placed, nearest_mass
 from permway.model.stations import TOUCH_M, Along, Ends, groups
 
@@ -34,6 +36,9 @@ class JointTable:
 
 Columns = tuple[Reals, Integers, Integers, Reals]
 """Stations, upper and lower segments, scales."""
+
+_ALONG: Kept[Joints, Columns] = Kept(256)
+"""Of layers along x: lines of a search differ in few of them."""
 
 
 def joint_table(
@@ -93,7 +98,7 @@ def _columns(bodies: Mapping[str, AnyBody], segments: Sequence[Segment], index: 
         return _at_meetings(segments, index, layer)
     if isinstance(layer.at, Ends):
         return _at_ends(bodies, segments, index, layer, layer.at)
-    return _along(segments, index, layer, layer.at)
+    return _ALONG.of(layer, partial(_along, segments, index, layer, layer.at), given=segments)
 
 
 def _along(segments: Sequence[Segment], index: int, layer: Joints, at: Along) -> Columns:

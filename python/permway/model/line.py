@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-import weakref
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,12 +13,14 @@ from pydantic import Field, model_validator
 from permway.arrays import Complexes, Reals, check_track_temperature, real_numbers
 from permway.errors import InputError
 from permway.laws import AnyLaw, Hysteretic
+from permway.laws.base import Law
 from permway.model.beam_columns import beam_columns
 from permway.model.bodies import AnyBody, Beam, Mass, Shaft
 from permway.model.faults import fault
 from permway.model.joint_table import JointTable as JointTable
 from permway.model.joint_table import joint_table
 from permway.model.joints import GROUND, Ends, Joints
+from permway.model.kept import Kept
 from permway.model.rods import check_rods, passes_through
 from permway.model.segments import Segment as Segment
 from permway.model.segments import check_ends, check_rows, find, segments_of
@@ -28,11 +30,11 @@ from permway.records import FrozenModel
 _NAME = re.compile(r"^[A-Za-z][A-Za-z0-9_-]*$")
 
 
-_KEPT = 8
-"""Lines whose joints stay compiled: a search goes back and forth between a few."""
+_COMPILED: Kept[Line, JointTable] = Kept(8)
+"""Joints of lines: a search goes back and forth between a few."""
 
-_COMPILED: dict[int, tuple[weakref.ref[Line], JointTable]] = {}
-"""The lines whose joints were compiled last, and they."""
+_STIFFNESS: Kept[Law, Complexes] = Kept(256)
+"""Of laws, at the last frequencies of each temperature: lines of a search differ in few of their laws."""
 
 
 class Line(FrozenModel, Shown):
@@ -103,14 +105,7 @@ class Line(FrozenModel, Shown):
         InputError
             If a joint lies off one of its bodies, or nothing holds a mass of a row.
         """
-        known, table = _COMPILED.get(id(self), (None, None))
-        if table is None or known is None or known() is not self:
-            table = joint_table(self.bodies, self.joints, list(self.laws), self.segments())
-            _COMPILED.pop(id(self), None)
-            _COMPILED[id(self)] = weakref.ref(self), table
-            for old in list(_COMPILED)[:-_KEPT]:
-                _COMPILED.pop(old, None)
-        return table
+        return _COMPILED.of(self, lambda: joint_table(self.bodies, self.joints, list(self.laws), self.segments()))
 
     def stiffness(self, frequency_Hz: ArrayLike, temperature_C: float | None = None) -> Complexes:
         """Complex stiffness of every law.
@@ -134,17 +129,13 @@ class Line(FrozenModel, Shown):
         """
         frequency = np.atleast_1d(real_numbers(frequency_Hz, "frequency_Hz"))
         check_track_temperature(temperature_C)
-        columns = []
-        for name, law in self.laws.items():
-            try:
-                with np.errstate(all="ignore"):
-                    values = law.complex(frequency, temperature_C)
-            except InputError as error:
-                raise InputError(
-                    error.what, where=f"laws.{name}: {error.where}", value=error.value, remedy=error.remedy
-                ) from error
-            _check_stiffness(name, values, frequency, active=passes_through(law))
-            columns.append(values)
+        at = frequency.tobytes()
+        columns = [
+            _STIFFNESS.of(
+                law, partial(_stiffness, name, law, frequency, temperature_C), use=temperature_C, given=at
+            )
+            for name, law in self.laws.items()
+        ]
         return np.stack(columns, axis=-1) if columns else np.zeros((frequency.size, 0), dtype=np.complex128)
 
     def beams(self) -> list[tuple[Beam | Shaft, Segment]]:
@@ -164,6 +155,19 @@ class Line(FrozenModel, Shown):
         """Point masses in the core's order, kg."""
         bodies = [self.bodies[segment.body] for segment in self.segments()]
         return np.array([body.mass_kg for body in bodies if isinstance(body, Mass)], dtype=np.float64)
+
+
+def _stiffness(name: str, law: Law, frequency: Reals, temperature_C: float | None) -> Complexes:
+    """Of one law, checked."""
+    try:
+        with np.errstate(all="ignore"):
+            values = law.complex(frequency, temperature_C)
+    except InputError as error:
+        raise InputError(
+            error.what, where=f"laws.{name}: {error.where}", value=error.value, remedy=error.remedy
+        ) from error
+    _check_stiffness(name, values, frequency, active=passes_through(law))
+    return values
 
 
 def _check_stiffness(name: str, values: Complexes, frequency: Reals, *, active: bool) -> None:
