@@ -18,6 +18,7 @@ from permway.posterior.diagnose import diagnose
 from short_deck import small_case
 
 
+@pytest.mark.injection
 @pytest.mark.xfail(
     strict=True,
     raises=AssertionError,
