@@ -129,13 +129,11 @@ class Line(FrozenModel, Shown):
         """
         frequency = np.atleast_1d(real_numbers(frequency_Hz, "frequency_Hz"))
         check_track_temperature(temperature_C)
-        at = frequency.tobytes()
-        columns = [
-            _STIFFNESS.of(
-                law, partial(_stiffness, name, law, frequency, temperature_C), use=temperature_C, given=at
-            )
-            for name, law in self.laws.items()
-        ]
+        at, columns = frequency.tobytes(), []
+        for name, law in self.laws.items():
+            values = partial(_stiffness, name, law, frequency, temperature_C)
+            # What is no temperature, an array say, is for the law to refuse.
+            columns.append(_STIFFNESS.of(law, values, use=repr(temperature_C), given=at))
         return np.stack(columns, axis=-1) if columns else np.zeros((frequency.size, 0), dtype=np.complex128)
 
     def beams(self) -> list[tuple[Beam | Shaft, Segment]]:
