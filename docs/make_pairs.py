@@ -78,8 +78,7 @@ first 25 of 40:
 | void | 8 | 3 | 5 | 5 | 0 |
 | lost fastener | 8 | 1 | 6 | 6 | 0 |
 
-The fastener that is not found has a deviance of 3. Those without a verdict have 2,500 to 330,000: large
-effects, whose search takes longest.
+The fastener that is not found has a deviance of 3; those without a verdict have 2,500 to 330,000.
 """
 
 

@@ -38,7 +38,8 @@ class Passages(RecordKind):
     ) -> xr.Dataset:
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""
         names = dataset.names("channel")
-        spectrum, seam = passage.predicted(campaign, condition, names, dataset.data, *of_solved(solved))
+        passing = passage.Passing(campaign, condition, names, dataset.data, *of_solved(solved))
+        spectrum, seam = passing.predicted()
         return dataset.template(self.blank).copy(data={"spectrum": spectrum}).assign_attrs(seam=seam)
 
     def check(self, dataset: Dataset, predicted: xr.Dataset) -> None:
@@ -51,7 +52,7 @@ class Passages(RecordKind):
 
 
 def by_unevenness(campaign: Campaign, dataset: Dataset, request: Request, answer: Result) -> passage.Scatter:
-    """See :func:`permway.campaign.predictions.passage.by_unevenness`."""
+    """What the unevenness that axles meet makes of a record, from the receptances that it needs."""
     condition = campaign.condition(dataset.condition.name)
     under, names = campaign_under(campaign, condition), dataset.names("channel")
-    return passage.by_unevenness(under, condition, names, dataset.data, request, answer.of(request))
+    return passage.Passing(under, condition, names, dataset.data, request, answer.of(request)).by_unevenness()

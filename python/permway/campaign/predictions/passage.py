@@ -55,29 +55,6 @@ def request(
     return Request(temperature_C, frequency, tuple(rows), columns)
 
 
-def predicted(
-    campaign: Campaign,
-    condition: Condition,
-    names: list[str],
-    data: xr.Dataset,
-    request: Request,
-    receptance: Complexes,
-) -> tuple[Complexes, float]:
-    """Spectra as :func:`permway.campaign.passage.passage` gives them, (channel, frequency).
-
-    Beside them the largest motion where the periodic window begins anew, over the largest of all: see
-    :func:`check_seam`.
-
-    Raises
-    ------
-    InputError
-        For a line that nothing holds, a sensor whose beam does not bend as Euler's does.
-    """
-    passing = _Passing(campaign, condition, names, data, request, receptance)
-    moments, axles = passing.loaded(), passing.axles()
-    return passing.recorded(moments if axles is None else axles.carrying(moments, profile_of(data)))
-
-
 class Scatter(NamedTuple):
     """What an unevenness makes of a record.
 
@@ -97,26 +74,6 @@ class Scatter(NamedTuple):
     known: Complexes
 
 
-def by_unevenness(
-    campaign: Campaign,
-    condition: Condition,
-    names: list[str],
-    data: xr.Dataset,
-    request: Request,
-    receptance: Complexes,
-) -> Scatter:
-    """Of a record, as of :func:`predicted`."""
-    passing = _Passing(campaign, condition, names, data, request, receptance)
-    axles, blank = passing.axles(), np.zeros((*data["spectrum"].shape, 1), dtype=np.complex128)
-
-    def spectra(waves: Waves) -> Complexes:
-        found = [] if axles is None else [passing.recorded(one)[0] for one in axles.on(waves)]
-        return np.concatenate([blank[..., :0], *(one[..., None] for one in found)], axis=-1)
-
-    waves = Waves.none() if axles is None else axles.waves()
-    return Scatter(waves, spectra(waves), spectra(profile_of(data)).sum(axis=-1))
-
-
 def profile_of(data: xr.Dataset) -> Waves:
     """The profile that predictions of a record have: none before a fit has estimated it."""
     if PROFILE not in data:
@@ -130,8 +87,27 @@ def with_profile(data: xr.Dataset, waves: Waves, coefficients: Reals) -> xr.Data
     return other.assign({PROFILE: ("wavenumber", waves.amplitude @ coefficients)})
 
 
-class _Passing:
-    """A line under the axles of a condition, and what sensors make of their forces."""
+class Passing:
+    """A line under the axles of a condition, and what sensors make of their forces.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    condition : Condition
+    names : list of str
+        Of the sensors.
+    data : Dataset of xarray
+        The record's.
+    request : Request
+        See :func:`request`.
+    receptance : ndarray of complex128, shape (F, rows, columns)
+        Of the request.
+
+    Raises
+    ------
+    InputError
+        For a line that nothing holds, a sensor whose beam does not bend as Euler's does.
+    """
 
     def __init__(
         self,
@@ -144,46 +120,66 @@ class _Passing:
     ) -> None:
         sensors = [campaign.sensor(name) for name in names]
         self._condition, self._data, self._request = condition, data, request
-        self.path = path_under(campaign.model, condition, sensors, _highest(data))
+        self._path = path_under(campaign.model, condition, sensors, _highest(data))
         if np.abs(receptance[0]).max() > RIGID * np.abs(receptance[1]).max():
             remedy = "hold it, or give from_m and to_m"
             raise InputError("nothing holds the line at rest", where="line", remedy=remedy)
         self._held = receptance.copy()
         self._held[0] = self._held[0].real
-        self.frequency_Hz = _lines(data)
+        self._frequency_Hz = _lines(data)
         read = _read(campaign.model, sensors, request.rows)
-        self._coefficients = self.path.coefficients(np.einsum("sr,frp->fsp", read, self._held))
-        share = np.arange(self.frequency_Hz.size) / max(self.frequency_Hz.size - 1, 1)
+        self._coefficients = self._path.coefficients(np.einsum("sr,frp->fsp", read, self._held))
+        share = np.arange(self._frequency_Hz.size) / max(self._frequency_Hz.size - 1, 1)
         self._low_pass = 0.5 * (1.0 + np.cos(np.pi * np.clip((share - FLAT) / (1.0 - FLAT), 0.0, 1.0)))
-        self._transfer = np.stack([s.transfer(self.frequency_Hz) for s in sensors])
+        self._transfer = np.stack([s.transfer(self._frequency_Hz) for s in sensors])
 
-    def loaded(self) -> Complexes:
+    def predicted(self) -> tuple[Complexes, float]:
+        """Spectra as :func:`permway.campaign.passage.passage` gives them, (channel, frequency).
+
+        Beside them the largest motion where the periodic window begins anew, over the largest of all: see
+        :func:`check_seam`.
+        """
+        moments, axles = self._loaded(), self._axles()
+        return self._record(moments if axles is None else axles.carrying(moments, profile_of(self._data)))
+
+    def by_unevenness(self) -> Scatter:
+        """What the unevenness that axles meet makes of the record."""
+        axles, blank = self._axles(), np.zeros((*self._data["spectrum"].shape, 1), dtype=np.complex128)
+
+        def spectra(waves: Waves) -> Complexes:
+            found = [] if axles is None else [self._record(one)[0] for one in axles.on(waves)]
+            return np.concatenate([blank[..., :0], *(one[..., None] for one in found)], axis=-1)
+
+        waves = Waves.none() if axles is None else axles.waves()
+        return Scatter(waves, spectra(waves), spectra(profile_of(self._data)).sum(axis=-1))
+
+    def _loaded(self) -> Complexes:
         """Moments of all loads on the clock of the records, (F, panels, order)."""
         axles, speed = self._condition.axles, self._condition.speed_m_per_s
         assert axles is not None
         assert speed is not None
-        omega = 2.0 * np.pi * self.frequency_Hz
+        omega = 2.0 * np.pi * self._frequency_Hz
         sign = 1.0 if axles.direction == "forward" else -1.0
         # Along -x the same integral over x, whose element is then negative.
-        moments = sign * harmonic_moments(self.path, omega, sign * speed)
-        loads = arrivals(omega, axles.loads, axles.arrivals_s(speed, self.path.start, self.path.stop))
+        moments = sign * harmonic_moments(self._path, omega, sign * speed)
+        loads = arrivals(omega, axles.loads, axles.arrivals_s(speed, self._path.start, self._path.stop))
         return np.asarray(moments * loads[:, None, None])
 
-    def axles(self) -> AxlesOnSprings | None:
+    def _axles(self) -> AxlesOnSprings | None:
         """Those on springs; None where forces are the loads."""
-        axles, speed, path = self._condition.axles, self._condition.speed_m_per_s, self.path
+        axles, speed, path = self._condition.axles, self._condition.speed_m_per_s, self._path
         assert axles is not None
         assert speed is not None
         if axles.suspension is None:
             return None
         nodes = [self._request.rows.index((path.body, float(x))) for x in path.nodes.ravel()]
-        return AxlesOnSprings(axles, speed, path, self.frequency_Hz, path.coefficients(self._held[:, nodes]))
+        return AxlesOnSprings(axles, speed, path, self._frequency_Hz, path.coefficients(self._held[:, nodes]))
 
-    def recorded(self, moments: Complexes) -> tuple[Complexes, float]:
+    def _record(self, moments: Complexes) -> tuple[Complexes, float]:
         """Spectra of the record by forces of these moments, and the motion at the seam."""
         spectrum, _ = carried(self._coefficients, moments)
         turned = spectrum.T * self._low_pass * self._transfer
-        return _recorded(turned, self.frequency_Hz, self._condition, self.path, self._data)
+        return _recorded(turned, self._frequency_Hz, self._condition, self._path, self._data)
 
 
 def _highest(data: xr.Dataset) -> float:
