@@ -71,7 +71,7 @@ def drawn(seed: int, folder: Path, *, sprung: bool) -> Case:
         "second_moment_m4": float(bending / 3.4e10),
         "density_kg_per_m3": 2500.0,
         "area_m2": float(kg_per_m / 2500.0),
-        "loss_factor": float(2.0 * damping),
+        "damping_ratio": float(damping),
         "intervals_m": [[0.0, float(length)]],
         "ends": "pinned",
     }

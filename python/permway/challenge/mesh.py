@@ -76,6 +76,7 @@ class Mesh:
     def _assemble(self) -> None:
         """Entries of the band matrix as (row, column, value) for each group that one coefficient multiplies."""
         groups: list[list[Entries]] = [[], []]
+        dashpots: list[Entries] = []
         self.pieces: list[tuple[Section, float, int, int]] = []
         for body, beam in self.track.beams.items():
             if np.isfinite(beam.section.shear):
@@ -89,6 +90,13 @@ class Mesh:
                 groups[0].append((rows.ravel(), columns.ravel(), mass.ravel().astype(complex)))
                 stiff = (1.0 + 1j * beam.section.loss) * stiffness
                 groups[1].append((rows.ravel(), columns.ravel(), np.asarray(stiff.ravel())))
+                if any(beam.viscous):
+                    by_mass, by_stiffness, by_slope = beam.viscous
+                    loss = by_mass * mass + by_stiffness * stiffness + cable_element(by_slope, right - left)
+                    dashpots.append((rows.ravel(), columns.ravel(), loss.ravel().astype(complex)))
+        self.has_dashpots = bool(dashpots)
+        if dashpots:
+            groups.append(dashpots)
         self.law_groups: list[tuple[str, int, int]] = []
         for name in dict.fromkeys(link.law for link in self.track.links):
             links = [link for link in self.track.links if link.law == name]
@@ -190,6 +198,8 @@ class Mesh:
             blocks[section, length][2 * (i // 2) + j // 2][:, i % 2, j % 2]
             for section, length, i, j in self.pieces
         ]
+        if self.has_dashpots:
+            rows.append((2j * np.pi * frequency_Hz).astype(np.complex128))
         laws = {name: self.track.laws[name](frequency_Hz, temperature_C) for name, _, _ in self.law_groups}
         rows += [laws[name][:, i, j] for name, i, j in self.law_groups]
         return np.stack(rows, axis=1).astype(np.complex128)

@@ -39,6 +39,9 @@ class Beam:
         From, to, factor on the bending stiffness, factor on the mass.
     tension : float
         N.
+    viscous : (float, float, float)
+        Losses beside the section's: in proportion to mass (1/s) and to stiffness (s), and by dashpots against the
+        slope (N s).
     """
 
     section: Section
@@ -48,6 +51,7 @@ class Beam:
     endless: bool = False
     stretches: tuple[tuple[float, float, float, float], ...] = ()
     tension: float = 0.0
+    viscous: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def part(self, left: float, right: float) -> Section:
         """The section of an element."""

@@ -8,6 +8,7 @@ from permway.diagnosis.verdict_parts import Estimate, Moved, Smallest
 
 NAMES = {
     "ballast_frequency": "ballast stiffer with frequency",
+    "beam_damping": "damping law of a beam",
     "contact_filter": "averaging over the contact patch",
     "contact_nonlinear": "contact stiffness at work",
     "damper_series_stiffness": "springs in series with dampers",

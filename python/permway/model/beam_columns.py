@@ -13,21 +13,32 @@ from permway.model.shafts import ShaftChange
 from permway.model.slender import SectionChange
 from permway.model.stations import TOUCH_M
 
-Section = tuple[complex, complex, float, float]
-"""Bending stiffness (N m2, 0 of a shaft), shear stiffness (N), mass (kg/m) and rotary inertia (kg m)."""
+Dashpots = tuple[float, float, float, float]
+"""Viscous losses of bending (N m2 s), shear (N s), and per metre of motion (N s/m2) and rotation (N s)."""
+
+Section = tuple[complex, complex, float, float, Dashpots]
+"""Bending stiffness (N m2, 0 of a shaft), shear stiffness (N), mass (kg/m), rotary inertia (kg m), losses."""
 
 
 def section(body: Beam | Shaft, change: SectionChange | None = None) -> Section:
     """The section of a body, or what a change makes of it."""
     bending, shear, mass, rotary = body.bending_Nm2, body.shear_N, body.mass_kg_per_m, body.rotary_kg_m
-    if change is None:
-        return bending, shear, mass, rotary
-    mass, rotary = mass * change.mass_factor, rotary * change.mass_factor
-    if isinstance(change, ShaftChange):
-        shear *= change.torsion_factor
-    if isinstance(change, BeamChange):
-        bending, shear = bending * change.bending_factor, shear * change.shear_factor
-    return bending, shear, mass, rotary
+    if change is not None:
+        mass, rotary = mass * change.mass_factor, rotary * change.mass_factor
+        if isinstance(change, ShaftChange):
+            shear *= change.torsion_factor
+        if isinstance(change, BeamChange):
+            bending, shear = bending * change.bending_factor, shear * change.shear_factor
+    return bending, shear, mass, rotary, _dashpots(body, bending.real, shear.real, mass, rotary)
+
+
+def _dashpots(body: Beam | Shaft, bending: float, shear: float, mass: float, rotary: float) -> Dashpots:
+    if not isinstance(body, Beam):
+        return 0.0, 0.0, 0.0, 0.0
+    by_mass, by_stiffness = body.mass_damping_per_s, body.stiffness_damping_s
+    # Dashpots against rotation, evenly along a beam: on pinned ends its n-th mode then has 2 zeta omega_n m.
+    turning = 2.0 * body.damping_ratio * (bending * mass) ** 0.5
+    return by_stiffness * bending, by_stiffness * shear, by_mass * mass, by_mass * rotary + turning
 
 
 def sections(body: Beam | Shaft) -> list[Section]:
@@ -66,5 +77,6 @@ def _columns(found: Sequence[Section], reach: Sequence[tuple[float, float]]) -> 
         "shear": np.array([s[1] for s in found], dtype=np.complex128),
         "mass": np.array([s[2] for s in found], dtype=np.float64),
         "rotary": np.array([s[3] for s in found], dtype=np.float64),
+        "dashpots": np.array([s[4] for s in found], dtype=np.float64).reshape(-1, 4),
         "interval": np.array(reach, dtype=np.float64).reshape(-1, 2),
     }

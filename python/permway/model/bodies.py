@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
-from pydantic import Field, PositiveFloat, model_validator
+from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from permway.model.faults import fault
 from permway.model.shafts import Shaft as Shaft
@@ -46,6 +46,11 @@ class Beam(Slender):
         Shear stiffness is coefficient x modulus x area.
     loss_factor : float
         Of both moduli, hysteretic: E (1 + i eta).
+    damping_ratio : float
+        Viscous, of critical: the same in every mode of a uniform beam on pinned ends, by dashpots
+        2 zeta sqrt(E I m) per metre against its rotation.
+    mass_damping_per_s, stiffness_damping_s : float
+        Viscous, as Rayleigh's: c = alpha m + beta k, with alpha in 1/s and beta in s.
     intervals_m : sequence of (from, to), optional
         Where the beams lie; left out, the beam has no end on either side.
     ends : "free", "pinned" or "clamped", or one for each end
@@ -69,6 +74,9 @@ class Beam(Slender):
     area_m2: PositiveFloat
     shear_modulus_Pa: PositiveFloat | None = None
     shear_coefficient: PositiveFloat | None = None
+    damping_ratio: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
+    mass_damping_per_s: NonNegativeFloat = 0.0
+    stiffness_damping_s: NonNegativeFloat = 0.0
     rotation_law: str | tuple[str, str] = ""
     modes: int | None = Field(default=None, ge=1, le=10_000)
     changes: tuple[BeamChange, ...] = ()
@@ -89,6 +97,8 @@ class Beam(Slender):
                 raise fault("modes are for euler beams; the closed form of timoshenko needs none", "modes")
             if self.changes:
                 raise fault("modes are for uniform beams; the closed form needs none", "modes")
+            if self.is_viscous:
+                raise fault("modes are for a constant loss factor; the closed form needs none", "modes")
         for index, change in enumerate(self.changes):
             if self.theory == "euler" and change.shear_factor != 1.0:
                 raise fault("an euler beam has no shear stiffness", "changes", index, "shear_factor")
@@ -111,6 +121,11 @@ class Beam(Slender):
         """Law of the rotational spring at the left and the right end."""
         left, right = (self.rotation_law,) * 2 if isinstance(self.rotation_law, str) else self.rotation_law
         return left or None, right or None
+
+    @property
+    def is_viscous(self) -> bool:
+        """Whether a part of its loss is viscous."""
+        return (self.damping_ratio, self.mass_damping_per_s, self.stiffness_damping_s) != (0.0, 0.0, 0.0)
 
     @property
     def mass_kg_per_m(self) -> float:

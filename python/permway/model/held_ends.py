@@ -63,7 +63,7 @@ def held_ends(pairs: Sequence[tuple[Beam | Shaft, Segment]], laws: Sequence[str]
                 continue
             length = segment.stop - segment.start
             at = (segment.start, segment.stop)[side]
-            bending, shear, mass, rotary = section(body)
+            bending, shear, mass, rotary, _ = section(body)
             found.append(
                 HeldEnd(
                     beam=index,
@@ -71,7 +71,7 @@ def held_ends(pairs: Sequence[tuple[Beam | Shaft, Segment]], laws: Sequence[str]
                     at_m=at,
                     far_m=at + (2 * side - 1) * PIECE * length,
                     joint_N_per_m=JOINT * abs(bending) / length**3,
-                    section=(bending * STIFFER, shear * STIFFER, mass / STIFFER, rotary / STIFFER),
+                    section=(bending * STIFFER, shear * STIFFER, mass / STIFFER, rotary / STIFFER, (0.0,) * 4),
                     law=None if law is None else laws.index(law),
                 )
             )
@@ -134,7 +134,7 @@ def _stretches(held: Sequence[HeldEnd], stretches: Mapping[str, np.ndarray]) -> 
         "interval": reach,
         **{
             name: np.array([end.section[i] for end in held])
-            for i, name in enumerate(("bending", "shear", "mass", "rotary"))
+            for i, name in enumerate(("bending", "shear", "mass", "rotary", "dashpots"))
         },
     }
     joined = {

@@ -141,6 +141,12 @@ def _rolled(name: str, body: AnyBody, roll: Roll, arm_m: float) -> AnyBody:
                 where=f"bodies.{name}.changes",
                 remedy="give changes with torsion_factor, 1 where torsion is the same",
             )
+        if body.is_viscous:
+            raise InputError(
+                "a beam that twists has a constant loss factor",
+                where=f"bodies.{name}",
+                remedy="give loss_factor, which is twice the damping ratio at resonance",
+            )
         return Shaft(
             shear_modulus_Pa=how.shear_modulus_Pa,
             torsion_constant_m4=how.torsion_constant_m4,

@@ -245,5 +245,5 @@ def _section(
         notes.append(f"{name} is taken as continuous over its {len(reaches)} pieces")
     if body.changes:
         notes.append(f"changes of the section of {name} are left out")
-    bending, shear, mass, rotary = section(body)
+    bending, shear, mass, rotary, _ = section(body)
     return bending.real, shear.real, mass, rotary

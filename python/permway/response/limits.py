@@ -100,14 +100,16 @@ def check_elements(line: Line, table: JointTable, places_m: Reals, highest_Hz: f
 def _steepest(beam: Beam | Shaft, omega: np.float64) -> float:
     """A bound on the modulus of the exponents of a body's waves, 1/m, in any of its sections."""
     bound = 0.0
-    for bending, shear, mass, rotary in sections(beam):
+    for bending, shear, mass, rotary, dashpots in sections(beam):
         if bending == 0.0:
             bound = max(bound, float(omega * np.sqrt(mass / abs(shear))))
             continue
         # On both roots of z^2 - s z + p = 0, the squared exponents.
-        compliance = np.complex128(1.0 / shear if shear else 0.0)
-        flexibility = 1.0 / np.complex128(bending)
-        s = abs(rotary * omega**2 * flexibility + compliance * mass * omega**2)
-        p = abs(mass * omega**2 * flexibility * (compliance * rotary * omega**2 - 1.0))
+        viscous = 1j * omega * np.array(dashpots)
+        compliance = np.complex128(1.0 / (shear + viscous[1]) if shear else 0.0)
+        flexibility = 1.0 / np.complex128(bending + viscous[0])
+        inertia, turning = mass * omega**2 - viscous[2], rotary * omega**2 - viscous[3]
+        s = abs(turning * flexibility + compliance * inertia)
+        p = abs(inertia * flexibility * (compliance * turning - 1.0))
         bound = max(bound, float(np.sqrt(s + np.sqrt(p))))
     return bound

@@ -21,6 +21,8 @@ pub struct Beams<'py> {
     mass: PyReadonlyArray1<'py, f64>,
     #[pyo3(item("rotary"))]
     rotary: PyReadonlyArray1<'py, f64>,
+    #[pyo3(item("dashpots"))]
+    dashpots: PyReadonlyArray2<'py, f64>,
     #[pyo3(item("interval"))]
     interval: PyReadonlyArray2<'py, f64>,
     #[pyo3(item("pinned"))]
@@ -44,6 +46,8 @@ pub struct Stretches<'py> {
     mass: PyReadonlyArray1<'py, f64>,
     #[pyo3(item("rotary"))]
     rotary: PyReadonlyArray1<'py, f64>,
+    #[pyo3(item("dashpots"))]
+    dashpots: PyReadonlyArray2<'py, f64>,
     #[pyo3(item("interval"))]
     interval: PyReadonlyArray2<'py, f64>,
 }
@@ -190,6 +194,7 @@ fn index_or_none(value: i64, what: &str, none: &str) -> PyResult<Option<usize>> 
 fn slender(
     [bending, shear]: [Complex<f64>; 2],
     [mass, rotary]: [f64; 2],
+    dashpots: [f64; 4],
     interval: [f64; 2],
     ends: [End; 2],
     modes: Option<usize>,
@@ -198,7 +203,7 @@ fn slender(
         return Body::Shaft(Shaft { stiffness: shear, mass, interval, ends });
     }
     let shear = (shear != Complex::ZERO).then_some(shear);
-    Body::Beam(Beam { bending, shear, mass, rotary, interval, ends, modes })
+    Body::Beam(Beam { bending, shear, mass, rotary, dashpots, interval, ends, modes })
 }
 
 /// Lengths of other sections.
@@ -206,16 +211,19 @@ fn stretches(table: &Stretches<'_>) -> PyResult<Vec<Stretch>> {
     let (body, interval) = (table.body.as_array(), table.interval.as_array());
     let (bending, shear) = (table.bending.as_array(), table.shear.as_array());
     let (mass, rotary) = (table.mass.as_array(), table.rotary.as_array());
-    let lengths = [body.len(), bending.len(), shear.len(), mass.len(), rotary.len(), interval.nrows()];
+    let dashpots = table.dashpots.as_array();
+    let lengths =
+        [body.len(), bending.len(), shear.len(), mass.len(), rotary.len(), dashpots.nrows(), interval.nrows()];
     let n = same_length("stretches", &lengths)?;
-    if n > 0 && interval.ncols() != 2 {
-        return Err(TablesError::new_err("stretches: interval has two columns"));
+    if n > 0 && (interval.ncols() != 2 || dashpots.ncols() != 4) {
+        return Err(TablesError::new_err("stretches: interval has two columns, dashpots four"));
     }
     (0..n)
         .map(|i| {
             let section = slender(
                 [bending[i], shear[i]],
                 [mass[i], rotary[i]],
+                std::array::from_fn(|k| dashpots[[i, k]]),
                 [interval[[i, 0]], interval[[i, 1]]],
                 [End::Free; 2],
                 None,
@@ -235,11 +243,11 @@ pub fn line(
     let (bending, shear) = (beams.bending.as_array(), beams.shear.as_array());
     let (mass, rotary) = (beams.mass.as_array(), beams.rotary.as_array());
     let (interval, pinned, modes) = (beams.interval.as_array(), beams.pinned.as_array(), beams.modes.as_array());
-    let lengths =
-        [bending.len(), shear.len(), mass.len(), rotary.len(), interval.nrows(), pinned.nrows(), modes.len()];
-    let n = same_length("beams", &lengths)?;
-    if n > 0 && (interval.ncols() != 2 || pinned.ncols() != 2) {
-        return Err(TablesError::new_err("beams: interval and pinned have two columns"));
+    let dashpots = beams.dashpots.as_array();
+    let of_sections = [bending.len(), shear.len(), mass.len(), rotary.len(), dashpots.nrows()];
+    let n = same_length("beams", &[&of_sections[..], &[interval.nrows(), pinned.nrows(), modes.len()]].concat())?;
+    if n > 0 && (interval.ncols() != 2 || pinned.ncols() != 2 || dashpots.ncols() != 4) {
+        return Err(TablesError::new_err("beams: interval and pinned have two columns, dashpots four"));
     }
     if modes.iter().any(|m| !(0..=MOST_MODES).contains(m)) {
         return Err(TablesError::new_err(format!("beams: a number of modes must be 0 to {MOST_MODES}")));
@@ -250,6 +258,7 @@ pub fn line(
         bodies.push(slender(
             [bending[i], shear[i]],
             [mass[i], rotary[i]],
+            std::array::from_fn(|k| dashpots[[i, k]]),
             [interval[[i, 0]], interval[[i, 1]]],
             [end(pinned[[i, 0]]), end(pinned[[i, 1]])],
             usize::try_from(modes[i]).ok().filter(|m| *m > 0),

@@ -79,8 +79,8 @@ impl Transfer<c64> {
         let section = Section {
             flexibility: w.bending.inv(),
             shear_compliance: w.shear_compliance,
-            mu: c64::new(w.mu, 0.0),
-            rotary: c64::new(w.rotary, 0.0),
+            mu: w.mu,
+            rotary: w.rotary,
         };
         Self::over(&section, l, terms(w.steepest() * l))
     }
@@ -136,6 +136,7 @@ mod tests {
             shear: shear.then_some(c64::new(2.5e8, 2.5e6)),
             mass: 60.2,
             rotary: if shear { 0.24 } else { 0.0 },
+            dashpots: [0.0; 4],
             interval: [0.0, 1.0],
             ends: [End::Free; 2],
             modes: None,

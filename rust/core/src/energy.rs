@@ -144,8 +144,8 @@ mod tests {
         let base = Waves {
             bending: c64::new(6.4e6, 6.4e4),
             shear_compliance: c64::new(4e-9, -1e-10),
-            mu: 60.0 * 1.6e7,
-            rotary: 0.24 * 1.6e7,
+            mu: c64::new(60.0 * 1.6e7, 0.0),
+            rotary: c64::new(0.24 * 1.6e7, 0.0),
         };
         for left in [false, true] {
             let exact = over_half_infinite(&base, left).unwrap();
@@ -159,8 +159,7 @@ mod tests {
                 }
                 w.half_infinite(left).unwrap()
             };
-            let size =
-                [base.bending.inv(), base.shear_compliance, c64::new(base.mu, 0.0), c64::new(base.rotary, 0.0)];
+            let size = [base.bending.inv(), base.shear_compliance, base.mu, base.rotary];
             for (p, exact) in exact.iter().enumerate() {
                 let (up, down) = (moved(p, 1e-5), moved(p, -1e-5));
                 for (k, exact) in exact.iter().flatten().enumerate() {

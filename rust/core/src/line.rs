@@ -22,12 +22,28 @@ pub struct Beam {
     pub mass: f64,
     /// Rotary inertia per length rho I, kg m; 0 for an Euler-Bernoulli beam.
     pub rotary: f64,
+    /// Viscous losses beside each of the four, as force or moment per velocity: of bending, N m2 s; of shear, N s; per
+    /// length against the motion, N s/m2; per length against the rotation, N s.
+    pub dashpots: [f64; 4],
     /// First and last coordinate in m; infinite for a beam without end.
     pub interval: [f64; 2],
     /// What holds the two ends; of no meaning for an infinite one.
     pub ends: [End; 2],
     /// Number of modes for the receptance formulation; `None` for the closed form.
     pub modes: Option<usize>,
+}
+
+/// What of a beam's section stands in its equations at one frequency: stiffness and inertia with their viscous losses.
+#[derive(Debug, Clone, Copy)]
+pub struct Properties {
+    /// Bending stiffness, N m2.
+    pub bending: c64,
+    /// Shear stiffness, N; `None` for an Euler-Bernoulli beam.
+    pub shear: Option<c64>,
+    /// Mass per length, kg/m.
+    pub mass: c64,
+    /// Rotary inertia per length, kg m.
+    pub rotary: c64,
 }
 
 /// A uniform body along the line whose places move up and down as it shears or twists: `S w'' = -f`, no bending.
@@ -176,10 +192,28 @@ impl Beam {
         if self.modes.is_some() && (self.shear.is_some() || !self.is_finite()) {
             return bad("modes are for finite Euler-Bernoulli beams");
         }
+        if self.dashpots.iter().any(|d| !(d.is_finite() && *d >= 0.0)) {
+            return bad("viscous losses must not be negative");
+        }
+        if self.modes.is_some() && self.dashpots != [0.0; 4] {
+            return bad("modes are for beams without viscous losses");
+        }
         if self.shear.is_none() && self.rotary != 0.0 {
             return bad("rotary inertia needs a shear stiffness");
         }
         Ok(())
+    }
+
+    /// The section at angular frequency `omega`, rad/s.
+    pub fn at(&self, omega: f64) -> Properties {
+        let [bending, shear, motion, rotation] = self.dashpots;
+        Properties {
+            bending: self.bending + c64::new(0.0, omega * bending),
+            shear: self.shear.map(|s| s + c64::new(0.0, omega * shear)),
+            // A dashpot's force i omega c w is that of the mass -i c / omega.
+            mass: c64::new(self.mass, -motion / omega),
+            rotary: c64::new(self.rotary, -rotation / omega),
+        }
     }
 
     /// Whether both ends are at a finite place.

@@ -122,6 +122,7 @@ mod tests {
             shear: None,
             mass: 600.0,
             rotary: 0.0,
+            dashpots: [0.0; 4],
             interval: [2.0, 10.0],
             ends,
             modes: None,

@@ -291,6 +291,7 @@ mod tests {
             shear: Some(c64::new(2e9, 2e7)),
             mass: 600.0,
             rotary: 40.0,
+            dashpots: [0.0; 4],
             interval,
             ends,
             modes: None,

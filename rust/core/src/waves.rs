@@ -19,19 +19,20 @@ pub struct Waves {
     /// Shear compliance 1/S, 1/N.
     pub shear_compliance: c64,
     /// `rho A omega^2`, N/m2.
-    pub mu: f64,
+    pub mu: c64,
     /// `rho I omega^2`, N.
-    pub rotary: f64,
+    pub rotary: c64,
 }
 
 impl Waves {
     /// The beam at angular frequency `omega`, rad/s.
     pub fn new(beam: &Beam, omega: f64) -> Self {
+        let section = beam.at(omega);
         Self {
-            bending: beam.bending,
-            shear_compliance: beam.shear.map_or(c64::ZERO, |s| s.inv()),
-            mu: beam.mass * omega * omega,
-            rotary: beam.rotary * omega * omega,
+            bending: section.bending,
+            shear_compliance: section.shear.map_or(c64::ZERO, |s| s.inv()),
+            mu: section.mass * (omega * omega),
+            rotary: section.rotary * (omega * omega),
         }
     }
 
@@ -94,6 +95,7 @@ mod tests {
             shear: Some(c64::new(0.4 * 81e9 * 76.7e-4, 0.0)),
             mass: 7850.0 * 76.7e-4,
             rotary: 7850.0 * 3038.3e-8,
+            dashpots: [0.0; 4],
             interval: [f64::NEG_INFINITY, f64::INFINITY],
             ends: [End::Free; 2],
             modes: None,

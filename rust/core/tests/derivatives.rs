@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{irregular, laws, points, varied as line};
+use common::{irregular, laws, points, varied as line, viscous};
 use permway_core::{
     c64,
     line::{Body, Joint, Line, Point},
@@ -103,8 +103,17 @@ fn derivatives_by_joints_are_those_of_differences() {
 
 #[test]
 fn derivatives_by_bodies_are_those_of_differences() {
-    let line = line();
-    let answer = derived(&line);
+    derivatives_by_the_bodies_of(&line());
+}
+
+/// Viscous losses stay what they are when stiffness and mass change.
+#[test]
+fn derivatives_by_bodies_with_viscous_losses_are_those_of_differences() {
+    derivatives_by_the_bodies_of(&viscous());
+}
+
+fn derivatives_by_the_bodies_of(line: &Line) {
+    let answer = derived(line);
     let mut parameter = line.joints.len();
     for (i, body) in line.bodies.iter().enumerate() {
         match *body {
@@ -115,14 +124,14 @@ fn derivatives_by_bodies_are_those_of_differences() {
                             if p == 1 { s.stiffness += size * h } else { s.mass += size * h }
                         }
                     };
-                    let found = worst(&line, &answer, parameter + p, change, size);
+                    let found = worst(line, &answer, parameter + p, change, size);
                     assert!(found < 2e-7, "shaft, property {p}: {found}");
                 }
                 parameter += 4;
             }
             Body::Mass(m) => {
                 let change = |line: &mut Line, h: f64| line.bodies[i] = Body::Mass(m * (1.0 + h));
-                let found = worst(&line, &answer, parameter, change, m);
+                let found = worst(line, &answer, parameter, change, m);
                 assert!(found < 2e-7, "mass: {found}");
                 parameter += 1;
             }
@@ -145,7 +154,7 @@ fn derivatives_by_bodies_are_those_of_differences() {
                             change(&mut stretch.section, if p < 2 { common::WEAK } else { 1.0 });
                         }
                     };
-                    let found = worst(&line, &answer, parameter + p, change, size);
+                    let found = worst(line, &answer, parameter + p, change, size);
                     assert!(found < 2e-7, "beam {i}, property {p}: {found}");
                 }
                 parameter += 4;

@@ -118,6 +118,16 @@ impl<'a> Draw<'a> {
         Ok(c64::new(real, real * self.logarithmic(0.005, 1.0)?))
     }
 
+    /// Viscous losses from next to nothing to those of critical damping at some 10 Hz.
+    fn dashpots(&mut self) -> Result<[f64; 4]> {
+        Ok([
+            self.logarithmic(1.0, 1e9)?,
+            self.logarithmic(1.0, 1e7)?,
+            self.logarithmic(1.0, 1e6)?,
+            self.logarithmic(1.0, 1e6)?,
+        ])
+    }
+
     /// A place on a grid of 0.25 m, or beside it by next to nothing.
     fn place(&mut self) -> Result<f64> {
         if self.absurd && self.bytes.ratio(1, 12)? {
@@ -157,6 +167,7 @@ impl<'a> Draw<'a> {
                     shear: if timoshenko { Some(self.lossy(1e7, 1e11)?) } else { None },
                     mass: self.logarithmic(10.0, 2e4)?,
                     rotary: if timoshenko { self.logarithmic(1e-2, 1e4)? } else { 0.0 },
+                    dashpots: if modes || self.flag()? { [0.0; 4] } else { self.dashpots()? },
                     interval,
                     ends: [self.end()?, self.end()?],
                     modes: if modes { Some(self.bytes.int_in_range(0..=40)?) } else { None },

@@ -38,6 +38,7 @@ FOUND_ON: dict[str, tuple[str, ...]] = {
     "baseplate_mass": ("viaduct", "two spans", "ballast"),
     "slab_joints": ("viaduct", "two spans"),
     "layer_damping": ("viaduct", "two spans", "ballast", "bed"),
+    "beam_damping": ("viaduct", "two spans"),
     "pier_soil": ("viaduct", "two spans"),
     "support_gradient": ("viaduct", "two spans", "ballast", "bed"),
     "support_scatter": ("viaduct", "two spans", "ballast", "bed"),
@@ -104,7 +105,7 @@ INJECTED: dict[str, tuple[str, list[Values], dict[str, float]]] = {
     "girder_shear": ("viaduct", strengths("turning", 0.3, 0.7, 1.5, shear=2.0), {}),
     "deck_attachment": (
         "viaduct",
-        strengths("mass_kg", 150.0, 500.0, 1500.0, x_m=5.0, frequency_Hz=25.0, loss_factor=0.05),
+        strengths("mass_kg", 150.0, 500.0, 1500.0, x_m=5.0, frequency_Hz=25.0, loss_factor=0.05, dashpot=0.0),
         {"mass_kg": 0.2, "frequency_Hz": 0.03, "x_m": 0.7},
     ),
     "ballast_frequency": (
@@ -118,6 +119,7 @@ INJECTED: dict[str, tuple[str, list[Values], dict[str, float]]] = {
         {"spacing_m": 0.02},
     ),
     "layer_damping": ("viaduct", strengths("share", 0.1, 0.4, 0.9, equal_at_Hz=60.0), {}),
+    "beam_damping": ("viaduct", strengths("share", 0.1, 0.4, 0.9), {}),
     "support_scatter": (
         "viaduct",
         strengths("wave2", -0.1, -0.2, -0.4, wave1=0.05, wave3=0.05, wave4=0.1),

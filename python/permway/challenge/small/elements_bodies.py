@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -76,6 +77,32 @@ def crack(random: np.random.Generator, layout: Layout, place_m: float) -> Concea
 
     at = sized(values, "factor", 1.0)
     return made("girder_crack", "girder", apply, at, {"body": body, "x_m": [low, high]})
+
+
+def beam_loss(random: np.random.Generator, layout: Layout, _: float) -> Concealed | None:
+    """A share of a beam's loss is viscous: with one damping ratio in all modes, or as Rayleigh's by one term."""
+    bodies = [name for name in (GIRDER.get(layout.name), "slab" if layout.name == "slab" else None) if name]
+    if not bodies:
+        return None
+    body = bodies[int(random.integers(len(bodies)))]
+    kind = str(random.choice(["ratio", "mass", "stiffness"], p=[0.5, 0.25, 0.25]))
+    omega = 2.0 * np.pi * log_between(random, 8.0, 60.0)
+
+    def apply(line: Line, at: Mapping[str, float]) -> None:
+        assert line.track is not None
+        beam = line.track.beams[AS[body]]
+        section, given = beam.section, at["share"] * beam.section.loss
+        turning = given * (section.bending * section.mass) ** 0.5
+        terms = {
+            "mass": (given * omega, 0.0, 0.0),
+            "stiffness": (0.0, given / omega, 0.0),
+            "ratio": (0.0, 0.0, turning),
+        }
+        rest = replace(section, loss=section.loss - given)
+        line.track.beams[AS[body]] = replace(beam, section=rest, viscous=terms[kind])
+
+    at = sized({"share": float(random.uniform(0.5, 1.0))}, "share", 0.0)
+    return made("beam_damping", "damping law", apply, at, {"body": body})
 
 
 def local_modes(random: np.random.Generator, layout: Layout, _: float) -> Concealed | None:

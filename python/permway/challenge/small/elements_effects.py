@@ -18,6 +18,7 @@ PATH: dict[str, Draw] = {
     "rail_absorber": bodies.absorber,
     "baseplate_mass": layers.baseplate,
     "deck_attachment": bodies.attachment,
+    "beam_damping": bodies.beam_loss,
     "girder_crack": bodies.crack,
     "bearing_stiffness": layers.one_bearing,
     "pier_soil": layers.pier,

@@ -11,7 +11,7 @@ import numpy as np
 from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
 from permway.errors import InputError
-from permway.laws import Hysteretic, Measured, Series, StorageLossPair
+from permway.laws import AnyLaw, Hysteretic, KelvinVoigt, Measured, Parallel, Series, StorageLossPair
 from permway.laws.base import Law
 from permway.model.changes import Change
 from permway.model.joints import Joints
@@ -105,7 +105,7 @@ def with_chain(campaign: Campaign, sensor: str, chain: Chain) -> Campaign:
     return replace(campaign, stated=changed)
 
 
-def attached_mass(mass_kg: float, frequency_Hz: float, loss_factor: float) -> Law:
+def attached_mass(mass_kg: float, frequency_Hz: float, loss_factor: float, dashpot: float = 0.0) -> Law:
     """What a mass on a spring answers where it hangs: a joint to the ground of this law is the resonator.
 
     Parameters
@@ -115,9 +115,16 @@ def attached_mass(mass_kg: float, frequency_Hz: float, loss_factor: float) -> La
     frequency_Hz : float
         Of the mass on its spring, what it hangs on held.
     loss_factor : float
-        Of the spring.
+        Of the spring at that frequency.
+    dashpot : float
+        Share of the loss that is a dashpot's, and so grows with frequency.
     """
-    spring = Hysteretic(stiffness=max(mass_kg, 1e-9) * (2.0 * np.pi * frequency_Hz) ** 2, loss_factor=loss_factor)
+    omega = 2.0 * np.pi * frequency_Hz
+    stiffness = max(mass_kg, 1e-9) * omega**2
+    spring: AnyLaw = Hysteretic(stiffness=stiffness, loss_factor=(1.0 - dashpot) * loss_factor)
+    if dashpot:
+        beside = KelvinVoigt(stiffness=0.0, damping=dashpot * loss_factor * stiffness / omega)
+        spring = Parallel(first=spring, second=beside)
     return Series(first=spring, second=fixed_mass(mass_kg))
 
 

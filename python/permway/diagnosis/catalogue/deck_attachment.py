@@ -15,12 +15,13 @@ from permway.model.joints import GROUND, Joints
 ID = "deck_attachment"
 DOMAIN: Domain = "path"
 FAMILY = "resonator"
-SUMMARY = "A mass m on a spring of loss factor eta, resonant at f0, attached to the girder at x."
+SUMMARY = "A mass m on a spring of loss factor eta at its resonance f0, attached to the girder at x."
 PARAMETERS = {
     "x_m": "m: where it stands",
     "mass_kg": "kg, 100 to 30000",
     "frequency_Hz": "Hz, 2 to 300: of the mass on its spring, the girder held",
-    "loss_factor": "1, 0.005 to 0.5",
+    "loss_factor": "1, 0.005 to 0.5: at that frequency; of a dashpot twice its damping ratio",
+    "dashpot": "1, 0 to 1: share of the loss that is a dashpot's, which grows with frequency",
 }
 SIGNATURE = "A dip and a peak in all responses of the deck around one frequency that no speed and no load moves."
 CONFUSED_WITH = {
@@ -48,10 +49,11 @@ def resonators(situation: Situation, body: str, entry: str) -> Iterator[Hypothes
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         law = fresh("attachment", campaign.model.line.laws)
+        hung = attached_mass(*(values[key] for key in ("mass_kg", "frequency_Hz", "loss_factor", "dashpot")))
         return with_joints(
             campaign,
             Joints(between=(name, GROUND), law=law, at=(values["x_m"],)),
-            laws={law: attached_mass(values["mass_kg"], values["frequency_Hz"], values["loss_factor"])},
+            laws={law: hung},
         )
 
     # The likeliest first.
@@ -65,10 +67,11 @@ def resonators(situation: Situation, body: str, entry: str) -> Iterator[Hypothes
             log_free("mass_kg", "kg", 2000.0, 2.5),
             log_free("frequency_Hz", "Hz", 25.0, 2.5),
             log_free("loss_factor", "1", 0.05, 2.0),
+            linear_free("dashpot", "1", 0.5, 0.5, 0.0, 1.0),
         ),
         amend=amend,
         locate=lambda v: Where(what=name, x_m=(v["x_m"], v["x_m"])),
-        starts=tuple((0.0, 0.0, z, 0.3) for z in octaves),
+        starts=tuple((0.0, 0.0, z, 0.3, 0.0) for z in octaves),
         law=lambda v: (
             f"{v['mass_kg']:.3g} kg on a spring, {v['frequency_Hz']:.3g} Hz, loss factor {v['loss_factor']:.2g}"
         ),

@@ -145,11 +145,17 @@ def bays(line: Line, body: str, from_m: float, to_m: float) -> Bays:
     Raises
     ------
     InputError
-        If the body is no beam.
+        If the body is no beam, or its loss is viscous.
     """
     beam = line.bodies.get(body)
     if not isinstance(beam, Beam):
         raise InputError("wheels roll on beams", where="body", value=body, remedy="name a beam of the line")
+    if beam.is_viscous:
+        raise InputError(
+            "wheels roll on beams of a constant loss factor",
+            where=f"line.bodies.{body}",
+            remedy="give loss_factor, which is twice the damping ratio at resonance",
+        )
     table, mine = line.joint_table(), [i for i, s in enumerate(line.segments()) if s.body == body]
     held = table.x[np.isin(table.upper, mine) | np.isin(table.lower, mine)]
     changes = [x for change in beam.changes for x in (change.from_m, change.to_m)]

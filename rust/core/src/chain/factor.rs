@@ -158,7 +158,7 @@ impl<F: Fuse> Factor<F> {
     #[inline(always)]
     fn transfer(&mut self, line: &Line, p: &Piece) {
         self.transfers[p.slot] = match line.section(p.body, p.stretch) {
-            Body::Beam(beam) => Transfer::over(&section(beam, &self.omega2), p.length, p.terms),
+            Body::Beam(beam) => Transfer::over(&section(beam, &self.frequencies), p.length, p.terms),
             Body::Shaft(shaft) => shaft_transfer(shaft, &self.omega2, p.length, p.terms),
             Body::Mass(_) => return,
         };
@@ -413,16 +413,33 @@ fn plus<F: Fuse>(a: &M2<Lanes<F>>, b: &M2<Lanes<F>>, z: &M2<Lanes<F>>) -> M2<Lan
     ]
 }
 
-/// A beam's section at squared angular frequencies.
+/// A beam's section at some frequencies, Hz.
 #[inline(always)]
-pub fn section<F: Fuse>(beam: &Beam, omega2: &[f64; LANES]) -> Section<Lanes<F>> {
+pub fn section<F: Fuse>(beam: &Beam, frequencies: &[f64; LANES]) -> Section<Lanes<F>> {
+    let omega = frequencies.map(|f| std::f64::consts::TAU * f);
+    if beam.dashpots != [0.0; 4] {
+        return lossy(beam, &omega);
+    }
     let (flexibility, shear) = (beam.bending.inv(), beam.shear.map_or(c64::ZERO, |s| s.inv()));
-    let real = |scale: f64| Lanes::new(omega2.map(|o| o * scale), [0.0; LANES]);
+    let real = |scale: f64| Lanes::new(omega.map(|o| o * o * scale), [0.0; LANES]);
     Section {
         flexibility: Lanes::new([flexibility.re; LANES], [flexibility.im; LANES]),
         shear_compliance: Lanes::new([shear.re; LANES], [shear.im; LANES]),
         mu: real(beam.mass),
         rotary: real(beam.rotary),
+    }
+}
+
+/// The same with viscous losses, which none of the numbers is real with.
+#[inline(never)]
+fn lossy<F: Fuse>(beam: &Beam, omega: &[f64; LANES]) -> Section<Lanes<F>> {
+    let at = omega.map(|o| Waves::new(beam, o));
+    let lanes = |of: fn(&Waves) -> c64| Lanes::new(at.map(|w| of(&w).re), at.map(|w| of(&w).im));
+    Section {
+        flexibility: lanes(|w| w.bending.inv()),
+        shear_compliance: lanes(|w| w.shear_compliance),
+        mu: lanes(|w| w.mu),
+        rotary: lanes(|w| w.rotary),
     }
 }
 

@@ -80,7 +80,8 @@ impl<F: Fuse> Sums<F> {
     }
 }
 
-/// Bending stiffness, shear stiffness, mass and rotary inertia of a section; 0 for what it has not.
+/// Bending stiffness, shear stiffness, mass and rotary inertia of a section; 0 for what it has not. Without viscous losses,
+/// which stay what they are when these change.
 fn properties(body: &Body) -> [c64; OF_A_BEAM] {
     let real = |v| c64::new(v, 0.0);
     match body {
@@ -99,22 +100,22 @@ fn share(here: &Body, base: &Body, property: usize) -> c64 {
 /// The integrals over a piece by the properties of its body. One frequency at a time, and once for all kinds of processor:
 /// where spacings are alike pieces are few, and the code is long.
 #[inline(never)]
-fn over_piece(here: &Body, base: &Body, omega2: f64, length: f64, terms: usize) -> [M4<c64>; OF_A_BEAM] {
-    let mu = |mass: f64| c64::new(omega2 * mass, 0.0);
+fn over_piece(here: &Body, base: &Body, omega: f64, length: f64, terms: usize) -> [M4<c64>; OF_A_BEAM] {
     let mut n = match here {
         Body::Beam(b) => {
+            let waves = Waves::new(b, omega);
             let section = Section {
-                flexibility: b.bending.inv(),
-                shear_compliance: b.shear.map_or(c64::ZERO, |s| s.inv()),
-                mu: mu(b.mass),
-                rotary: mu(b.rotary),
+                flexibility: waves.bending.inv(),
+                shear_compliance: waves.shear_compliance,
+                mu: waves.mu,
+                rotary: waves.rotary,
             };
             over_length(&section, length, terms)
         }
-        Body::Shaft(s) => over_shaft(s.stiffness.inv(), mu(s.mass), length, terms),
+        Body::Shaft(s) => over_shaft(s.stiffness.inv(), c64::new(omega * omega * s.mass, 0.0), length, terms),
         Body::Mass(_) => [[[c64::ZERO; 4]; 4]; OF_A_BEAM],
     };
-    for (k, (matrix, slope)) in n.iter_mut().zip(chain_rule(here, omega2)).enumerate() {
+    for (k, (matrix, slope)) in n.iter_mut().zip(chain_rule(here, omega)).enumerate() {
         let by = slope * share(here, base, k);
         matrix.iter_mut().flatten().for_each(|v| *v *= by);
     }
@@ -131,8 +132,13 @@ fn fill<F: Fuse>(n: &mut [M4<Lanes<F>>; OF_A_BEAM], lane: usize, from: &[M4<c64>
 }
 
 /// From the parameters of the integrals (1/B, 1/S, mu, J) to those of a section (B, S, mass, rotary).
-fn chain_rule(body: &Body, omega2: f64) -> [c64; OF_A_BEAM] {
-    let [bending, shear, ..] = properties(body);
+fn chain_rule(body: &Body, omega: f64) -> [c64; OF_A_BEAM] {
+    let (bending, shear) = match body {
+        Body::Beam(b) => (b.at(omega).bending, b.at(omega).shear.unwrap_or(c64::ZERO)),
+        Body::Shaft(s) => (c64::ZERO, s.stiffness),
+        Body::Mass(_) => (c64::ZERO, c64::ZERO),
+    };
+    let omega2 = omega * omega;
     let stiff = |k: c64| if k == c64::ZERO { k } else { -(k * k).inv() };
     [stiff(bending), stiff(shear), c64::new(omega2, 0.0), c64::new(omega2, 0.0)]
 }
@@ -166,8 +172,9 @@ impl<'o, F: Fuse> Gradient<'_, 'o, F> {
     fn integrate(&mut self, p: &Piece) {
         let (here, base) = (self.line.section(p.body, p.stretch), &self.line.bodies[p.body]);
         let of_piece = &mut self.sums.pieces[p.slot];
-        for (lane, squared) in self.omega2.iter().enumerate() {
-            fill(of_piece, lane, &over_piece(here, base, *squared, p.length, p.terms));
+        for (lane, frequency) in self.frequencies.iter().enumerate() {
+            let omega = std::f64::consts::TAU * frequency;
+            fill(of_piece, lane, &over_piece(here, base, omega, p.length, p.terms));
         }
     }
 
@@ -284,7 +291,7 @@ impl<F: Fuse> Watch<F> for Gradient<'_, '_, F> {
             };
             // Where its waves merge the march itself has failed and said so.
             let Some(parts) = parts else { continue };
-            let slopes = chain_rule(whole, self.omega2[i]);
+            let slopes = chain_rule(whole, omega);
             for (m, (part, slope)) in matrices.iter_mut().zip(parts.iter().zip(slopes)) {
                 for k in 0..4 {
                     let v = part[k / 2][k % 2] * slope;

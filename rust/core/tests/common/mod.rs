@@ -13,6 +13,7 @@ pub fn beam(bending: f64, shear: Option<f64>, mass: f64, interval: [f64; 2], end
         shear: shear.map(|s| loss * s),
         mass,
         rotary: if shear.is_some() { 0.25 } else { 0.0 },
+        dashpots: [0.0; 4],
         interval,
         ends: [end; 2],
         modes: None,
@@ -72,6 +73,22 @@ pub fn varied() -> Line {
         let x = 1.3 * f64::from(i);
         line.joints.push(Joint { x, a: 0, b: Some(4), law: 0, scale: 0.2 });
         line.joints.push(Joint { x, a: 4, b: None, law: 0, scale: 0.1 });
+    }
+    line
+}
+
+/// The same with viscous losses beside the others, of their size at some 10 Hz to some 200 Hz.
+pub fn viscous() -> Line {
+    let mut line = varied();
+    let dashpots = |b: &Beam| {
+        let shear = b.shear.map_or(0.0, |s| s.re);
+        [2e-4 * b.bending.re, 3e-4 * shear, 2.0 * b.mass, 0.01 * b.mass]
+    };
+    let beams = line.bodies.iter_mut().chain(line.stretches.iter_mut().map(|s| &mut s.section));
+    for body in beams {
+        if let Body::Beam(b) = body {
+            b.dashpots = dashpots(b);
+        }
     }
     line
 }
