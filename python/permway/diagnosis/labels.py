@@ -13,7 +13,7 @@ from scipy.optimize import linear_sum_assignment
 
 from permway.arrays import Complexes, Reals
 from permway.diagnosis.blocks_frf import FrfBlock
-from permway.diagnosis.fit import Fit
+from permway.diagnosis.observations import Observations
 
 BETTER = 0.25
 """Share of the misfit of the labels given that other labels must come below: a model that lacks physics makes rows
@@ -48,16 +48,10 @@ class Mislabelled:
     channels: tuple[str, ...]
 
 
-def mislabelled(fit: Fit) -> Mislabelled | None:
-    """The first record whose labels are wrong.
-
-    Parameters
-    ----------
-    fit : Fit
-        With the nominal values: a recalibration would bend them towards wrong labels.
-    """
-    predicted = fit.observations.predicted(fit.observations.campaign).datasets
-    for block, prediction in zip(fit.observations.blocks, predicted, strict=True):
+def mislabelled(observations: Observations) -> Mislabelled | None:
+    """The first record whose labels are wrong, by the stated values: recalibrated ones would bend towards them."""
+    predicted = observations.predicted(observations.campaign).datasets
+    for block, prediction in zip(observations.blocks, predicted, strict=True):
         if isinstance(block, FrfBlock):
             found = _exchanged(block, prediction["frf"].values) or _reversed(block, prediction["frf"].values)
             if found is not None:

@@ -79,6 +79,11 @@ class Member:
         """Entries of the catalogue, in alphabetical order."""
         return tuple(sorted(a.entry for a in self.amendments))
 
+    @property
+    def last(self) -> Cell:
+        """Its last amendment as it is fitted."""
+        return Cell(self.amendments[-1], self.fit.z[self.own(len(self.amendments) - 1)], self.log_priors[-1])
+
     def own(self, index: int) -> slice:
         """Where the parameters of one amendment stand among all."""
         counts = [len(a.free) for a in self.amendments]

@@ -29,10 +29,10 @@ from permway.posterior.beam import Member
 from permway.posterior.covariance import Frame
 from permway.posterior.detectable import detectable
 from permway.posterior.fit import Fit, Fitter
-from permway.posterior.held_out import Gain, gains
+from permway.posterior.held_out import gains
 from permway.posterior.masses import Masses
 from permway.posterior.places import weighed
-from permway.posterior.search import explored
+from permway.posterior.search import explored, unsearched
 
 ENOUGH = 20_000
 """Residuals that are weighed: of more, frequency responses are taken at fewer lines. Further ones show little that
@@ -74,14 +74,19 @@ def diagnose(
     kept, left_out, bad = predictable(campaign)
     whole = gather(campaign, kept, threads=threads)
     frame = Frame.of(_enough(campaign, kept, whole))
-    search = explored(Fitter(frame), ruled_out=ruled_out, progress=clock)
+    mixed = mislabelled(frame.observations)
+    search = unsearched(frame) if mixed else explored(Fitter(frame), ruled_out=ruled_out, progress=clock)
     masses = Masses.of(search.members)
     base = as_base(masses.empty.fit)
     clock("hold out")
     best, empty = masses.best, masses.empty
     held_out = gains(empty.fit, best.fit) if best.amendments else []
     after = as_base(best.fit) if best.amendments else base
-    verdict = _verdict(masses, held_out, base, after)
+    if mixed is not None:
+        verdict = mixed_up(base, mixed)
+    else:
+        moved = with_moved(recalibrated_of(after), best)
+        verdict = verdict_of(masses, held_out, recalibrated_of(base), moved)
     if verdict.status in RIGHT:
         verdict = verdict.model_copy(update={"detectable": detectable(*search.small, frame.sigma.size)})
     clock("advise")
@@ -99,14 +104,6 @@ def diagnose(
         seconds=clock.seconds(),
         weighed=weighed(masses, search.small[0]),
     )
-
-
-def _verdict(masses: Masses, held_out: Sequence[Gain], base: Base, after: Base) -> Verdict:
-    """What the posterior states, or that labels of a record are mixed up."""
-    mixed = mislabelled(base)
-    if mixed is not None:
-        return mixed_up(base, mixed)
-    return verdict_of(masses, held_out, recalibrated_of(base), with_moved(recalibrated_of(after), masses.best))
 
 
 def _enough(campaign: Campaign, kept: Sequence[Dataset], whole: Observations) -> Observations:

@@ -27,10 +27,11 @@ from permway.posterior.beam import (
     tempered,
 )
 from permway.posterior.cells import Cell, cells, resized, small
+from permway.posterior.covariance import Frame
 from permway.posterior.fit import Fit, Fitter, Model
 from permway.posterior.hyper import LACKING
 from permway.posterior.ordering import LEFT, LEVELS, annealed, apart, ordered, weighed
-from permway.posterior.recalibrated import first_values
+from permway.posterior.recalibrated import first_values, recalibrated
 from permway.posterior.screening import Scores, screened
 
 WIDTHS, PER_FORM = (48, 16, 6), (6, 2, 1)
@@ -91,6 +92,7 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
     # About the stated values, for what the nominal parameters took up shows there only.
     far = Member((), fitter.begin(nominal, z, coarse), ())
     members, seen = [Member((), first, ())], (list[Cell](), Scores.none(0))
+    tried: list[Member] = []
     root: Member | None = members[0]
     while root is not None and len(root.amendments) < MOST:
         best = root
@@ -110,10 +112,16 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
         leader = max((best, *found), key=lambda m: m.log_mass)
         if leader is not best:
             for index, others in without_each(fitter, leader, nominal):
-                found += _alike(fitter, leader, index, others, ruled_out, progress, what)
+                found += _alike(fitter, leader, index, others, tried, ruled_out, progress, what)
+        tried += found
         fitter, members = ordered(fitter, best, [*members, *found], nominal)
         root = _next_root(members, count)
     return Explored(apart(members), seen)
+
+
+def unsearched(frame: Frame) -> Explored:
+    """Nothing but the empty set: of records from which nothing else can be concluded."""
+    return Explored([Member((), recalibrated(frame.observations), ())], ([], Scores.none(0)))
 
 
 def _next_root(members: Sequence[Member], count: int) -> Member | None:
@@ -147,13 +155,15 @@ def _alike(
     leader: Member,
     index: int,
     others: Member,
+    tried: Sequence[Member],
     ruled_out: Collection[str],
     progress: Progress,
     what: str,
 ) -> list[Member]:
     """Sets with another amendment where the leader has one.
 
-    If they may come as near as a class shows, or gain half as much before they are fitted.
+    If they may come as near as a class shows, or gain half as much before they are fitted. What smaller sets have
+    last is tried again, the best of each effect: what the leader has may have led for what was still missing.
 
     Parameters
     ----------
@@ -163,6 +173,8 @@ def _alike(
         Of the amendment.
     others : Member
         The leader without it.
+    tried : sequence of Member
+        Smaller sets.
     ruled_out : collection of str
     progress : callable
     what : str
@@ -171,6 +183,11 @@ def _alike(
     offered = _offered(others, without, ruled_out)
     starts = small(alternatives(leader, index, offered))
     large = alternatives(leader, index, offered, sized=True)
+    held, rivals = {amendment.form for amendment in leader.amendments}, dict[str, Cell]()
+    for cell in [member.last for member in sorted(tried, key=lambda m: -m.log_mass)]:
+        if cell.hypothesis.form not in held:
+            rivals.setdefault(cell.hypothesis.entry, cell)
+    large += rivals.values()
     count = fit.state.residuals.size
     say = _saying(progress, f"alternatives, {what}", len(starts) + len(large))
     scores = screened(without, starts, say, ())
