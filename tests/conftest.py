@@ -53,7 +53,7 @@ LONG = {
         study/test_interrupted.py study/test_sweep.py
     """,
     "long": """
-        fuzz report/test_paper_page.py report/test_paper_tables.py response/test_rolling.py
+        fuzz report/test_paper.py response/test_rolling.py
         laws/test_law_recordings.py property recordings/test_readers_fuzz.py recordings/test_readers_drawn.py
         recordings/test_estimates_coverage.py recordings/test_import_whole.py recordings/test_inputs_shared.py
         recordings/test_campaign_passage.py recordings/test_campaigns_shared.py

@@ -69,3 +69,18 @@ def alternatives(found: Member, index: int, starts: Sequence[Cell], *, sized: bo
             key = (hypothesis.form, rest, where.what, where.x_m) if sized else (len(moved),)
             moved.setdefault(key, other)
     return list(moved.values())
+
+
+def rivals(leader: Member, tried: Sequence[Member]) -> list[Cell]:
+    """What sets that were tried have last, as fitted there: the best of each effect, of forms not in the leader.
+
+    Parameters
+    ----------
+    leader : Member
+    tried : sequence of Member
+    """
+    held, best = {amendment.form for amendment in leader.amendments}, dict[str, Cell]()
+    for cell in [member.last for member in sorted(tried, key=lambda m: -m.log_mass)]:
+        if cell.hypothesis.form not in held:
+            best.setdefault(cell.hypothesis.entry, cell)
+    return list(best.values())

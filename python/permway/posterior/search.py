@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from permway.diagnosis.fit import free_parameters
-from permway.posterior.alternatives import alternatives, without_each
+from permway.posterior.alternatives import alternatives, rivals, without_each
 from permway.posterior.beam import (
     STEPS,
     Member,
@@ -163,7 +163,7 @@ def _alike(
     """Sets with another amendment where the leader has one.
 
     If they may come as near as a class shows, or gain half as much before they are fitted. What smaller sets have
-    last is tried again, the best of each effect: what the leader has may have led for what was still missing.
+    last is tried again: what the leader has may have led for what was still missing.
 
     Parameters
     ----------
@@ -183,11 +183,7 @@ def _alike(
     offered = _offered(others, without, ruled_out)
     starts = small(alternatives(leader, index, offered))
     large = alternatives(leader, index, offered, sized=True)
-    held, rivals = {amendment.form for amendment in leader.amendments}, dict[str, Cell]()
-    for cell in [member.last for member in sorted(tried, key=lambda m: -m.log_mass)]:
-        if cell.hypothesis.form not in held:
-            rivals.setdefault(cell.hypothesis.entry, cell)
-    large += rivals.values()
+    large += rivals(leader, tried)
     count = fit.state.residuals.size
     say = _saying(progress, f"alternatives, {what}", len(starts) + len(large))
     scores = screened(without, starts, say, ())
