@@ -120,6 +120,23 @@ def test_how_large_errors_of_chains_are_is_estimated(tmp_path: Path) -> None:
     assert np.mean(np.abs(off) < 1.645) > 0.8
 
 
+@pytest.mark.parametrize("off", [-2.5, 2.5])
+def test_a_stiffness_far_off_is_begun_with_where_it_is(tmp_path: Path, off: float) -> None:
+    """The bridge rings on; slopes at the stated stiffness lead to another time of entry instead."""
+    campaign = measured(tmp_path, "we")
+    (dataset,) = campaign.load()
+    free = [f.name for f in free_parameters(campaign)]
+    known = campaign.parameters.known
+    stated = {"E": known["E"].value(off), "t0": known["t0"].value(-0.5 * off)}
+    (found,) = predict(campaign.with_values(stated), [dataset], threads=1)
+    data = dataset.data.copy()
+    data["spectrum"] = (("channel", "frequency"), found["spectrum"].values, dataset.data["spectrum"].attrs)
+    observations = gather(campaign, [replace(dataset, data=data)], threads=1)
+    z = begin(observations, Problem(observations, campaign.with_values, free_parameters(campaign)))
+    assert z[free.index("E")] == pytest.approx(off, abs=0.3)
+    assert z[free.index("t0")] == pytest.approx(-0.5 * off, abs=0.3)
+
+
 @pytest.mark.injection
 def test_intervals_hold_the_truth_of_fifty(tmp_path: Path) -> None:
     off = missed(tmp_path, range(50))

@@ -2,10 +2,13 @@
 
 Two wheelsets 20 m apart at 60 m/s and 400 Hz are two radians out of phase for a quarter of a percent of speed.
 Each is therefore looked for on a grid, all other values at the centre of their priors; levels hardly matter. Of a
-passage time and speed make up for each other, so both are looked for twice.
+passage time and speed make up for each other, so both are looked for twice; and a bridge that rings on behind the
+train has peaks so narrow that its stiffness is looked for, too.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,11 +20,14 @@ GRID = 41
 """Points of the grid, from one bound to the other: for bounds of 1 %, steps of 0.05 %."""
 
 LIMITS = 4.0
-"""Standard deviations of the prior to which speeds without bounds are looked for."""
+"""Standard deviations of the prior to which values without bounds are looked for."""
+
+IN_PROPORTION = (".axles.load", ".loss_factor", ".damping_ratio", ".stiffness_damping_s", ".mass_damping_per_s")
+"""What moves no phase and no peak, so that slopes find it: loads, and losses of bodies."""
 
 
 def begin(observations: Observations, problem: Problem) -> Reals:
-    """Coordinates z to begin at, shape (p,): 0 but for speeds that are free.
+    """Coordinates z to begin at, shape (p,): 0 but for speeds that are free, and bodies of a line that is passed.
 
     Parameters
     ----------
@@ -30,28 +36,39 @@ def begin(observations: Observations, problem: Problem) -> Reals:
         Whose free parameters are the campaign's own.
     """
     z = np.zeros(len(problem.free))
-    known = observations.campaign.parameters
-    mine = [i for i, f in enumerate(problem.free) if "campaign.conditions" in known.touches(f.name)]
-    # Loads act in proportion, and slopes find them.
-    mine = [i for i in mine if not _is_load(observations, problem.free[i].name)]
-    start = problem.at(z) if mine else None
+    runs, bodies = (_moving(observations, problem, part) for part in ("campaign.conditions", "line.bodies"))
+    if not any(dataset.record.statistic == "passage" for dataset in observations.datasets):
+        return _looked(problem, z, runs)[0]
+    # A wrong stiffness bends the time of entry, and a wrong time the stiffness: whichever is begun with.
+    found = [_looked(problem, z, 2 * order) for order in (runs + bodies, bodies + runs)]
+    return min(found, key=lambda one: one[1])[0]
+
+
+def _looked(problem: Problem, z: Reals, order: Sequence[int]) -> tuple[Reals, float]:
+    """Coordinates with the least misfit on the grid of one after the other, and that misfit."""
+    start, best = problem.at(z) if order else None, np.inf
     if start is None:
-        return z
-    passing = any(dataset.record.statistic == "passage" for dataset in observations.datasets)
-    for index in mine * (2 if passing else 1):
+        return z, best
+    for index in order:
         low, high = problem.free[index].limits
-        best = np.inf
+        best, began = np.inf, z
         for value in np.linspace(max(low, -LIMITS), min(high, LIMITS), GRID):
-            tried = z.copy()
+            tried = began.copy()
             tried[index] = value
             residuals, _ = problem.residuals(tried, start.solved)
             # Few lines must not outweigh all others: the base may be far off in some.
-            misfit = float(np.log1p(residuals**2).sum()) + value**2
+            misfit = float(np.log1p(residuals**2).sum() + tried @ tried)
             if misfit < best:
-                best, z[index] = misfit, value
-    return z
+                best, z = misfit, tried
+    return z, best
 
 
-def _is_load(observations: Observations, name: str) -> bool:
-    paths = observations.campaign.parameters.known[name].parameter.paths
-    return all(".axles.load" in path for path in paths)
+def _moving(observations: Observations, problem: Problem, part: str) -> list[int]:
+    """Free parameters of a part of campaign or model that move phases or peaks."""
+    known = observations.campaign.parameters
+
+    def moves(name: str) -> bool:
+        paths = known.known[name].parameter.paths
+        return part in known.touches(name) and not all(any(w in path for w in IN_PROPORTION) for path in paths)
+
+    return [index for index, free in enumerate(problem.free) if moves(free.name)]
