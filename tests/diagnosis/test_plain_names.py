@@ -6,6 +6,7 @@ import pytest
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.plain_names import (
     NAMES,
+    aim,
     chance,
     ends,
     estimate,
@@ -26,6 +27,28 @@ def test_no_effect_or_parameter_is_reported_with_an_underscore() -> None:
     assert name_of("fastener_loss and wheel_flat") == "lost fasteners and wheel flat"
     # A word for an effect that is gone would never be missed.
     assert set(NAMES) - set(entries()) == {"novel", "owner_value", "recalibrated", "sensor_labels"}
+
+
+@pytest.mark.parametrize(
+    ("suspected", "rival", "words"),
+    [
+        (
+            "beam_damping and deck_attachment and second_track",
+            "beam_damping and deck_attachment and deck_attachment",
+            "tell second track from another deck attachment",
+        ),
+        (
+            "second_track",
+            "deck_attachment and deck_attachment",
+            "tell second track from deck attachment and another deck attachment",
+        ),
+        ("second_track and second_track", "second_track", "be sure of another second track"),
+        ("second_track", "beam_damping and second_track", "see whether damping law of a beam acts, too"),
+        ("fastener_loss", "recalibrated", "be sure of lost fasteners"),
+    ],
+)
+def test_what_a_measurement_decides_is_what_differs(suspected: str, rival: str, words: str) -> None:
+    assert aim((suspected, rival)) == words
 
 
 @pytest.mark.parametrize(

@@ -171,7 +171,7 @@ def test_each_status_states_what_to_do(found: dict[str, Diagnosis]) -> None:
     )
     advised = unsure.model_copy(update={"next": (advice,)})
     assert next_steps(replace(fine, verdict=advised)) == [
-        "Measure: a blow on the deck at 7.5 m. It distinguishes lost fasteners from nothing missing."
+        "Measure: a blow on the deck at 7.5 m, to be sure of lost fasteners."
     ]
     doubt = Doubt(kind="sign", where="records.blows", what="has the other sign", remedy='sign = "-"')
     doubted = fine.verdict.model_copy(update={"blunders": (doubt,)})

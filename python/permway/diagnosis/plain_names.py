@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 
-from permway.diagnosis.verdict_parts import Estimate, Moved, Smallest
+from permway.diagnosis.verdict_parts import RECALIBRATED, Estimate, Moved, Smallest
 
 NAMES = {
     "ballast_frequency": "ballast stiffer with frequency",
@@ -64,6 +65,26 @@ PLACE_M = 1e-6
 def name_of(identifier: str) -> str:
     """Of an effect of the catalogue, or of several that are joined by " and "."""
     return " and ".join(NAMES.get(one, one.replace("_", " ")) for one in identifier.split(" and "))
+
+
+def aim(separates: tuple[str, str]) -> str:
+    """What a measurement decides between two sets of effects, by what only one of them has."""
+    sets = [Counter(one for one in names.split(" and ") if one != RECALIBRATED) for names in separates]
+    common = sets[0] & sets[1]
+    suspected, rival = (_beside(common, own - common) for own in sets)
+    if not suspected:
+        return f"see whether {rival} acts, too" if rival else f"be sure of {name_of(separates[0])}"
+    return f"tell {suspected} from {rival}" if rival else f"be sure of {suspected}"
+
+
+def _beside(common: Counter[str], own: Counter[str]) -> str:
+    """Names of effects, those "another" of which one is there without them."""
+    words = [
+        f"another {name_of(name)}" if common[name] or index else name_of(name)
+        for name, count in own.items()
+        for index in range(count)
+    ]
+    return " and ".join(words)
 
 
 def parameter_of(identifier: str) -> str:

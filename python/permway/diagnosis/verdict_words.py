@@ -6,10 +6,10 @@ from html import escape
 
 import numpy as np
 
-from permway.diagnosis.plain_names import chance, ends, estimate, name_of, parameter_of, seen, stated, stretch
+from permway.diagnosis.plain_names import aim, chance, ends, estimate, name_of, parameter_of, seen, stated, stretch
 from permway.diagnosis.tolerances import outside
 from permway.diagnosis.verdict import NOVEL, Effect, Estimate, HeldOutGain, Moved, Smallest, Verdict
-from permway.diagnosis.verdict_parts import E_VALUE, RECALIBRATED, Condition
+from permway.diagnosis.verdict_parts import E_VALUE, Condition
 
 MOST_SIZES = 3
 """Detectable sizes that a sentence names, at most."""
@@ -302,11 +302,7 @@ def _advice(verdict: Verdict) -> str:
     if not verdict.next:
         return ""
     first = verdict.next[0]
-    suspected, rival = first.separates
-    sure = rival == RECALIBRATED
-    suspected = " and ".join(dict.fromkeys(suspected.split(" and ")))
-    aim = f"be sure of {name_of(suspected)}" if sure else f"tell {name_of(suspected)} from {name_of(rival)}"
-    return f"to {aim}, measure: {first.measurement}"
+    return f"to {aim(first.separates)}, measure: {first.measurement}"
 
 
 def html_table(verdict: Verdict) -> str:

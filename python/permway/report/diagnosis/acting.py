@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from permway.diagnosis.catalogue import entries
-from permway.diagnosis.plain_names import chance, ends, estimate, name_of, parameter_of, stretch
+from permway.diagnosis.plain_names import aim, chance, ends, estimate, name_of, parameter_of, stretch
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.tolerances import outside
 from permway.diagnosis.verdict import NOVEL, UNPROVED, Effect, Verdict
@@ -102,7 +102,7 @@ def next_steps(diagnosis: Diagnosis) -> list[str]:
     for effect in verdict.effects:
         if verdict.status != "insufficient":
             steps.append(_look(effect))
-    steps += [f"Measure: {one.measurement}. It distinguishes {_apart(one.separates)}." for one in verdict.next[:2]]
+    steps += [f"Measure: {one.measurement}, to {aim(one.separates)}." for one in verdict.next[:2]]
     match verdict.status:
         case "recalibrated":
             steps.append(
@@ -133,10 +133,6 @@ def _look(effect: Effect) -> str:
     verb = "Check" if effect.place.x is None else "Inspect on site"
     reach = "" if within is None else f" (90 %: {stretch(*within)})"
     return f"{verb}: {label or DOMAIN[effect.domain]}{reach}. Expected: {_title(effect)}."
-
-
-def _apart(names: tuple[str, str]) -> str:
-    return f"{name_of(names[0])} from {name_of(names[1])}"
 
 
 def rival_rows(weighed: Weighed) -> list[dict[str, str]]:
