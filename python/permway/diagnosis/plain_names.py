@@ -123,24 +123,24 @@ def estimate(one: Estimate | Moved) -> str:
 
 
 def ends(one: Estimate | Moved) -> str:
-    """The 90 % interval with its unit, or "" where it is not known or adds no digit to the value."""
+    """The 90 % interval with its unit, once what rounds to one number, or "" where it is not known."""
     if one.low is None or one.high is None:
         return ""
     factor, named = _scale(abs(one.value), one.unit)
     decimals = _known(one, factor)
     low, high = (_text(end / factor, decimals) for end in (one.low, one.high))
-    return "" if low == high else _with(f"{low} to {high}", named)
+    return _with(" to ".join(dict.fromkeys((low, high))), named)
 
 
 def stretch(low: float, high: float) -> str:
-    """From and to along the line, to the decimetre, or to the centimetre where that is known.
+    """From and to along the line, to the decimetre, or to the centimetre where that is known; once what is one.
 
     Places to the millimetre are those of joints, and stand as they are: rounded, the last might lie outside.
     """
     decimals = 2 if high - low < 0.2 else 1
     exact = all(abs(x - round(x, 3)) < PLACE_M for x in (low, high))
     ends = (_decimal(x, decimals, 3) if exact else f"{x:.{decimals}f}" for x in (low, high))
-    return f"{' to '.join(ends)} m".replace("-", "−")
+    return f"{' to '.join(dict.fromkeys(ends))} m".replace("-", "−")
 
 
 def _decimal(value: float, least: int, most: int) -> str:
