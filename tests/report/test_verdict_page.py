@@ -27,7 +27,7 @@ from permway.diagnosis.verdict_parts import (
 from permway.posterior import cells
 from permway.posterior.diagnose import diagnose
 from permway.report.diagnosis import write_report
-from permway.report.diagnosis.acting import next_steps, rival_rows
+from permway.report.diagnosis.acting import next_steps, rival_rows, rival_tables
 from permway.report.diagnosis.places import map_picture
 from permway.report.diagnosis.verdict_page import render_verdict
 from simulated import simulate
@@ -139,6 +139,15 @@ def test_rivals_are_ranked_by_probability_and_all_sum_to_one(found: dict[str, Di
     assert "pad from 5.4 to 6.6 m" in lost_rows[0]["what"]
     assert lost_rows[-1]["names"] == "Nothing missing"
     assert float(lost_rows[-1]["behind"]) > 20.0
+
+
+def test_the_best_set_of_each_size_is_shown_openly(found: dict[str, Diagnosis]) -> None:
+    one = found["lost"].weighed
+    assert one is not None
+    many = tuple(replace(one.rivals[0], behind_nats=float(i)) for i in range(20))
+    rows, others = rival_tables(replace(one, rivals=(*many, one.rivals[-1]), unknown=0.1))
+    assert [row["names"] for row in rows[-2:]] == ["Nothing missing", "Something the catalogue does not hold"]
+    assert [len(rows), len(others)] == [14, 8]
 
 
 def test_parameters_have_units_that_fit(pages: dict[str, Path]) -> None:

@@ -14,7 +14,7 @@ from permway.model.line import Line
 Facts = list[tuple[str, str]]
 
 MOST_RIVALS = 12
-"""Sets that the page shows openly."""
+"""Sets that the page shows openly, beside the best of each size."""
 
 LEAST = 0.005
 """Probability that is shown of what acts at no place along the line."""
@@ -150,6 +150,15 @@ def rival_rows(weighed: Weighed) -> list[dict[str, str]]:
             }
         )
     return rows
+
+
+def rival_tables(weighed: Weighed) -> tuple[list[dict[str, str]], list[dict[str, str]]]:
+    """Rows that the page shows openly, the best set of each size among them, and all others."""
+    rows, sizes = rival_rows(weighed), [len(one.names) for one in weighed.rivals]
+    first = {sizes.index(size) for size in sizes}
+    is_open = [i < MOST_RIVALS or i in first or i >= len(sizes) for i in range(len(rows))]
+    both = list(zip(rows, is_open, strict=True))
+    return [row for row, shown in both if shown], [row for row, shown in both if not shown]
 
 
 def _row(one: Rival) -> dict[str, str]:
