@@ -12,6 +12,7 @@ import pytest
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Hypothesis, Where
+from permway.posterior.answer import _bands
 from permway.posterior.beam import Member
 from permway.posterior.cells import Cell
 from permway.posterior.masses import Masses
@@ -124,3 +125,10 @@ def test_the_best_of_a_size_far_behind_is_listed_and_counts_in_no_probability(ca
     assert found.rivals[1].behind_nats == pytest.approx(50.0 - 6.0)
     assert [one.probability for one in found.rivals] == [without.rivals[0].probability, 0.0, without.nothing]
     assert found.nothing == without.nothing
+
+
+def test_bands_end_where_the_lines_do() -> None:
+    lines = np.arange(10.0, 201.0)
+    ((low, high),) = _bands(lines, np.where(lines > 170.0, 1.0, 0.0))
+    assert [low, high] == pytest.approx([2.0 ** (22 / 3), 200.0])
+    assert _bands(lines, np.where(lines < 12.0, 1.0, 0.0))[0][0] == 10.0
