@@ -45,6 +45,7 @@ def test_no_effect_or_parameter_is_reported_with_an_underscore() -> None:
         ("second_track and second_track", "second_track", "be sure of another second track"),
         ("second_track", "beam_damping and second_track", "see whether damping law of a beam acts, too"),
         ("fastener_loss", "recalibrated", "be sure of lost fasteners"),
+        ("fastener_loss and fastener_loss", "fastener_loss", "be sure of more lost fasteners"),
     ],
 )
 def test_what_a_measurement_decides_is_what_differs(suspected: str, rival: str, words: str) -> None:

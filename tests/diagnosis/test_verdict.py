@@ -375,7 +375,13 @@ def unmet(*names: Condition, **changed: Any) -> Weight:
             "0.05 of the stiffness is left (90 %: factor 0.050), probability 0.97",
         ),
         (verdict("located", effects=(Effect(domain="irregularity"),)), "In irregularity physics is missing"),
-        (verdict("named", effects=(LOST, LOST)), "beside that lost fasteners at pad from 20.3"),
+        (verdict("named", effects=(LOST, LOST)), "beside that more lost fasteners at pad from 20.3"),
+        (
+            verdict("ambiguous", effects=(LOST, *[unnamed(("fastener_loss", 0.5), ("pad_preload", 0.4))] * 2)),
+            "to be more lost fasteners (0.50) or pads that change under load (0.40); beside that lost fasteners "
+            "at pad from 20.3 to 22.4 m: 0.05 of the stiffness is left, probability 0.97; and another of the same "
+            "names at pad from 20.3",
+        ),
         (
             verdict(
                 "named",

@@ -78,13 +78,15 @@ def aim(separates: tuple[str, str]) -> str:
 
 
 def _beside(common: Counter[str], own: Counter[str]) -> str:
-    """Names of effects, those "another" of which one is there without them."""
-    words = [
-        f"another {name_of(name)}" if common[name] or index else name_of(name)
-        for name, count in own.items()
-        for index in range(count)
-    ]
-    return " and ".join(words)
+    """Names of effects, where some are there without them."""
+    return " and ".join(again(n, bool(common[n] + i)) for n, count in own.items() for i in range(count))
+
+
+def again(name: str, known: bool) -> str:
+    """An effect's name, told from one of the same name if such is known already."""
+    words = name_of(name).split()
+    plural = any(word.endswith("s") and not word.endswith("ss") for word in (words[0], words[-1]))
+    return " ".join((["more" if plural else "another"] if known else []) + words)
 
 
 def parameter_of(identifier: str) -> str:
