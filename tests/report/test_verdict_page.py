@@ -189,6 +189,20 @@ def test_each_status_states_what_to_do(found: dict[str, Diagnosis]) -> None:
     )
 
 
+def test_effects_that_share_a_place_are_looked_for_in_one_step(found: dict[str, Diagnosis]) -> None:
+    one = found["lost"]
+    (effect,) = one.verdict.effects
+    there = effect.model_copy(update={"place": Place(body="deck")})
+    void = there.model_copy(update={"name": "mortar_void"})
+    verdict = one.verdict.model_copy(update={"effects": (there, effect, there, void)})
+    steps = next_steps(replace(one, verdict=verdict))
+    assert steps[0] == "Check: deck. Expected: lost fasteners, and void below the slab."
+    assert [step.partition(":")[0] for step in steps[1:]] == [
+        "Inspect on site",
+        "Predict with amended.toml, the model with the effect in it.",
+    ]
+
+
 LOST, VOID = ClassMember(name="fastener_loss", probability=0.6), ClassMember(name="mortar_void", probability=0.4)
 SURE = ClassMember(name=NOVEL, probability=0.95)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.plain_names import aim, chance, ends, estimate, name_of, parameter_of, stretch
 from permway.diagnosis.result import Diagnosis
@@ -99,9 +101,8 @@ def next_steps(diagnosis: Diagnosis) -> list[str]:
             f"Check what was stated of {' and '.join(off[:3])}: drawing, data sheet, temperature of the test. "
             "State the value that is right, or a wider tolerance, and diagnose again."
         )
-    for effect in verdict.effects:
-        if verdict.status != "insufficient":
-            steps.append(_look(effect))
+    if verdict.status != "insufficient":
+        steps += _looks(verdict.effects)
     steps += [f"Measure: {one.measurement}, to {aim(one.separates)}." for one in verdict.next[:2]]
     match verdict.status:
         case "recalibrated":
@@ -119,20 +120,32 @@ def next_steps(diagnosis: Diagnosis) -> list[str]:
     return steps
 
 
-def _look(effect: Effect) -> str:
+def _looks(effects: Sequence[Effect]) -> list[str]:
+    """Where to look, each place once, with all that is expected there."""
+    found: dict[str, dict[str, None]] = {}
+    for effect in effects:
+        where, expected = _look(effect)
+        found.setdefault(where, {})[expected] = None
+    names = {where: ", and ".join(filter(None, expected)) for where, expected in found.items()}
+    return [f"{where} Expected: {names[where]}." if names[where] else where for where in found]
+
+
+def _look(effect: Effect) -> tuple[str, str]:
+    """Where to look, and what is expected there."""
     label, within = effect.place.label, effect.place.within
     if effect.domain == "measurement":
         channel = " and ".join(effect.place.channels) or label or "the measurement"
-        return (
+        words = (
             f"Check {channel}: mounting, cable, sign, calibration. Correct it in the campaign file or leave the "
             "channel out, and diagnose again."
         )
+        return words, ""
     if effect.name == STATED:
-        return f"Check what was stated of {label}: drawing, data sheet, temperature of the test."
+        return f"Check what was stated of {label}: drawing, data sheet, temperature of the test.", ""
     # What has a place is gone to; what acts everywhere, as a law of all pads, is found in documents and tests.
     verb = "Check" if effect.place.x is None else "Inspect on site"
     reach = "" if within is None else f" (90 %: {stretch(*within)})"
-    return f"{verb}: {label or DOMAIN[effect.domain]}{reach}. Expected: {_title(effect)}."
+    return f"{verb}: {label or DOMAIN[effect.domain]}{reach}.", _title(effect)
 
 
 def rival_rows(weighed: Weighed) -> list[dict[str, str]]:
