@@ -28,6 +28,7 @@ from permway.posterior import cells
 from permway.posterior.diagnose import diagnose
 from permway.report.diagnosis import write_report
 from permway.report.diagnosis.acting import next_steps, rival_rows, rival_tables
+from permway.report.diagnosis.assumed import assumed
 from permway.report.diagnosis.places import map_picture
 from permway.report.diagnosis.verdict_page import render_verdict
 from simulated import simulate
@@ -161,6 +162,21 @@ def test_held_out_groups_have_nats_and_decibels(found: dict[str, Diagnosis], pag
     assert found["lost"].verdict.held_out
     for name in found["lost"].verdict.held_out:
         assert re.search(rf"{re.escape(name)} −?[0-9.]+ [0-9.]+ dB [0-9.]+ dB", text), name
+
+
+def test_calibration_errors_are_those_of_the_amended_model_and_are_explained(
+    found: dict[str, Diagnosis], pages: dict[str, Path]
+) -> None:
+    after, text = found["lost"].after, text_of(pages["lost"])
+    assert after is not None
+    rows = assumed(found["lost"])["smooth"]
+    largest = max(float(v) for v in after.calibration["size_dB"].values)
+    before = max(float(v) for v in found["lost"].comparison.calibration["size_dB"].values)
+    assert before > largest + 0.02
+    assert max(float(row["largest"]) for row in rows) == pytest.approx(largest, abs=0.006)
+    assert "estimated from the records with the amended model" in text
+    assert "Above 1.8 dB" in text
+    assert "with the recalibrated model, by which" in text_of(pages["nothing"])
 
 
 def test_each_status_states_what_to_do(found: dict[str, Diagnosis]) -> None:
