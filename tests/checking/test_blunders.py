@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from by_elements import campaign_by_elements
 from permway.arrays import Complexes, Reals
 from permway.checking.blunder import Blunder
 from permway.checking.check import check
+from permway.checking.unlike import far_off
 
 SEEDS = (1, 2, 3)
 LAYOUTS = ("deck", "ballast", "slab", "beam", "rig")
@@ -37,6 +39,25 @@ def test_missing_physics_is_no_blunder(tmp_path: Path, concealed: str) -> None:
 @pytest.mark.parametrize("seed", SEEDS)
 def test_pads_softer_than_stated_are_no_blunder(tmp_path: Path, seed: int) -> None:
     assert reported(tmp_path, seed, scaled=0.7) == ()
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_levels_that_no_blunder_explains_are_reported_with_their_band(tmp_path: Path, seed: int) -> None:
+    def far_off_of(name: str, read: READ) -> str | None:
+        checked = check(campaign_by_elements(tmp_path / name, seed, read=read), threads=1)
+        assert checked.blunders == ()
+        return far_off([(dataset, right) for dataset, _, right in checked.records])
+
+    def resonant(values: Complexes, frequency_Hz: Reals) -> Complexes:
+        return values * np.where((frequency_Hz > 32.0) & (frequency_Hz < 50.8), 10.0, 1.0)
+
+    words = far_off_of("with", resonant)
+    assert words is not None
+    median, most, low, high = map(float, re.findall(r"(?<![\w.])[0-9.]+(?= dB| and| Hz)", words))
+    assert median == pytest.approx(20.0, abs=5.0)
+    assert median <= most
+    assert 32.0 <= low < high <= 50.8
+    assert far_off_of("without", lambda v, f: v) is None
 
 
 def omega(frequency: Reals) -> Complexes:

@@ -6,6 +6,7 @@ import pytest
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.plain_names import (
     NAMES,
+    aim,
     chance,
     ends,
     estimate,
@@ -29,9 +30,34 @@ def test_no_effect_or_parameter_is_reported_with_an_underscore() -> None:
 
 
 @pytest.mark.parametrize(
+    ("suspected", "rival", "words"),
+    [
+        (
+            "beam_damping and deck_attachment and second_track",
+            "beam_damping and deck_attachment and deck_attachment",
+            "tell second track from another deck attachment",
+        ),
+        (
+            "second_track",
+            "deck_attachment and deck_attachment",
+            "tell second track from deck attachment and another deck attachment",
+        ),
+        ("second_track and second_track", "second_track", "be sure of another second track"),
+        ("second_track", "beam_damping and second_track", "see whether damping law of a beam acts, too"),
+        ("fastener_loss", "recalibrated", "be sure of lost fasteners"),
+        ("fastener_loss and fastener_loss", "fastener_loss", "be sure of more lost fasteners"),
+    ],
+)
+def test_what_a_measurement_decides_is_what_differs(suspected: str, rival: str, words: str) -> None:
+    assert aim((suspected, rival)) == words
+
+
+@pytest.mark.parametrize(
     ("value", "low", "high", "unit", "words", "interval"),
     [
-        (0.05, 0.0499, 0.0501, "1", "0.050", ""),
+        (0.05, 0.0499, 0.0501, "1", "0.050", "0.050"),
+        (0.299938, 0.299642, 0.300235, "1", "0.30", "0.30"),
+        (4.9857, 4.9846, 4.9868, "Hz", "4.99 Hz", "4.98 to 4.99 Hz"),
         (0.05, 0.0481, 0.0519, "1", "0.050", "0.048 to 0.052"),
         (0.05, 0.03, 0.08, "1", "0.05", "0.03 to 0.08"),
         (-1.019, -1.09, -0.94, "1", "−1.02", "−1.09 to −0.94"),
@@ -78,6 +104,7 @@ def test_what_would_have_been_seen_is_a_change_or_a_size_with_its_unit() -> None
 
 def test_a_stretch_is_reported_to_the_decimetre() -> None:
     assert stretch(5.7254, 7.6214) == "5.7 to 7.6 m"
+    assert stretch(20.0, 20.0) == "20.00 m"
     assert stretch(6.0052, 6.0504) == "6.01 to 6.05 m"
     # Joints: the second would lie outside the rounded stretch.
     assert stretch(14.3, 14.950000000000001) == "14.3 to 14.95 m"

@@ -43,6 +43,8 @@ LOST = Effect(
     law=Mechanics(words="0.05 of the stiffness is left", type="scaled", parameters={"factor": 0.05}),
     parameters={"factor": Estimate(value=0.05, unit="1", low=0.03, high=0.08)},
 )
+SURE = {"factor": Estimate(value=0.05, unit="1", low=0.0499, high=0.0501)}
+"""Known better than its digits say."""
 BETTER = {
     "band": HeldOutGain(gain_nats=20.0, standard_error=4.0, db_before=1.9, db_after=1.1),
     "place": HeldOutGain(gain_nats=140.0, standard_error=9.0, db_before=3.1, db_after=0.4),
@@ -368,8 +370,18 @@ def unmet(*names: Condition, **changed: Any) -> Weight:
             verdict("named", effects=(LOST, unnamed(("pad_frequency", 0.5), ("pad_preload", 0.4)))),
             "beside that pads stiffer with frequency or pads that change under load at pad from 20.3",
         ),
+        (
+            verdict("named", effects=(LOST.model_copy(update={"size": "factor", "parameters": SURE}),)),
+            "0.05 of the stiffness is left (90 %: factor 0.050), probability 0.97",
+        ),
         (verdict("located", effects=(Effect(domain="irregularity"),)), "In irregularity physics is missing"),
-        (verdict("named", effects=(LOST, LOST)), "beside that lost fasteners at pad from 20.3"),
+        (verdict("named", effects=(LOST, LOST)), "beside that more lost fasteners at pad from 20.3"),
+        (
+            verdict("ambiguous", effects=(LOST, *[unnamed(("fastener_loss", 0.5), ("pad_preload", 0.4))] * 2)),
+            "to be more lost fasteners (0.50) or pads that change under load (0.40); beside that lost fasteners "
+            "at pad from 20.3 to 22.4 m: 0.05 of the stiffness is left, probability 0.97; and another of the same "
+            "names at pad from 20.3",
+        ),
         (
             verdict(
                 "named",

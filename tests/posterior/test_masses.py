@@ -26,6 +26,7 @@ def member(*names: str, nats: float, novel: float = 0.0) -> Member:
             hyper=SimpleNamespace(novel=novel),
             state=SimpleNamespace(residuals=np.zeros(COUNT)),
         ),
+        far_behind=False,
         log_prior=prior,
         log_mass=prior + tempered(nats, COUNT),
     )

@@ -10,7 +10,7 @@ from permway.posterior.beam import Member
 from permway.posterior.cells import Cell, cells
 from permway.posterior.covariance import Frame
 from permway.posterior.fit import Fitter, Model, grown
-from permway.posterior.ordering import _smaller
+from permway.posterior.ordering import _smaller, _worth_keeping
 from simulated import simulate
 
 
@@ -49,3 +49,14 @@ def test_each_is_left_out_and_two_stretches_become_one(member: Member) -> None:
     assert values["centre_m"] - 0.5 * values["length_m"] == pytest.approx(min(ends))
     assert values["centre_m"] + 0.5 * values["length_m"] == pytest.approx(max(ends))
     assert values["factor"] == pytest.approx(first["factor"])
+
+
+def test_the_best_set_of_each_size_is_kept_however_far_behind(member: Member) -> None:
+    def of(count: int, nats: float) -> Member:
+        return Member(member.amendments[:count], member.fit, (nats / max(count, 1),) * count)
+
+    every = [of(3, -1.0), of(3, -5.0), of(2, -50.0), of(3, -60.0), of(1, -70.0), of(2, -80.0), of(0, 0.0)]
+    kept = _worth_keeping(every)
+    assert [(len(m.amendments), m.log_priors, m.far_behind) for m in kept] == [
+        (len(every[i].amendments), every[i].log_priors, i in (2, 4)) for i in (0, 1, 2, 4, 6)
+    ]

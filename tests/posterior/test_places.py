@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import cast
 
@@ -11,6 +12,7 @@ import pytest
 from permway.campaign.campaign import Campaign
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Hypothesis, Where
+from permway.posterior.answer import _bands
 from permway.posterior.beam import Member
 from permway.posterior.cells import Cell
 from permway.posterior.masses import Masses
@@ -112,3 +114,21 @@ def test_the_map_is_the_same_each_time(campaign: Campaign) -> None:
     masses = Masses.of([member(campaign), member(campaign, ("lost", stretch(0.6), 6.0, 1.0), nats=90.0)])
     first, again = weighed(masses), weighed(masses)
     assert first.along[0].probability.tolist() == again.along[0].probability.tolist()
+
+
+def test_the_best_of_a_size_far_behind_is_listed_and_counts_in_no_probability(campaign: Campaign) -> None:
+    lost = ("lost", stretch(0.7), 6.0, 0.1)
+    both = member(campaign, lost, ("crack", stretch(0.1), 7.2, 0.1), nats=300.0)
+    near, far = member(campaign), replace(member(campaign, lost, nats=250.0), far_behind=True)
+    found, without = (weighed(Masses.of(members)) for members in ([both, far, near], [both, near]))
+    assert [one.names for one in found.rivals] == [("lost", "crack"), ("lost",), ()]
+    assert found.rivals[1].behind_nats == pytest.approx(50.0 - 6.0)
+    assert [one.probability for one in found.rivals] == [without.rivals[0].probability, 0.0, without.nothing]
+    assert found.nothing == without.nothing
+
+
+def test_bands_end_where_the_lines_do() -> None:
+    lines = np.arange(10.0, 201.0)
+    ((low, high),) = _bands(lines, np.where(lines > 170.0, 1.0, 0.0))
+    assert [low, high] == pytest.approx([2.0 ** (22 / 3), 200.0])
+    assert _bands(lines, np.where(lines < 12.0, 1.0, 0.0))[0][0] == 10.0

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import permway
 import pytest
+from permway.errors import InputError
 from permway.laws.toml import to_toml
 from permway.recordings.readers import read_frf
 from permway.recordings.readers.hints import Hints
@@ -36,6 +37,26 @@ def test_a_place_in_a_label_is_proposed(tmp_path: Path, label: str, body: str, x
     write_skeleton(tmp_path)
     sensor = (tmp_path / "campaign.toml").read_text("utf-8").partition("[[forces]]")[0]
     assert re.findall(r"^# (?:body|x_m) = (\S+)", sensor, re.MULTILINE) == [body, x_m]
+
+
+@pytest.mark.parametrize("body", ["beam", "deck", "girder", "rail", "sleeper"])
+def test_a_place_in_a_file_name_is_proposed_and_the_model_begins_with_its_body(tmp_path: Path, body: str) -> None:
+    head = f"Frequency [Hz],{body}@4 Real [(m/s2)/N],{body}@4 Imag [(m/s2)/N]"
+    for x in ("3", "2.5"):
+        (tmp_path / f"{body}_{x}.csv").write_text(f"{head}\n1,1,2\n2,3,4\n3,5,6\n")
+    write_skeleton(tmp_path)
+    points = (tmp_path / "campaign.toml").read_text("utf-8").partition("[[forces]]")[2]
+    found = re.findall(r"^# (?:body|x_m) = (\S+)", points, re.MULTILINE)
+    assert found == [f'"{body}"', "2.5", f'"{body}"', "3"]
+    path = tmp_path / "model.toml"
+    with pytest.raises(InputError, match="missing"):
+        permway.read_model(path)
+    answers = re.sub(r"^# (?!option|question|from)(\S+ = )", r"\1", path.read_text("utf-8"), flags=re.MULTILINE)
+    path.write_text(answers, "utf-8")
+    alone = body in ("beam", "deck", "girder")
+    line = permway.read_model(path).line
+    assert list(line.bodies) == [body if alone else "rail"]
+    assert [(beam.start, beam.stop) for _, beam in line.beams()] == [(0.0, 20.0 if alone else 36.0)]
 
 
 @pytest.mark.parametrize("name", ["", "rail@9 "])

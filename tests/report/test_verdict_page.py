@@ -27,7 +27,8 @@ from permway.diagnosis.verdict_parts import (
 from permway.posterior import cells
 from permway.posterior.diagnose import diagnose
 from permway.report.diagnosis import write_report
-from permway.report.diagnosis.acting import next_steps, rival_rows
+from permway.report.diagnosis.acting import next_steps, rival_rows, rival_tables
+from permway.report.diagnosis.assumed import assumed
 from permway.report.diagnosis.places import map_picture
 from permway.report.diagnosis.verdict_page import render_verdict
 from simulated import simulate
@@ -141,6 +142,15 @@ def test_rivals_are_ranked_by_probability_and_all_sum_to_one(found: dict[str, Di
     assert float(lost_rows[-1]["behind"]) > 20.0
 
 
+def test_the_best_set_of_each_size_is_shown_openly(found: dict[str, Diagnosis]) -> None:
+    one = found["lost"].weighed
+    assert one is not None
+    many = tuple(replace(one.rivals[0], behind_nats=float(i)) for i in range(20))
+    rows, others = rival_tables(replace(one, rivals=(*many, one.rivals[-1]), unknown=0.1))
+    assert [row["names"] for row in rows[-2:]] == ["Nothing missing", "Something the catalogue does not hold"]
+    assert [len(rows), len(others)] == [14, 8]
+
+
 def test_parameters_have_units_that_fit(pages: dict[str, Path]) -> None:
     text = text_of(pages["lost"])
     assert re.search(r"pad\.k 30 MN/m 2[0-9] to 4[0-9] MN/m [0-9.]+ MN/m [0-9.]+ to [0-9.]+ MN/m", text)
@@ -152,6 +162,21 @@ def test_held_out_groups_have_nats_and_decibels(found: dict[str, Diagnosis], pag
     assert found["lost"].verdict.held_out
     for name in found["lost"].verdict.held_out:
         assert re.search(rf"{re.escape(name)} −?[0-9.]+ [0-9.]+ dB [0-9.]+ dB", text), name
+
+
+def test_calibration_errors_are_those_of_the_amended_model_and_are_explained(
+    found: dict[str, Diagnosis], pages: dict[str, Path]
+) -> None:
+    after, text = found["lost"].after, text_of(pages["lost"])
+    assert after is not None
+    rows = assumed(found["lost"])["smooth"]
+    largest = max(float(v) for v in after.calibration["size_dB"].values)
+    before = max(float(v) for v in found["lost"].comparison.calibration["size_dB"].values)
+    assert before > largest + 0.02
+    assert max(float(row["largest"]) for row in rows) == pytest.approx(largest, abs=0.006)
+    assert "estimated from the records with the amended model" in text
+    assert "Above 1.8 dB" in text
+    assert "with the recalibrated model, by which" in text_of(pages["nothing"])
 
 
 def test_each_status_states_what_to_do(found: dict[str, Diagnosis]) -> None:
@@ -171,13 +196,27 @@ def test_each_status_states_what_to_do(found: dict[str, Diagnosis]) -> None:
     )
     advised = unsure.model_copy(update={"next": (advice,)})
     assert next_steps(replace(fine, verdict=advised)) == [
-        "Measure: a blow on the deck at 7.5 m. It distinguishes lost fasteners from nothing missing."
+        "Measure: a blow on the deck at 7.5 m, to be sure of lost fasteners."
     ]
     doubt = Doubt(kind="sign", where="records.blows", what="has the other sign", remedy='sign = "-"')
     doubted = fine.verdict.model_copy(update={"blunders": (doubt,)})
     assert next_steps(replace(fine, verdict=doubted))[0] == (
         'Put right in the campaign file: records.blows: sign = "-".'
     )
+
+
+def test_effects_that_share_a_place_are_looked_for_in_one_step(found: dict[str, Diagnosis]) -> None:
+    one = found["lost"]
+    (effect,) = one.verdict.effects
+    there = effect.model_copy(update={"place": Place(body="deck")})
+    void = there.model_copy(update={"name": "mortar_void"})
+    verdict = one.verdict.model_copy(update={"effects": (there, effect, there, void)})
+    steps = next_steps(replace(one, verdict=verdict))
+    assert steps[0] == "Check: deck. Expected: lost fasteners, and void below the slab."
+    assert [step.partition(":")[0] for step in steps[1:]] == [
+        "Inspect on site",
+        "Predict with amended.toml, the model with the effect in it.",
+    ]
 
 
 LOST, VOID = ClassMember(name="fastener_loss", probability=0.6), ClassMember(name="mortar_void", probability=0.4)

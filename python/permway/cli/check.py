@@ -43,13 +43,17 @@ def check(
     from permway.campaign.rolls import how_trains_run
     from permway.checking.check import check as run
     from permway.checking.table import blunder_rows, record_rows
+    from permway.checking.unlike import far_off
 
     checked = run(read_campaign(campaign, allow_outside=allow_outside), threads=threads)
     rows = blunder_rows(checked)
     result: dict[str, Any] = {
         "blunders": rows if as_json else [sentence_of(row) for row in rows],
-        "records": record_rows(checked),
     }
+    far = far_off([(dataset, right) for dataset, _, right in checked.records])
+    if far is not None:
+        result["levels"] = far
+    result["records"] = record_rows(checked)
     missing = {one.record.name: kind_of(one.record).unmeasured(one) for one in checked.reading.whole}
     if any(missing.values()):
         result["not_measured"] = [f"{name}: {_pairs(checked, name, of)}" for name, of in missing.items() if of]

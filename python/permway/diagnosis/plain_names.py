@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 
-from permway.diagnosis.verdict_parts import Estimate, Moved, Smallest
+from permway.diagnosis.verdict_parts import RECALIBRATED, Estimate, Moved, Smallest
 
 NAMES = {
     "ballast_frequency": "ballast stiffer with frequency",
@@ -66,6 +67,28 @@ def name_of(identifier: str) -> str:
     return " and ".join(NAMES.get(one, one.replace("_", " ")) for one in identifier.split(" and "))
 
 
+def aim(separates: tuple[str, str]) -> str:
+    """What a measurement decides between two sets of effects, by what only one of them has."""
+    sets = [Counter(one for one in names.split(" and ") if one != RECALIBRATED) for names in separates]
+    common = sets[0] & sets[1]
+    suspected, rival = (_beside(common, own - common) for own in sets)
+    if not suspected:
+        return f"see whether {rival} acts, too" if rival else f"be sure of {name_of(separates[0])}"
+    return f"tell {suspected} from {rival}" if rival else f"be sure of {suspected}"
+
+
+def _beside(common: Counter[str], own: Counter[str]) -> str:
+    """Names of effects, where some are there without them."""
+    return " and ".join(again(n, bool(common[n] + i)) for n, count in own.items() for i in range(count))
+
+
+def again(name: str, known: bool) -> str:
+    """An effect's name, told from one of the same name if such is known already."""
+    words = name_of(name).split()
+    plural = any(word.endswith("s") and not word.endswith("ss") for word in (words[0], words[-1]))
+    return " ".join((["more" if plural else "another"] if known else []) + words)
+
+
 def parameter_of(identifier: str) -> str:
     """Of an effect's parameter, without its unit."""
     for suffix in (*SUFFIXES, *UNITS):
@@ -102,24 +125,24 @@ def estimate(one: Estimate | Moved) -> str:
 
 
 def ends(one: Estimate | Moved) -> str:
-    """The 90 % interval with its unit, or "" where it is not known or adds no digit to the value."""
+    """The 90 % interval with its unit, once what rounds to one number, or "" where it is not known."""
     if one.low is None or one.high is None:
         return ""
     factor, named = _scale(abs(one.value), one.unit)
     decimals = _known(one, factor)
     low, high = (_text(end / factor, decimals) for end in (one.low, one.high))
-    return "" if low == high else _with(f"{low} to {high}", named)
+    return _with(" to ".join(dict.fromkeys((low, high))), named)
 
 
 def stretch(low: float, high: float) -> str:
-    """From and to along the line, to the decimetre, or to the centimetre where that is known.
+    """From and to along the line, to the decimetre, or to the centimetre where that is known; once what is one.
 
     Places to the millimetre are those of joints, and stand as they are: rounded, the last might lie outside.
     """
     decimals = 2 if high - low < 0.2 else 1
     exact = all(abs(x - round(x, 3)) < PLACE_M for x in (low, high))
     ends = (_decimal(x, decimals, 3) if exact else f"{x:.{decimals}f}" for x in (low, high))
-    return f"{' to '.join(ends)} m".replace("-", "−")
+    return f"{' to '.join(dict.fromkeys(ends))} m".replace("-", "−")
 
 
 def _decimal(value: float, least: int, most: int) -> str:

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from html import escape
 
 import numpy as np
 
-from permway.diagnosis.plain_names import chance, ends, estimate, name_of, parameter_of, seen, stated, stretch
+from permway.diagnosis.plain_names import (
+    again,
+    aim,
+    chance,
+    ends,
+    estimate,
+    name_of,
+    parameter_of,
+    seen,
+    stated,
+    stretch,
+)
 from permway.diagnosis.tolerances import outside
 from permway.diagnosis.verdict import NOVEL, Effect, Estimate, HeldOutGain, Moved, Smallest, Verdict
-from permway.diagnosis.verdict_parts import E_VALUE, RECALIBRATED, Condition
+from permway.diagnosis.verdict_parts import E_VALUE, Condition
 
 MOST_SIZES = 3
 """Detectable sizes that a sentence names, at most."""
@@ -79,7 +91,7 @@ def _of_physics(verdict: Verdict) -> str:
             parts = [words, _more(verdict), _better(verdict), _open(verdict)]
         case "ambiguous":
             first = next(i for i, effect in enumerate(verdict.effects) if effect.name is None)
-            rivals = _rivals(verdict.effects[first])
+            rivals = _rivals(verdict, first)
             parts = [rivals, _more(verdict, first), _better(verdict), _open(verdict), _advice(verdict)]
         case "described":
             effect = verdict.effects[0]
@@ -151,15 +163,22 @@ def held_dB(verdict: Verdict) -> tuple[float, float] | None:
     return float(before), float(after)
 
 
-def _named(effect: Effect) -> str:
-    """What, where, how much, how surely, with 90 % intervals."""
+def _named(effect: Effect, others: Sequence[Effect] = ()) -> str:
+    """What, where, how much, how surely, with 90 % intervals; told from others of the same names."""
     known = probability(effect)
-    names = [effect.name] if effect.name else [member.name for member in effect.class_]
+    names = _names(effect)
+    alike = any(_names(one) == names for one in others)
+    what = again(names[0], alike) if len(names) == 1 else " or ".join(name_of(one) for one in names)
+    what = "another of the same names" if alike and len(names) > 1 else what
     place = f"{effect.place.label}{_within(effect)}"
-    text = " at ".join(part for part in (" or ".join(name_of(one) for one in names), place) if part)
+    text = " at ".join(part for part in (what, place) if part)
     what = f"{effect.law.words or _values(effect)}{_strength(effect)}"
     text = ": ".join(part for part in (text, what) if part) or "an effect"
     return text if known is None or effect.name is None else f"{text}, probability {chance(known)}"
+
+
+def _names(effect: Effect) -> list[str]:
+    return [effect.name] if effect.name else [member.name for member in effect.class_]
 
 
 def _strength(effect: Effect) -> str:
@@ -187,15 +206,17 @@ def _at(effect: Effect) -> str:
     return f"{where}, {bands}," if bands else where
 
 
-def _rivals(effect: Effect) -> str:
-    names = " or ".join(f"{name_of(m.name)} ({chance(m.probability)})" for m in effect.class_)
+def _rivals(verdict: Verdict, first: int) -> str:
+    effect, known = verdict.effects[first], {one.name for one in verdict.effects}
+    names = " or ".join(f"{again(m.name, m.name in known)} ({chance(m.probability)})" for m in effect.class_)
     return f"{_at(effect)} physics is missing that these records allow to be {names}"
 
 
 def _more(verdict: Verdict, first: int = 0) -> str:
     """The effects beside the first that is named."""
-    others = [_named(e) for i, e in enumerate(verdict.effects) if i != first and not _disbelieved(e)]
-    return f"beside that {' and '.join(others)}" if others else ""
+    rest = [e for i, e in enumerate(verdict.effects) if i != first and not _disbelieved(e)]
+    others = [_named(e, [verdict.effects[first], *rest[:i]]) for i, e in enumerate(rest)]
+    return f"beside that {'; and '.join(others)}" if others else ""
 
 
 def _disbelieved(effect: Effect) -> bool:
@@ -302,11 +323,7 @@ def _advice(verdict: Verdict) -> str:
     if not verdict.next:
         return ""
     first = verdict.next[0]
-    suspected, rival = first.separates
-    sure = rival == RECALIBRATED
-    suspected = " and ".join(dict.fromkeys(suspected.split(" and ")))
-    aim = f"be sure of {name_of(suspected)}" if sure else f"tell {name_of(suspected)} from {name_of(rival)}"
-    return f"to {aim}, measure: {first.measurement}"
+    return f"to {aim(first.separates)}, measure: {first.measurement}"
 
 
 def html_table(verdict: Verdict) -> str:

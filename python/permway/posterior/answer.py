@@ -140,7 +140,7 @@ def _class(names: Sequence[tuple[str, float]]) -> tuple[ClassMember, ...]:
 
 
 def _bands(frequency_Hz: Reals, shown: Reals) -> tuple[tuple[float, float], ...]:
-    """Bands, of whole third octaves, that hold most of what an effect shows."""
+    """Bands, of third octaves as far as there are lines, that hold most of what an effect shows."""
     cell = np.floor(3.0 * np.log2(frequency_Hz)).astype(np.int64)
     cells = np.arange(cell.min(), cell.max() + 1)
     share = np.bincount(cell - cell.min(), weights=np.maximum(shown, 0.0), minlength=cells.size)
@@ -150,12 +150,13 @@ def _bands(frequency_Hz: Reals, shown: Reals) -> tuple[tuple[float, float], ...]
     needed = int(np.searchsorted(np.cumsum(share[order]) / share.sum(), SHOWN)) + 1
     chosen = np.zeros(cells.size, dtype=bool)
     chosen[order[:needed]] = True
-    spans, start = [], None
+    spans, start, ends = [], None, (float(frequency_Hz.min()), float(frequency_Hz.max()))
     for index, inside in enumerate([*chosen, False]):
         if inside and start is None:
             start = index
         elif not inside and start is not None:
-            spans.append((float(2.0 ** (cells[start] / 3.0)), float(2.0 ** ((cells[index - 1] + 1) / 3.0))))
+            low, high = 2.0 ** (cells[start] / 3.0), 2.0 ** ((cells[index - 1] + 1) / 3.0)
+            spans.append((max(float(low), ends[0]), min(float(high), ends[1])))
             start = None
     return tuple(spans)
 

@@ -58,11 +58,14 @@ class Member:
     fit : Fit
     log_priors : tuple of float
         Of each amendment, nats.
+    far_behind : bool
+        Whether it is kept only to be shown, as the best of its size.
     """
 
     amendments: tuple[Hypothesis, ...]
     fit: Fit
     log_priors: tuple[float, ...]
+    far_behind: bool = False
 
     @property
     def log_prior(self) -> float:

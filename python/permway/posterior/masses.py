@@ -37,20 +37,25 @@ class Masses:
         Posterior probability that the nominal model, recalibrated, lacks nothing.
     unamended : float
         The same, or that it lacks what no set describes.
+    far_behind : tuple of Member
+        The best sets of sizes of which none is near the best: they count in no probability.
     """
 
     members: tuple[Member, ...]
     nothing: float
     unamended: float
+    far_behind: tuple[Member, ...] = ()
 
     @staticmethod
     def of(members: Sequence[Member]) -> Masses:
         """From members with their prior and their evidence; one of them is the empty set."""
+        behind = tuple(m for m in members if m.far_behind)
+        members = [m for m in members if not m.far_behind]
         log = np.array([m.log_mass for m in members])
         whole = np.exp(log - log.max())
         share = float(whole[[not m.amendments for m in members]].sum() / whole.sum())
         ordered = sorted(members, key=lambda m: (bool(m.amendments), _coarse(m)), reverse=True)
-        return Masses(tuple(ordered), share * (1.0 - ordered[-1].fit.hyper.novel), share)
+        return Masses(tuple(ordered), share * (1.0 - ordered[-1].fit.hyper.novel), share, behind)
 
     @property
     def empty(self) -> Member:

@@ -25,7 +25,7 @@ CLOSE, TURNS = 0.2, 8
 most that is taken anew. Left so far off a fit scatters 2 % more than it says; with twice 8 %, with half 0.5 %."""
 
 LEFT = 12.0
-"""Nats behind the best set from which a set is let go of: less than a class ever shows."""
+"""Nats behind the best set from which a set counts no more: less than a class ever shows."""
 
 
 def annealed(fitter: Fitter, fit: Fit) -> Fit:
@@ -54,10 +54,18 @@ def ordered(
     members = _pruned(fitter, sorted(members, key=lambda m: -m.log_mass), nominal)
     if members[0] is before:
         return fitter, members
-    members = [m for m in apart(members) if m.log_mass > members[0].log_mass - LEFT or not m.amendments]
+    members = _worth_keeping(apart(members))
     fitter, fits = weighed(fitter, [m.fit for m in members], [m.amendments for m in members])
     members = [replace(m, fit=fit) for m, fit in zip(members, fits, strict=True)]
     return fitter, sorted(members, key=lambda m: -m.log_mass)
+
+
+def _worth_keeping(members: Sequence[Member]) -> list[Member]:
+    """Those near the best, and the best of each size, the empty one among them; in order."""
+    least = members[0].log_mass - LEFT
+    marked = [replace(m, far_behind=bool(m.amendments) and m.log_mass <= least) for m in members]
+    first = {len(m.amendments): m for m in reversed(marked)}
+    return [m for m in marked if not m.far_behind or m is first[len(m.amendments)]]
 
 
 def weighed(

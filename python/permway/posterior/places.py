@@ -132,10 +132,11 @@ def _within(x: Reals, stretch: tuple[float, float]) -> Reals:
 
 
 def _rivals(masses: Masses, shares: Sequence[float]) -> list[Rival]:
-    """Members with what they are, the most probable first."""
+    """Members with what they are, the most probable first, and the best of each size."""
     best = max(m.log_prior + m.fit.log_evidence for m in masses.members)
     found = []
-    for member, share in zip(masses.members, shares, strict=True):
+    every, none = (*masses.members, *masses.far_behind), [0.0] * len(masses.far_behind)
+    for member, share in zip(every, [*shares, *none], strict=True):
         values = [member.values(i) for i in range(len(member.amendments))]
         both = list(zip(member.amendments, values, strict=True))
         found.append(
@@ -148,7 +149,8 @@ def _rivals(masses: Masses, shares: Sequence[float]) -> list[Rival]:
                 parameters=sum(len(a.free) for a in member.amendments),
             )
         )
-    return sorted(found, key=lambda one: (-one.probability, one.behind_nats))
+    # Of what is as good as impossible, evidence says which is less so.
+    return sorted(found, key=lambda one: (-round(one.probability, 9), one.behind_nats))
 
 
 def _tried(cells: Sequence[Cell], grid: dict[str, Reals]) -> dict[str, Reals]:

@@ -11,7 +11,7 @@ from typing import Any
 from permway.errors import InputError
 from permway.files import prepare_folder, write_text
 from permway.recordings.lab_folder import Export, StatedTable, read_folder
-from permway.recordings.skeleton_model import model_text
+from permway.recordings.skeleton_model import first_body, model_text, parameter_lines
 
 CAMPAIGN, MODEL = "campaign.toml", "model.toml"
 
@@ -22,7 +22,7 @@ NO_SAYING = "question: the file does not say it"
 
 _NUMBER = r"(?P<x>[-+]?\d+(?:[.,]\d+)?)"
 
-BODIES = ("rail", "sleeper", "slab", "base", "deck", "girder")
+BODIES = ("rail", "sleeper", "slab", "base", "deck", "girder", "beam", "baseplate", "plate", "cap", "pier")
 
 _BODY = f"(?P<body>{'|'.join(BODIES)})"
 
@@ -69,7 +69,7 @@ def write_skeleton(folder: Path) -> dict[str, Any]:
             raise InputError("is there already", where=str(folder / name), remedy="move it away, or go on with it")
     exports = read_folder(folder)
     started = Begun(exports)
-    campaign, model = started.text(folder.resolve().name), model_text()
+    campaign, model = started.text(folder.resolve().name), model_text(started.body)
     prepare_folder(folder, (CAMPAIGN, MODEL))
     return {
         "campaign": str(write_text(folder / CAMPAIGN, campaign)),
@@ -106,6 +106,12 @@ class Begun:
                 name = self._record_name(export, record.table)
                 self.records.append((name, StatedTable(renamed, record.unstated), export))
 
+    @property
+    def body(self) -> str:
+        """What the model begins with."""
+        held = [_held(name)["body"] for name in (*self.sensors, *self.forces)]
+        return first_body({one for one in held if one})
+
     def text(self, title: str) -> str:
         """The campaign file."""
         lines = [
@@ -118,7 +124,7 @@ class Begun:
         ]
         for key, found in (("sensors", self.sensors), ("forces", self.forces)):
             for name, one in found.items():
-                place = _place(name, one.table, key)
+                place = _place(name, one.table, key, self.body)
                 lines += [f"[[{key}]]", f"name = {_quoted(name)}", *place, *_unit(one), ""]
         lines += [line for name in self._conditions() for line in (*_condition(*name), "")]
         for name, record, export in self.records:
@@ -126,8 +132,7 @@ class Begun:
         lines += [
             "# question: which numbers of the model are not known exactly, and how well? One table each:",
             "# [[parameters]]",
-            '# name = "pad.k"',
-            '# paths = "line.laws.pad.stiffness"',
+            *parameter_lines(self.body),
             "# tolerance_2sigma = 0.3            # 30 %: two standard deviations, relative",
             "",
         ]
@@ -171,18 +176,22 @@ def _named(
     return names
 
 
-def _place(name: str, table: Mapping[str, Any], key: str) -> list[str]:
-    """Body and place: what the file states, or a question, with what the label seems to say as its answer."""
-    x = float(table.get("x_m", 0.0))
+def _held(name: str) -> dict[str, str]:
+    """Body and x that a label seems to hold, "" for each that it does not."""
     match = next((found for found in (one.fullmatch(name) for one in NAMED) if found), None)
-    held = match.groupdict() if match else {}
-    body = held.get("body") or "rail"
-    body = body.lower() if body.lower() in BODIES else body
-    at = f"{float(held['x'].replace(',', '.')):.9g}" if "x" in held else "0.0"
+    held = {"body": "", "x": ""} | (match.groupdict() if match else {})
+    return held | ({"body": held["body"].lower()} if held["body"].lower() in BODIES else {})
+
+
+def _place(name: str, table: Mapping[str, Any], key: str, first: str) -> list[str]:
+    """Body and place: what the file states, or a question, with what the label seems to say as its answer."""
+    x, held = float(table.get("x_m", 0.0)), _held(name)
+    body = held["body"] or first
+    at = f"{float(held['x'].replace(',', '.')):.9g}" if held["x"] else "0.0"
     on, where = "on which body of the model?", "where on it, m?"
-    if "body" in held:
+    if held["body"]:
         on += " By its name this one."
-    if "x" in held:
+    if held["x"]:
         where += " By its name here"
     if key == "sensors":
         on += ' On the vehicle: degree = "car1.wheelset1" and no x_m'

@@ -1,6 +1,8 @@
-"""A model file that is started: rail, pads and ground, with what only the user knows left open."""
+"""A model file that is started, a rail on pads or a beam, with what only the user knows left open."""
 
 from __future__ import annotations
+
+from collections.abc import Collection
 
 _TEXT = """\
 # Started by `permway new`: a rail on pads. Answer what begins with "question". What else a model can hold, and
@@ -45,6 +47,54 @@ x_m = 18.0
 """
 
 
-def model_text() -> str:
-    """The model file."""
-    return _TEXT
+_BEAM = """\
+# Started by `permway new`: a {body} alone, as labels name no rail. Answer what begins with "question". What else a
+# model can hold: docs/model-file.md. [[forces]] and [[sensors]] are for `permway solve` alone
+format = 1
+
+[frequencies]
+from_Hz = 1.0
+to_Hz = 100.0
+step_Hz = 0.2
+
+[line.bodies.{body}]
+type = "beam"
+ends = "pinned"                      # option: at both ends; or "free", or "clamped"
+# intervals_m = [[0.0, 20.0]]        # question: from where to where, in m as labels count?
+# youngs_modulus_Pa = 3.4e10         # question: concrete about 3.4e10, steel 2.1e11
+# second_moment_m4 = 0.6             # question: of the whole section?
+# density_kg_per_m3 = 2500.0         # question: with what lies on it?
+# area_m2 = 4.8                      # question: of the whole section?
+loss_factor = 0.02
+
+[[forces]]
+body = "{body}"
+x_m = 8.0
+
+[[sensors]]
+body = "{body}"
+x_m = 9.0
+
+# option: does it stand on bearings? Then ends = "free", a law, and [[line.joints]] between it and "ground"
+"""
+
+BARE = ("beam", "girder", "deck")
+"""Bodies that may be a model by themselves."""
+
+
+def first_body(named: Collection[str]) -> str:
+    """What the model begins with: a rail, or a bare beam where labels name such and nothing else."""
+    bare = [one for one in BARE if one in named]
+    return bare[0] if bare and set(named) <= set(BARE) else "rail"
+
+
+def model_text(body: str) -> str:
+    """The model file that begins with this body."""
+    return _TEXT if body == "rail" else _BEAM.format(body=body)
+
+
+def parameter_lines(body: str) -> tuple[str, str]:
+    """Name and path of a parameter that the model has, as an example."""
+    if body == "rail":
+        return '# name = "pad.k"', '# paths = "line.laws.pad.stiffness"'
+    return f'# name = "{body}.E"', f'# paths = "line.bodies.{body}.youngs_modulus_Pa"'

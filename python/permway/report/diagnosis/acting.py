@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from permway.diagnosis.catalogue import entries
-from permway.diagnosis.plain_names import chance, ends, estimate, name_of, parameter_of, stretch
+from permway.diagnosis.plain_names import aim, chance, ends, estimate, name_of, parameter_of, stretch
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.tolerances import outside
 from permway.diagnosis.verdict import NOVEL, UNPROVED, Effect, Verdict
@@ -14,7 +16,7 @@ from permway.model.line import Line
 Facts = list[tuple[str, str]]
 
 MOST_RIVALS = 12
-"""Sets that the page shows openly."""
+"""Sets that the page shows openly, beside the best of each size."""
 
 LEAST = 0.005
 """Probability that is shown of what acts at no place along the line."""
@@ -99,10 +101,9 @@ def next_steps(diagnosis: Diagnosis) -> list[str]:
             f"Check what was stated of {' and '.join(off[:3])}: drawing, data sheet, temperature of the test. "
             "State the value that is right, or a wider tolerance, and diagnose again."
         )
-    for effect in verdict.effects:
-        if verdict.status != "insufficient":
-            steps.append(_look(effect))
-    steps += [f"Measure: {one.measurement}. It distinguishes {_apart(one.separates)}." for one in verdict.next[:2]]
+    if verdict.status != "insufficient":
+        steps += _looks(verdict.effects)
+    steps += [f"Measure: {one.measurement}, to {aim(one.separates)}." for one in verdict.next[:2]]
     match verdict.status:
         case "recalibrated":
             steps.append(
@@ -119,24 +120,32 @@ def next_steps(diagnosis: Diagnosis) -> list[str]:
     return steps
 
 
-def _look(effect: Effect) -> str:
+def _looks(effects: Sequence[Effect]) -> list[str]:
+    """Where to look, each place once, with all that is expected there."""
+    found: dict[str, dict[str, None]] = {}
+    for effect in effects:
+        where, expected = _look(effect)
+        found.setdefault(where, {})[expected] = None
+    names = {where: ", and ".join(filter(None, expected)) for where, expected in found.items()}
+    return [f"{where} Expected: {names[where]}." if names[where] else where for where in found]
+
+
+def _look(effect: Effect) -> tuple[str, str]:
+    """Where to look, and what is expected there."""
     label, within = effect.place.label, effect.place.within
     if effect.domain == "measurement":
         channel = " and ".join(effect.place.channels) or label or "the measurement"
-        return (
+        words = (
             f"Check {channel}: mounting, cable, sign, calibration. Correct it in the campaign file or leave the "
             "channel out, and diagnose again."
         )
+        return words, ""
     if effect.name == STATED:
-        return f"Check what was stated of {label}: drawing, data sheet, temperature of the test."
+        return f"Check what was stated of {label}: drawing, data sheet, temperature of the test.", ""
     # What has a place is gone to; what acts everywhere, as a law of all pads, is found in documents and tests.
     verb = "Check" if effect.place.x is None else "Inspect on site"
     reach = "" if within is None else f" (90 %: {stretch(*within)})"
-    return f"{verb}: {label or DOMAIN[effect.domain]}{reach}. Expected: {_title(effect)}."
-
-
-def _apart(names: tuple[str, str]) -> str:
-    return f"{name_of(names[0])} from {name_of(names[1])}"
+    return f"{verb}: {label or DOMAIN[effect.domain]}{reach}.", _title(effect)
 
 
 def rival_rows(weighed: Weighed) -> list[dict[str, str]]:
@@ -154,6 +163,15 @@ def rival_rows(weighed: Weighed) -> list[dict[str, str]]:
             }
         )
     return rows
+
+
+def rival_tables(weighed: Weighed) -> tuple[list[dict[str, str]], list[dict[str, str]]]:
+    """Rows that the page shows openly, the best set of each size among them, and all others."""
+    rows, sizes = rival_rows(weighed), [len(one.names) for one in weighed.rivals]
+    first = {sizes.index(size) for size in sizes}
+    is_open = [i < MOST_RIVALS or i in first or i >= len(sizes) for i in range(len(rows))]
+    both = list(zip(rows, is_open, strict=True))
+    return [row for row, shown in both if shown], [row for row, shown in both if not shown]
 
 
 def _row(one: Rival) -> dict[str, str]:

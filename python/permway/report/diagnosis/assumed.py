@@ -7,16 +7,21 @@ from importlib.metadata import version
 from typing import Any
 
 from permway import _core
+from permway.campaign.compare import NEPER_DB
 from permway.campaign.kinds import KINDS, kind_of
 from permway.campaign.rolls import how_trains_run
 from permway.diagnosis.result import Diagnosis
+from permway.posterior.hyper import STRAINED
 from permway.report.compare.tables import calibration_rows, decibels
 
 LIBRARIES = ("numpy", "scipy", "xarray")
 
 
 def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
-    """Facts by heading: `model`, `records`, `smooth`, `noise`, `left_out`, `ruled_out`, `held_out`, how made."""
+    """Facts by heading: `model`, `records`, `smooth`, `noise`, `left_out`, `ruled_out`, `held_out`, how made.
+
+    `strained` is the size from which errors in `smooth` deserve a look.
+    """
     campaign, comparison = diagnosis.comparison.campaign, diagnosis.comparison
     line = campaign.model.line
     runs = how_trains_run(campaign.stated, campaign.model)
@@ -33,7 +38,9 @@ def assumed(diagnosis: Diagnosis) -> dict[str, Any]:
             (row["kind"], row["records"], row["channels"], decibels(row["noise_dB_rms"]))
             for row in comparison.fits()
         ],
-        "smooth": calibration_rows(comparison),
+        # Of the model that the verdict rests on: before, errors may have stood in for what was missing.
+        "smooth": calibration_rows(diagnosis.after or comparison),
+        "strained": f"{STRAINED * NEPER_DB:.1f} dB",
         "noise": _noise(diagnosis),
         "left_out": list(comparison.left_out.items()),
         "ruled_out": list(diagnosis.verdict.ruled_out),

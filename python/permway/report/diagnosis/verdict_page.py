@@ -14,12 +14,11 @@ from permway.diagnosis.verdict import RIGHT, UNPROVED
 from permway.diagnosis.verdict_words import INCOMPLETE
 from permway.report.compare.tables import NOTABLE_DB
 from permway.report.diagnosis.acting import (
-    MOST_RIVALS,
     effect_cards,
     elsewhere,
     facts_first,
     next_steps,
-    rival_rows,
+    rival_tables,
 )
 from permway.report.diagnosis.assumed import assumed
 from permway.report.diagnosis.better import LEVEL_DB, curve_pictures, first_curve, gain_picture, parameter_picture
@@ -62,7 +61,7 @@ def render_verdict(diagnosis: Diagnosis, drawn: Mapping[str, Drawn]) -> str:
         lstrip_blocks=True,
     )
     verdict, weighed = diagnosis.verdict, diagnosis.weighed
-    rivals = rival_rows(weighed)
+    rivals, others = rival_tables(weighed)
     return environment.get_template("verdict.html.j2").render(
         title=diagnosis.comparison.campaign.stated.title or "A campaign",
         sentence=verdict.sentence,
@@ -76,8 +75,8 @@ def render_verdict(diagnosis: Diagnosis, drawn: Mapping[str, Drawn]) -> str:
         along=bool(along(weighed)),
         ringed=bool(ringed(weighed, diagnosis.base.campaign)),
         elsewhere=elsewhere(weighed, diagnosis.base.campaign.model.line),
-        rivals=rivals[:MOST_RIVALS],
-        others=rivals[MOST_RIVALS:],
+        rivals=rivals,
+        others=others,
         held_out=held_out_rows(verdict),
         amended=diagnosis.after is not None,
         tables=[change_table(change) for change in changes(diagnosis)],
