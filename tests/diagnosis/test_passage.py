@@ -122,7 +122,7 @@ def test_how_large_errors_of_chains_are_is_estimated(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("off", [-2.5, 2.5])
 def test_a_stiffness_far_off_is_begun_with_where_it_is(tmp_path: Path, off: float) -> None:
-    """The bridge rings on; slopes at the stated stiffness lead to another time of entry instead."""
+    """To a step of the grid. The bridge rings on; slopes at the stated stiffness lead to another time of entry."""
     campaign = measured(tmp_path, "we")
     (dataset,) = campaign.load()
     free = [f.name for f in free_parameters(campaign)]
@@ -133,8 +133,8 @@ def test_a_stiffness_far_off_is_begun_with_where_it_is(tmp_path: Path, off: floa
     data["spectrum"] = (("channel", "frequency"), found["spectrum"].values, dataset.data["spectrum"].attrs)
     observations = gather(campaign, [replace(dataset, data=data)], threads=1)
     z = begin(observations, Problem(observations, campaign.with_values, free_parameters(campaign)))
-    assert z[free.index("E")] == pytest.approx(off, abs=0.3)
-    assert z[free.index("t0")] == pytest.approx(-0.5 * off, abs=0.3)
+    assert z[free.index("E")] == pytest.approx(off, abs=0.4)
+    assert z[free.index("t0")] == pytest.approx(-0.5 * off, abs=0.4)
 
 
 @pytest.mark.injection
