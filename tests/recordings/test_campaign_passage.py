@@ -35,13 +35,13 @@ def noisy(values: np.ndarray) -> np.ndarray:
     return values + 1e-6 * np.abs(values).max() * np.random.default_rng(1).standard_normal(values.size)
 
 
-def differences(folder: Path, eta: float, window_s: float) -> dict[str, np.ndarray]:
+def differences(folder: Path, eta: float, window_s: float, **deck: float) -> dict[str, np.ndarray]:
     """Predicted less closed form, over the largest of the closed form's spectrum, (frequency,) by sensor."""
     time = passages.time_s()
     columns = {name: noisy(passages.history(name, time, 0.5 * eta)) for name in "wvaeM"}
     table = passages.campaign("wvaeM")
     table["records"][0]["window_s"] = window_s
-    campaign = read_campaign(passages.write(folder, columns, table=table, loss_factor=eta))
+    campaign = read_campaign(passages.write(folder, columns, table=table, **({"loss_factor": eta} | deck)))
     (dataset,) = campaign.load()
     (found,) = predict(campaign, [dataset], threads=1)
     measured, predicted = dataset.data["spectrum"].values, found["spectrum"].values
@@ -55,6 +55,18 @@ def test_moving_forces_over_a_beam_of_little_loss(tmp_path: Path) -> None:
         assert np.abs(coarse[name]).max() < 1.5 * 0.02, name
         assert np.abs(fine[name]).max() < 1.5 * 0.01, name
         assert np.abs(2.0 * fine[name] - coarse[name]).max() < LEFT[name], name
+
+
+def test_moving_forces_over_a_beam_of_one_damping_ratio(tmp_path: Path) -> None:
+    """The closed form's own damping: what is left is its modes, and the window's ends."""
+    found = differences(tmp_path, 0.04, 60.0, loss_factor=0.0, damping_ratio=0.02)
+    for name in "wvaeM":
+        assert np.abs(found[name]).max() < 1e-3, name
+
+
+def test_a_moment_that_goes_with_speed_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"sensors\.M.*goes with its speed.*damping_ratio"):
+        differences(tmp_path, 0.02, 20.0, stiffness_damping_s=1e-4)
 
 
 def predicted_history(quantity: str, x_m: float, window_s: float) -> np.ndarray:

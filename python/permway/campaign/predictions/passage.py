@@ -211,6 +211,12 @@ def _bending(model: Model, sensor: Sensor) -> complex:
     """Bending stiffness where a sensor is, N m2."""
     x = float(sensor.x_m or 0.0)
     beam = _beam(model, sensor)
+    if beam.stiffness_damping_s > 0.0:
+        raise InputError(
+            "the moment of a beam with stiffness_damping_s goes with its speed, too",
+            where=f"sensors.{sensor.name}.quantity",
+            remedy="read a strain, with height_m, or give the beam a damping_ratio",
+        )
     factors = [c.bending_factor for c in beam.changes if c.from_m <= x <= c.to_m]
     return beam.bending_Nm2 * (factors[0] if factors else 1.0)
 
