@@ -139,6 +139,7 @@ def beams(draw, *, finite=None, lossless=False, uniform=False):
         shear_modulus_Pa=modulus / draw(between(2.3, 2.7)) if timoshenko else None,
         shear_coefficient=draw(between(0.3, 0.87)) if timoshenko else None,
         loss_factor=0.0 if lossless else draw(decades(0.005, 0.5)),
+        **({} if lossless else draw(_VISCOUS)),
         intervals_m=interval,
         ends=ends,
         changes=[
@@ -155,6 +156,14 @@ def beams(draw, *, finite=None, lossless=False, uniform=False):
 
 
 _ENDS = st.sampled_from(["free", "pinned"])
+_VISCOUS = st.fixed_dictionaries(
+    {},
+    optional={
+        "damping_ratio": decades(0.002, 0.2),
+        "mass_damping_per_s": decades(0.1, 50.0),
+        "stiffness_damping_s": decades(1e-6, 1e-3),
+    },
+)
 
 
 def extent(body):

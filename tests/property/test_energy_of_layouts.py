@@ -86,7 +86,7 @@ class Gathered:
 
 
 def shortest(found, omega):
-    bending, shear, mass, rotary = (abs(v) for v in found)
+    bending, shear, mass, rotary = (abs(v) for v in found[:4])
     if bending == 0.0:
         return 2 * np.pi / (omega * np.sqrt(mass / shear))
     k2 = omega * np.sqrt(mass / bending) + omega**2 * (rotary / bending + (mass / shear if shear else 0.0))
@@ -95,7 +95,10 @@ def shortest(found, omega):
 
 def piece_energy(w, length, found, omega):
     """Complex strain, and mass times motion, of one length, from displacements at its points."""
-    bending, shear, mass, rotary = found
+    bending, shear, mass, rotary, dashpots = found
+    # What dashpots take counts as strain, whose imaginary part is loss.
+    bent, sheared_by, moved, turned_by = 1j * omega * np.array(dashpots)
+    bending, shear = bending + bent, shear + sheared_by
     d = DERIVATIVE * (2.0 / length)
     integral = WEIGHTS * (0.5 * length)
     slope = d @ w
@@ -103,15 +106,16 @@ def piece_energy(w, length, found, omega):
         return shear * (integral @ np.abs(slope) ** 2), mass * (integral @ np.abs(w) ** 2)
     # w' = phi + V / S, V' = -mu w, M' = -V - J phi with M = B phi'.
     compliance = 1.0 / shear if shear else 0.0
-    mu, j = mass * omega**2, rotary * omega**2
+    mu, j = mass * omega**2 - moved, rotary * omega**2 - turned_by
     curvature = d @ slope + compliance * mu * w
     if shear:
         turned = (compliance * bending * (d @ curvature) + slope) / (1.0 - compliance * j)
         sheared = shear * (integral @ np.abs(slope - turned) ** 2)
     else:
         turned, sheared = slope, 0.0
-    strain = bending * (integral @ np.abs(curvature) ** 2) + sheared
-    return strain, mass * (integral @ np.abs(w) ** 2) + rotary * (integral @ np.abs(turned) ** 2)
+    motion, rotation = integral @ np.abs(w) ** 2, integral @ np.abs(turned) ** 2
+    strain = bending * (integral @ np.abs(curvature) ** 2) + sheared + moved * motion + turned_by * rotation
+    return strain, mass * motion + rotary * rotation
 
 
 def balance(line, forces, amplitudes, frequency, formulation):
