@@ -6,6 +6,7 @@ import copy
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
@@ -68,7 +69,7 @@ class ParameterSet:
         folder: Path | None = None,
     ) -> None:
         self._model, self._table, self._own, self._folder = model, table, own, folder
-        self._places: dict[str, tuple[Place, ...]] = {}
+        self._every: dict[str, tuple[Place, ...]] = {}
         self.known: dict[str, Known] = {}
         taken: dict[Steps, str] = {}
         for index, parameter in enumerate(parameters):
@@ -81,8 +82,19 @@ class ParameterSet:
                 if other != parameter.name and "sets" in (parameter.acts, self.known[other].parameter.acts):
                     what = f"{other!r} leads there too, and one of the two sets it"
                     raise InputError(what, where=f"{where}.paths[{i}]", value=parameter.paths[i])
-            self._places[parameter.name] = places
+            self._every[parameter.name] = places
             self.known[parameter.name] = known_of(parameter, places[0].base, where)
+
+    @cached_property
+    def _places(self) -> dict[str, tuple[Place, ...]]:
+        """Where each parameter acts; numbers that the model does not have are left out.
+
+        Found when it is asked for: most of the models that a search makes are predicted once, as they are.
+        """
+        return {
+            name: tuple(place for place in places if place.kind != "model" or leads(self._model, place.steps))
+            for name, places in self._every.items()
+        }
 
     @property
     def names(self) -> list[str]:
@@ -124,10 +136,9 @@ class ParameterSet:
         """The same parameters, acting on another model; numbers that it does not have are left out."""
         other = copy.copy(self)
         other._model = model
-        other._places = {
-            name: tuple(place for place in places if place.kind != "model" or leads(model, place.steps))
-            for name, places in self._places.items()
-        }
+        # What this model has not comes back with none that is made of it.
+        other._every = self._places
+        other.__dict__.pop("_places", None)
         # What a preset was made of is not in the new model.
         other._table = {}
         return other

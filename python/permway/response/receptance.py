@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence, Sized
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import get_args
 
 import numpy as np
@@ -17,7 +17,7 @@ from permway.errors import InputError, must_be
 from permway.model.joint_table import JointTable
 from permway.model.line import Line
 from permway.model.place import Place
-from permway.model.segments import find
+from permway.model.segments import Integers, Segment, find
 from permway.response.core import Formulation as Formulation
 from permway.response.core import OnError, Solved, run
 from permway.response.core import Progress as Progress
@@ -192,6 +192,14 @@ def check_places(line: Line, places: Sequence[Place], where: str) -> dict[str, n
     for index, place in enumerate(places):
         if not isinstance(place, Place):
             raise InputError("must be a Place", where=f"{where}[{index}]", value=place)
+    found, x = _placed(tuple(line.segments()), tuple(places), where)
+    return {"body": found.copy(), "x": x.copy()}
+
+
+# A diagnosis asks for the same places on thousands of lines, of which most have the same bodies.
+@lru_cache(maxsize=64)
+def _placed(segments: tuple[Segment, ...], places: tuple[Place, ...], where: str) -> tuple[Integers, Reals]:
+    """Segment of each place, and x."""
     labels = [p.label for p in places]
     if len(set(labels)) < len(labels):
         index = next(i for i, label in enumerate(labels) if label in labels[:i])
@@ -203,11 +211,10 @@ def check_places(line: Line, places: Sequence[Place], where: str) -> dict[str, n
             remedy="give each its own name",
         )
     found, x = np.zeros(len(places), dtype=np.int64), np.array([p.x_m for p in places], dtype=np.float64)
-    segments = line.segments()
     for body in dict.fromkeys(p.body for p in places):
         mine = [index for index, place in enumerate(places) if place.body == body]
         found[mine] = find(segments, body, x[mine], partial(_which, where, mine))
-    return {"body": found, "x": x}
+    return found, x
 
 
 def _which(where: str, indices: Sequence[int], index: int) -> str:

@@ -175,4 +175,10 @@ def solve(sweep: Sweep, model: Model, *, threads: int | None = None) -> Result:
 
 def places_of(locations: Iterable[Location]) -> tuple[Place, ...]:
     """Places for the solver, numbered: sensors of a campaign may share one, and have names of their own."""
+    return _numbered(tuple(locations))
+
+
+# A search asks for the same ones thousands of times.
+@lru_cache(maxsize=64)
+def _numbered(locations: tuple[Location, ...]) -> tuple[Place, ...]:
     return tuple(Place(body=body, x_m=x, name=str(i)) for i, (body, x) in enumerate(locations))
