@@ -6,9 +6,12 @@ import secrets
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from short_deck import scored
 
 
+# Its seed is another each time, and so is what it takes: two to six minutes.
+@pytest.mark.injection
 def test_a_new_seed_with_nothing_concealed_comes_to_a_verdict(
     tmp_path: Path, record_property: Callable[[str, object], None]
 ) -> None:

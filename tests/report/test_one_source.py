@@ -127,7 +127,7 @@ def numbers(text: str) -> list[tuple[float, float]]:
 
 
 def same(text: str, values: list[float | None]) -> None:
-    """That a text prints these numbers, to its last digit, and no others; once what is one number to that digit."""
+    """That a text prints these numbers, to its last digit, and no others; once what is one to that digit."""
     printed, expected = numbers(text), [value for value in values if value is not None]
     printed = printed * len(expected) if len(printed) == 1 else printed
     assert len(printed) == len(expected), (text, expected)
