@@ -52,7 +52,7 @@ octave in the base's own. The bolted beam's frequency falls and rises with the l
 PASSAGES_HEAD = """
 ## Passages of another code
 
-Small bridges, trains and sensors at random, integrated in time by `benches/passages`, recalibrated as
+Random small bridges, trains and sensors, integrated in time by `benches/passages`, recalibrated as
 `permway compare` does. Stiffness, speed, entry and loads are stated 7.5 %, 1 %, 50 ms and 10 % off (standard
 deviations), chains err by 2 %.
 

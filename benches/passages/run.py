@@ -55,9 +55,11 @@ def summary(cases: list[dict[str, Any]]) -> dict[str, object]:
     loads = [abs(v) for c in cases for name, v in c["missed"].items() if name.startswith("P")]
     speeds = [abs(c["missed"]["V"]) for c in cases]
     off = np.abs([v for c in cases for v in c["deviations"].values()])
+    every = [(name, value) for case in cases for name, value in case["deviations"].items()]
     held = {
-        what: float(np.mean([abs(v) < Z90 for c in cases for n, v in c["deviations"].items() if n[0] == what[0]]))
+        what: float(np.mean([abs(value) < Z90 for name, value in every if name[0] == what[0]]))
         for what in ("E", "V", "P", "t0", "K")
+        if any(name[0] == what[0] for name, _ in every)
     }
     return {
         "cases": len(cases),
