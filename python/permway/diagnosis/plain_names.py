@@ -83,7 +83,7 @@ def _beside(common: Counter[str], own: Counter[str]) -> str:
 
 
 def again(name: str, known: bool) -> str:
-    """An effect's name, told from one of the same name if such is known already."""
+    """An effect's name, kept apart from one of the same name if such is known already."""
     words = name_of(name).split()
     plural = any(word.endswith("s") and not word.endswith("ss") for word in (words[0], words[-1]))
     return " ".join((["more" if plural else "another"] if known else []) + words)

@@ -164,7 +164,7 @@ def held_dB(verdict: Verdict) -> tuple[float, float] | None:
 
 
 def _named(effect: Effect, others: Sequence[Effect] = ()) -> str:
-    """What, where, how much, how surely, with 90 % intervals; told from others of the same names."""
+    """What, where, how much, how surely, with 90 % intervals; kept apart from others of the same names."""
     known = probability(effect)
     names = _names(effect)
     alike = any(_names(one) == names for one in others)
