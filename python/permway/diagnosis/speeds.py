@@ -18,7 +18,8 @@ from permway.diagnosis.tangent import Problem
 
 GRID, OF_BODIES = 41, 21
 """Points of the grid, from one bound to the other: for speeds within 1 % steps of 0.05 %; for a stiffness known to
-7.5 % steps of 3 %, a frequency's of 1.5 %. With half of them peaks are missed; twice take twice the time."""
+7.5 % steps of 3 %, a frequency's of 1.5 %. With half of them fits of three bridges ended alike, begun
+farther off; twice take twice the time."""
 
 LIMITS = 4.0
 """Standard deviations of the prior to which values without bounds are looked for."""

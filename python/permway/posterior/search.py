@@ -135,7 +135,9 @@ def _next_root(members: Sequence[Member], count: int) -> Member | None:
         return best
     if not best.fit.hyper.strained:
         return None
-    return next((m for m in members if len(m.amendments) == count and not m.fit.hyper.strained), None)
+    return next(
+        (m for m in members if len(m.amendments) == count and not (m.far_behind or m.fit.hyper.strained)), None
+    )
 
 
 def _small_changes(root: Member, starts: list[Cell], progress: Progress, what: str) -> tuple[list[Cell], Scores]:

@@ -45,8 +45,8 @@ WORDS: dict[Kind, str] = {
 }
 
 SPREAD = 2.0
-"""Factor about the first bending frequency, one standard deviation: Rayleigh's two terms are set by low modes."""
-
+"""Factor about the first bending frequency, one standard deviation: Rayleigh's two terms are set by low modes.
+Twice its logarithm costs an effect 0.7 nats at most, half of it gains as much; both act together."""
 
 ALL = 0.995
 """Share that two digits say is all."""
