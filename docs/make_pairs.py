@@ -59,7 +59,8 @@ deviations), chains err by 2 %.
 """
 
 PASSAGES_NOTES = """
-Asked: loads within 3 %, speeds within 0.3 %, intervals 85 to 95 %, of 200: entries miss. Damping ratios are stated.
+Asked: loads within 3 %, speeds within 0.3 %, intervals 85 to 95 %, of 200: entries miss. Damping
+ratios are stated.
 """
 
 

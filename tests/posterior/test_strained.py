@@ -87,9 +87,10 @@ def test_two_wrong_values_are_not_errors_of_a_chain(tmp_path: Path) -> None:
     assert model.stiffness == pytest.approx(TRUE["stiffness"], rel=0.05)
 
 
-def member(count: int, size: float, mass: float) -> Member:
+def member(count: int, size: float, mass: float, *, far_behind: bool = False) -> Member:
     hyper = Hyper(("sensor", "length", "discrepancy frf"), np.log([size, 0.8, 0.003]))
-    fake = SimpleNamespace(amendments=(None,) * count, fit=SimpleNamespace(hyper=hyper), log_mass=mass)
+    fit = SimpleNamespace(hyper=hyper)
+    fake = SimpleNamespace(amendments=(None,) * count, fit=fit, log_mass=mass, far_behind=far_behind)
     return cast(Member, fake)
 
 
@@ -101,3 +102,5 @@ def test_sets_grow_past_one_that_strains_its_chains() -> None:
     assert _next_root([empty, one], 1) is None
     assert _next_root([hidden, bent, one], 1) is one
     assert _next_root([hidden, bent], 1) is None
+    # What is kept to be shown alone is not searched from.
+    assert _next_root([hidden, member(1, plain, -20.0, far_behind=True)], 1) is None
