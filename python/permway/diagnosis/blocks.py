@@ -14,7 +14,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 import xarray as xr
 
-from permway.arrays import Reals
+from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.load import Dataset
 from permway.campaign.predict import Request, Result
@@ -98,6 +98,17 @@ class Block(Protocol):
 
     def residuals(self, predicted: xr.Dataset) -> Reals:
         """Standardised, shape (n,)."""
+
+    def changed(self, predicted: xr.Dataset, change: Complexes) -> Reals | None:
+        """Residuals where receptances differ from those behind a prediction; None if that takes another one.
+
+        Parameters
+        ----------
+        predicted : Dataset of xarray
+        change : ndarray of complex128, shape (F, rows, columns)
+            Of the receptances that its request asks for, m/N.
+        """
+        return None
 
     def levels_dB(self, predicted: xr.Dataset) -> Reals:
         """Measured over predicted, no error taken out, shape (n,); NaN where a row is no level, but a phase."""

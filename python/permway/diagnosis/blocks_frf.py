@@ -234,6 +234,13 @@ class FrfBlock(Block):
             self._last = last = predicted, np.concatenate([d.real, d.imag])
         return last[1]
 
+    def changed(self, predicted: xr.Dataset, change: Complexes) -> Reals:
+        """See :class:`permway.diagnosis.blocks.Block`."""
+        chain = predicted["chain"].values
+        model = predicted["frf"].values + chain * np.moveaxis(change, 0, -1)
+        d = self.white(self._off(model, chain) * self.weight).reshape(-1)
+        return np.concatenate([d.real, d.imag])
+
     def levels_dB(self, predicted: xr.Dataset) -> Reals:
         """See :class:`permway.diagnosis.blocks.Block`; imaginary parts are phases."""
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -242,13 +249,13 @@ class FrfBlock(Block):
 
     def off(self, predicted: xr.Dataset) -> Complexes:
         """Measured less predicted, in the response's unit, as errors that multiply have it."""
-        model = predicted["frf"].values
+        return self._off(predicted["frf"].values, predicted["chain"].values)
+
+    def _off(self, model: Complexes, chain: Complexes) -> Complexes:
         found = np.zeros_like(self._measured)
         found[self._logarithmic] = self._seen * (self._logarithms(model) - self._lifted)
         hidden, (gains, measured) = model[self._hidden], self._hidden_measured
-        found[self._hidden] = measured - gains * hidden * _straight(
-            predicted["chain"].values[self._hidden] / self._chain
-        )
+        found[self._hidden] = measured - gains * hidden * _straight(chain[self._hidden] / self._chain)
         return found
 
     def _logarithms(self, model: Complexes) -> Complexes:

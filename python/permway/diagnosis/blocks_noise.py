@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 import xarray as xr
 
-from permway.arrays import Reals
+from permway.arrays import Complexes, Reals
 from permway.campaign.load import Dataset
 from permway.diagnosis.blocks import Block, Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
@@ -93,6 +93,10 @@ class NoiseBlock(Block):
             return off
         freedom = self.own.size - 1.0
         return np.asarray(np.sign(off) * np.sqrt((freedom + 1.0) * np.log1p(off**2 / freedom)))
+
+    def changed(self, predicted: xr.Dataset, change: Complexes) -> Reals:
+        """The same: receptances do not change the noise."""
+        return self.residuals(predicted)
 
     def levels_dB(self, predicted: xr.Dataset) -> Reals:
         """None: noise constrains no level."""

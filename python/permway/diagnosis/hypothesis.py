@@ -27,10 +27,13 @@ class Situation:
         The recalibrated base.
     locations : sequence of Location
         Places to look at, those that matter most first; may be empty.
+    asked : list of str
+        Laws and bodies whose places were asked for: without any, other places make no difference.
     """
 
     fit: Fit
     locations: tuple[Location, ...]
+    asked: list[str] = field(default_factory=list, compare=False)
 
     @property
     def campaign(self) -> Campaign:
@@ -39,11 +42,13 @@ class Situation:
 
     def joints(self, law: str, most: int = 3) -> list[Location]:
         """The first joints of a law."""
+        self.asked.append(law)
         mine = [at for at in self.locations if at.kind == "joint" and at.name == law]
         return mine[:most]
 
     def bodies(self, body: str, most: int = 3) -> list[Location]:
         """The first places of a body."""
+        self.asked.append(body)
         mine = [at for at in self.locations if at.kind == "body" and at.name.split("[")[0] == body]
         return mine[:most]
 
@@ -139,6 +144,8 @@ class Hypothesis:
             Whose nominal parameters the hypothesis may move.
         """
         names = {prefix + f.name: f.name for f in self.free}
+        # Slopes by the effect's own parameters are all of one base.
+        last: list[tuple[dict[str, float], Campaign]] = []
 
         def made(values: Mapping[str, float]) -> Campaign:
             nominal = {k: v for k, v in values.items() if k not in names}
@@ -146,7 +153,9 @@ class Hypothesis:
                 known = campaign.parameters.known[self.moves]
                 shift = values[prefix + self.free[0].name]
                 nominal[self.moves] = known.value(known.z(nominal[self.moves]) + shift)
-            return self.amend(build(nominal), {names[k]: v for k, v in values.items() if k in names})
+            if not last or last[0][0] != nominal:
+                last[:] = [(nominal, build(nominal))]
+            return self.amend(last[0][1], {names[k]: v for k, v in values.items() if k in names})
 
         return made, tuple(Free(prefix + f.name, f.unit, f.value, f.limits) for f in self.free)
 

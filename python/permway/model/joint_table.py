@@ -37,8 +37,8 @@ class JointTable:
 Columns = tuple[Reals, Integers, Integers, Reals]
 """Stations, upper and lower segments, scales."""
 
-_ALONG: Kept[Joints, Columns] = Kept(256)
-"""Of layers along x: lines of a search differ in few of them."""
+_LAYERS: Kept[Joints, Columns] = Kept(256)
+"""Of layers: lines of a search differ in few of them."""
 
 
 def joint_table(
@@ -54,9 +54,7 @@ def joint_table(
     """
     columns = []
     for index, layer in enumerate(layers):
-        x, upper, lower, scale = _columns(bodies, segments, index, layer)
-        factors = changed(layer.changes, layer.scatter, x, where=f"joints[{index}]")
-        columns.append((x, upper, lower, scale * factors))
+        columns.append(_LAYERS.of(layer, partial(_changed, bodies, segments, index, layer), given=segments))
     sizes = [len(x) for x, _, _, _ in columns]
     table = JointTable(
         layer=np.repeat(np.arange(len(sizes)), sizes),
@@ -93,12 +91,18 @@ def _check_held(segments: Sequence[Segment], table: JointTable) -> None:
             )
 
 
+def _changed(bodies: Mapping[str, AnyBody], segments: Sequence[Segment], index: int, layer: Joints) -> Columns:
+    """With its changes and its scatter."""
+    x, upper, lower, scale = _columns(bodies, segments, index, layer)
+    return x, upper, lower, scale * changed(layer.changes, layer.scatter, x, where=f"joints[{index}]")
+
+
 def _columns(bodies: Mapping[str, AnyBody], segments: Sequence[Segment], index: int, layer: Joints) -> Columns:
     if isinstance(layer.at, str):
         return _at_meetings(segments, index, layer)
     if isinstance(layer.at, Ends):
         return _at_ends(bodies, segments, index, layer, layer.at)
-    return _ALONG.of(layer, partial(_along, segments, index, layer, layer.at), given=segments)
+    return _along(segments, index, layer, layer.at)
 
 
 def _along(segments: Sequence[Segment], index: int, layer: Joints, at: Along) -> Columns:

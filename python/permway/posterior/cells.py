@@ -223,12 +223,16 @@ def _offered(entry: Entry, situations: list[Situation]) -> Iterator[Hypothesis]:
         yield from everywhere(situations[0])
         return
     seen = set()
-    for situation in situations if entry.DOMAIN == "path" else situations[:1]:
+    for situation in situations:
+        situation.asked.clear()
         for hypothesis in entry.hypotheses(situation):
             key = _key(hypothesis)
             if key not in seen:
                 seen.add(key)
                 yield hypothesis
+        if entry.DOMAIN != "path" or not situation.asked:
+            # Of other places it would offer the same.
+            return
 
 
 def _key(hypothesis: Hypothesis) -> tuple[object, ...]:

@@ -16,6 +16,7 @@ from scipy import linalg
 
 from permway.arrays import Reals
 from permway.campaign.campaign import Campaign
+from permway.diagnosis.joint_changes import Changed, JointChanges
 from permway.diagnosis.side_by_side import SMALL, each
 from permway.errors import InputError, SolveError
 from permway.posterior.cells import SMALL as SHARE
@@ -25,8 +26,8 @@ from permway.posterior.fit import Fit, grown
 from permway.posterior.hyper import Hyper
 from permway.posterior.journal import kept_table
 
-BATCH = 64
-"""Cells whose residuals are held at once."""
+BATCH, AHEAD = 64, 512
+"""Cells whose residuals are held at once, and of which the changes of joints are."""
 
 EACH_FORM, EACH_SMALL = 12, 4
 """Changes of the line of one form, the best by hammer tests, that are scored by all records, and of small ones:
@@ -154,9 +155,9 @@ def _looked(
     """In hammer tests first where there are runs, too."""
     kinds = {block.dataset.record.statistic for block in fit.frame.observations.blocks}
     if not {"frf", "csd"} <= kinds:
-        return _scored(fit, cells, progress, others)
+        return _scored(fit, cells, progress, others, small)
     of_line = [index for index, cell in enumerate(cells) if cell.hypothesis.domain == "path"]
-    first = _scored(fit.only("frf"), [cells[i] for i in of_line], progress)
+    first = _scored(fit.only("frf"), [cells[i] for i in of_line], progress, (), small)
     chosen = set(range(len(cells))) - set(of_line)
     least = SEEN_WHOLE * SHARE**2 if small else SEEN
     chosen |= {index for index, shown in zip(of_line, first.shown, strict=True) if shown < least}
@@ -169,7 +170,7 @@ def _looked(
         if count[form] <= (EACH_SMALL if small else EACH_FORM):
             chosen.add(index)
     again, done = sorted(chosen), len(of_line)
-    rest = _scored(fit, [cells[i] for i in again], lambda n: progress(min(done + n, len(cells))), others)
+    rest = _scored(fit, [cells[i] for i in again], lambda n: progress(min(done + n, len(cells))), others, small)
     found = Scores.none(len(cells))
     for name in ("objective", "gain", "measure", "shown", "view"):
         getattr(found, name)[again] = getattr(rest, name)
@@ -213,7 +214,11 @@ class _View:
 
 
 def _scored(
-    fit: Fit, cells: Sequence[Cell], progress: Callable[[int], object], others: Sequence[Hyper] = ()
+    fit: Fit,
+    cells: Sequence[Cell],
+    progress: Callable[[int], object],
+    others: Sequence[Hyper] = (),
+    small: bool = False,
 ) -> Scores:
     """By all records of a fit, and with other hyperparameters where these make more of a change."""
     observations, solved, build = fit.frame.observations, fit.state.solved, fit.model.build
@@ -229,8 +234,22 @@ def _scored(
 
     names = [free.name for free in fit.model.free]
 
-    def residuals(cell: Cell) -> Reals | None:
+    joined = JointChanges(observations, base, solved, small=small)
+
+    def change(cell: Cell) -> Changed | None:
+        if cell.hypothesis.domain != "path" or cell.hypothesis.moves:
+            return None
+        try:
+            return joined.of(amended(cell))
+        except InputError:
+            return None
+
+    def residuals(pair: tuple[Cell, Changed | None]) -> Reals | None:
+        cell, changed = pair
         hypothesis = cell.hypothesis
+        if changed is not None:
+            found = joined.residuals(changed, lambda: amended(cell))
+            return found if np.isfinite(found).all() else None
         if hypothesis.moves in names:
             shift = hypothesis.free[0].value(float(cell.z[0]))
             if abs(shift) < LINEAR:
@@ -245,7 +264,12 @@ def _scored(
 
     scores = Scores.none(len(cells))
     for start in range(0, len(cells), BATCH):
-        batch = each(residuals, cells[start : start + BATCH], threads=observations.threads, least=SMALL)
+        if not start % AHEAD:
+            ahead = cells[start : start + AHEAD]
+            of_joints = each(change, ahead, threads=observations.threads, least=4 * SMALL)
+            joined.solve([c for c in of_joints if c is not None])
+        pairs = list(zip(cells[start : start + BATCH], of_joints[start % AHEAD :], strict=False))
+        batch = each(residuals, pairs, threads=observations.threads, least=SMALL)
         solved_ones = {index: found for index, found in enumerate(batch) if found is not None}
         if solved_ones:
             at = start + np.array(list(solved_ones))

@@ -11,6 +11,7 @@ from permway.errors import InputError
 from permway.laws.base import Law
 from permway.model.bodies import Beam, Mass
 from permway.model.joints import GROUND, Joints
+from permway.model.kept import Kept
 from permway.model.line import Line
 from permway.model.segments import Segment
 from permway.model.stations import Ends
@@ -60,8 +61,16 @@ class Layer:
         return self.joints.law
 
 
+_LAYERS: Kept[Line, list[Layer]] = Kept(8)
+"""Of the lines that a search goes back and forth between: every entry asks for them."""
+
+
 def layers(line: Line) -> list[Layer]:
     """All layers that carry: not those that stand for an attached mass or for a loss alone."""
+    return _LAYERS.of(line, lambda: _layers(line))
+
+
+def _layers(line: Line) -> list[Layer]:
     table = line.joint_table()
     carrying = {name for name, law in line.laws.items() if _carries(law)}
     return [
