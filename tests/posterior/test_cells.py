@@ -7,9 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from permway.campaign.campaign import read_campaign
-from permway.challenge.small.make import make_small
+from permway.challenge.small.layouts import draw_layout
+from permway.challenge.small.make import generator, make_small
 from permway.diagnosis.gather import gather
+from permway.diagnosis.location import step_m, stretches
 from permway.errors import InputError
+from permway.model.bodies import Beam
+from permway.model.line import Line
 from permway.posterior.cells import Cell, cells
 from permway.posterior.fit import Fit, Fitter, grown
 from permway.posterior.recalibrated import recalibrated
@@ -61,3 +65,41 @@ def test_any_amendment_on_any_other_changes_the_line_or_is_refused(tmp_path: Pat
                 except InputError:
                     refused += 1
     assert refused < 0.3 * len(forms) ** 2
+
+
+def drawn_of(seed: int, index: int) -> tuple[str, str]:
+    """Layout and variant of a small campaign."""
+    random = generator(seed, index, "layout")
+    _ = random.random()
+    layout = draw_layout(random)
+    return layout.name, layout.variant
+
+
+def test_a_beam_clamped_at_one_end_is_looked_at_all_along(tmp_path: Path) -> None:
+    """Joints are at its end alone."""
+    index = next(i for i in range(200) if drawn_of(5150004, i) == ("beam", "clamped"))
+    campaign = read_campaign(tmp_path / make_small(5150004, index, tmp_path) / "campaign.toml")
+    length = campaign.model.line.segments()[0].stop
+    assert campaign.model.line.joint_table().x.max() < 0.1 * length
+    found = cells(recalibrated(gather(campaign, threads=1)))
+    for entry in ("deck_attachment", "girder_crack", "novel"):
+        places = [cell.hypothesis.locate(cell.values).x_m for cell in found if cell.hypothesis.entry == entry]
+        middles = np.unique([0.5 * sum(x) for x in places if x is not None])
+        assert middles.min() < 0.25 * length, entry
+        assert middles.max() > 0.75 * length, entry
+
+
+@pytest.mark.parametrize("length_m", [0.3, 6.0, 30.0])
+def test_short_beams_are_looked_at_as_closely_for_their_length(length_m: float) -> None:
+    beam = Beam(
+        youngs_modulus_Pa=2e11,
+        second_moment_m4=1e-8,
+        density_kg_per_m3=7850.0,
+        area_m2=1e-3,
+        intervals_m=((0.0, length_m),),
+        ends=("clamped", "free"),
+    )
+    line = Line(bodies={"beam": beam})
+    ((segment, low, high),) = stretches(line)
+    assert (segment.body, low, high) == ("beam", 0.0, length_m)
+    assert 8 <= length_m / step_m(length_m) <= max(8.0, length_m) * (1.0 + 1e-9)

@@ -11,7 +11,7 @@ import xarray as xr
 
 from permway.campaign.campaign import Campaign
 from permway.campaign.load import Dataset
-from permway.diagnosis.location import stretches
+from permway.diagnosis.location import step_m, stretches
 from permway.errors import InputError
 from permway.recordings.channel import Point, Sensor
 
@@ -124,7 +124,9 @@ def _free_places(campaign: Campaign, standing: Sequence[Sensor]) -> Iterator[tup
     for segment, low, high in stretches(campaign.model.line):
         for share in SHARES:
             x = float(np.round(low + share * (high - low), 2))
-            if not any(s.body == segment.name and abs(float(s.x_m or 0.0) - x) < 1.0 for s in standing):
+            if not any(
+                s.body == segment.name and abs(float(s.x_m or 0.0) - x) < step_m(high - low) for s in standing
+            ):
                 yield segment.name, x
 
 
@@ -177,7 +179,7 @@ def _blows(campaign: Campaign, hammer: Dataset) -> Iterator[Item]:
     struck = [campaign.point(str(p)) for p in hammer.data["force"].values]
     for segment, low, high in stretches(campaign.model.line):
         body, x = segment.name, float(np.round(low + 0.4 * (high - low), 2))
-        if any(p.body == body and abs(p.x_m - x) < 1.0 for p in struck):
+        if any(p.body == body and abs(p.x_m - x) < step_m(high - low) for p in struck):
             continue
         point = struck[0].model_copy(update={"name": f"planned {body}@{x:g}", "body": body, "x_m": x})
         data = hammer.data.isel(force=[0]).assign_coords(force=[point.name])

@@ -21,7 +21,7 @@ from permway.diagnosis.clock import Progress
 from permway.diagnosis.fit import Fit, free_parameters, limits_of
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Hypothesis, Situation
-from permway.diagnosis.location import Location, stretches
+from permway.diagnosis.location import Location, step_m, stretches
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.tangent import Problem
@@ -174,7 +174,7 @@ def _locations(line: Line) -> Iterator[list[Location]]:
         if mine:
             yield [Location("joint", law, float(table.x[j])) for j in mine]
     for segment, low, high in stretches(line):
-        inside = np.linspace(low, high, max(2, round(high - low) + 1))
+        inside = np.linspace(low, high, max(2, round((high - low) / step_m(high - low)) + 1))
         yield [Location("body", segment.name, float(x)) for x in inside]
 
 

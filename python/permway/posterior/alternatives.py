@@ -37,6 +37,8 @@ def without_each(fitter: Fitter, member: Member, nominal: Model) -> Iterator[tup
 def alternatives(found: Member, index: int, starts: Sequence[Cell], *, sized: bool = False) -> list[Cell]:
     """Starts of other forms than one amendment of a set, with its values where parameters have the same name.
 
+    Of an amendment of a whole part of the line, as a law, those of the same part, too.
+
     Parameters
     ----------
     found : Member
@@ -50,6 +52,8 @@ def alternatives(found: Member, index: int, starts: Sequence[Cell], *, sized: bo
     last = found.amendments[index]
     units = {free.name: free.unit for free in last.free}
     values = found.values(index)
+    part = last.locate(values)
+    whole = not sized and bool(part.what) and part.x_m is None
     moved: dict[tuple[object, ...], Cell] = {}
     for cell in starts:
         hypothesis = cell.hypothesis
@@ -62,8 +66,9 @@ def alternatives(found: Member, index: int, starts: Sequence[Cell], *, sized: bo
                 if own is not None and abs(own) < FAR:
                     z[place] = own
                     shared.add(free.name)
-        if shared and (not sized or hypothesis.size in shared):
-            other = replace(cell, z=z)
+        other = replace(cell, z=z)
+        same_part = whole and hypothesis.locate(other.values) == part
+        if same_part or (shared and (not sized or hypothesis.size in shared)):
             rest = tuple(round(float(v), 6) for v in other.values.values())
             where = hypothesis.locate(other.values)
             key = (hypothesis.form, rest, where.what, where.x_m) if sized else (len(moved),)

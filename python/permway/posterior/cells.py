@@ -15,13 +15,10 @@ from permway.diagnosis.catalogue import entries
 from permway.diagnosis.fit import Fit as Base
 from permway.diagnosis.fit import Free, free_parameters
 from permway.diagnosis.hypothesis import Entry, Hypothesis, Situation
-from permway.diagnosis.location import Location, stretches
+from permway.diagnosis.location import Location, step_m, stretches
 from permway.posterior import generic, stated
 from permway.posterior.fit import Fit
 from permway.posterior.spans import BEYOND, spread_out, tuned, widened, with_starts
-
-SPACING_M = 1.0
-"""Between places along a body, m: a third of what the places' priors span."""
 
 FARTHEST = 40.0
 """Standard deviations, beyond which no value is looked for: places on a rail without ends have no limits."""
@@ -255,7 +252,8 @@ def _situations(base: Fit) -> Iterator[Situation]:
     for law, x in zip(table.law, table.x, strict=True):
         yield Situation(fit, (Location("joint", laws[law], float(x)),))
     for segment, first, last in stretches(line):
-        for x in np.arange(first + 0.5 * SPACING_M, last, SPACING_M):
+        step = step_m(last - first)
+        for x in np.arange(first + 0.5 * step, last, step):
             yield Situation(fit, (Location("body", segment.name, float(x)),))
 
 

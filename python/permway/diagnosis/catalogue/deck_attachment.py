@@ -10,6 +10,8 @@ from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._change import attached_mass, fresh, with_joints
 from permway.diagnosis.catalogue._roles import girders
 from permway.diagnosis.hypothesis import Domain, Hypothesis, Situation, Where, linear_free, log_free
+from permway.diagnosis.location import step_m
+from permway.model.bodies import Beam
 from permway.model.joints import GROUND, Joints
 
 ID = "deck_attachment"
@@ -18,7 +20,7 @@ FAMILY = "resonator"
 SUMMARY = "A mass m on a spring of loss factor eta at its resonance f0, attached to the girder at x."
 PARAMETERS = {
     "x_m": "m: where it stands",
-    "mass_kg": "kg, 100 to 30000",
+    "mass_kg": "kg, 0.0005 to 0.15 of the girder's mass",
     "frequency_Hz": "Hz, 2 to 300: of the mass on its spring, the girder held",
     "loss_factor": "1, 0.005 to 0.5: at that frequency; of a dashpot twice its damping ratio",
     "dashpot": "1, 0 to 1: share of the loss that is a dashpot's, which grows with frequency",
@@ -30,6 +32,10 @@ CONFUSED_WITH = {
     "span_coupling": "a hammer test on the neighbouring span",
 }
 SOURCE = "Den Hartog, Mechanical Vibrations (1956), chapter 3"
+
+TYPICAL = 0.01
+"""Of the girder's mass: what stands on it, in the middle of its prior. Half and twice are a fifth of its standard
+deviation."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
@@ -45,7 +51,12 @@ def resonators(situation: Situation, body: str, entry: str) -> Iterator[Hypothes
         return
     centre, name = best[0].x_m, best[0].name
     segment = next(s for s in situation.campaign.model.line.segments() if s.name == name)
-    low, high = max(segment.start, centre - 12.0), min(segment.stop, centre + 12.0)
+    span = segment.stop - segment.start
+    sigma = 3.0 * step_m(span)
+    beam = situation.campaign.model.line.bodies[body]
+    # Of a beam without ends, what stands on a usual girder.
+    typical = TYPICAL * beam.mass_kg_per_m * span if isinstance(beam, Beam) and np.isfinite(span) else 2000.0
+    low, high = max(segment.start, centre - 4.0 * sigma), min(segment.stop, centre + 4.0 * sigma)
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
         law = fresh("attachment", campaign.model.line.laws)
@@ -63,8 +74,8 @@ def resonators(situation: Situation, body: str, entry: str) -> Iterator[Hypothes
         domain=DOMAIN,
         family=FAMILY,
         free=(
-            linear_free("x_m", "m", centre, 3.0, low, high),
-            log_free("mass_kg", "kg", 2000.0, 2.5),
+            linear_free("x_m", "m", centre, sigma, low, high),
+            log_free("mass_kg", "kg", typical, 2.5),
             log_free("frequency_Hz", "Hz", 25.0, 2.5),
             log_free("loss_factor", "1", 0.05, 2.0),
             linear_free("dashpot", "1", 0.5, 0.5, 0.0, 1.0),

@@ -41,7 +41,8 @@ CONFUSED_WITH = {
 SOURCE = (
     "Salawu (1997), Engineering Structures 19, 718-723; Friswell and Penny (2002), Struct. Health Monitoring 1"
 )
-SHORTEST_M = 0.1
+SHORTEST_M, SHORTEST = 0.1, 0.01
+"""Of a crack's reach, m, and of a short span."""
 
 STARTS = 7
 """Along a span: the fit goes to the nearest of places that explain some bending frequencies."""
@@ -60,10 +61,11 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
 def _on(name: str, segment: Segment, located: float | None) -> Hypothesis:
     start, stop = segment.start, segment.stop
     span = stop - start
+    shortest = min(SHORTEST_M, SHORTEST * span)
 
     def stretch(values: Mapping[str, float]) -> tuple[float, float]:
-        half = 0.5 * max(values["length_m"], SHORTEST_M)
-        middle = min(max(values["centre_m"], start + 0.5 * SHORTEST_M), stop - 0.5 * SHORTEST_M)
+        half = 0.5 * max(values["length_m"], shortest)
+        middle = min(max(values["centre_m"], start + 0.5 * shortest), stop - 0.5 * shortest)
         return max(start, middle - half), min(stop, middle + half)
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
@@ -84,7 +86,7 @@ def _on(name: str, segment: Segment, located: float | None) -> Hypothesis:
         family=FAMILY,
         free=(
             linear_free("centre_m", "m", middle, sigma, start, stop),
-            log_free("length_m", "m", 1.0, 1.6, lowest=SHORTEST_M),
+            log_free("length_m", "m", min(1.0, 0.1 * span), 1.6, lowest=shortest),
             between_free("factor", "1", 0.01, 1.0),
         ),
         amend=amend,
