@@ -39,6 +39,7 @@ def rates(found: list[Judged]) -> tuple[float, float]:
     return sum(easy) / len(easy), sum(wrong) / len(wrong)
 
 
+@pytest.mark.injection
 def test_a_dozen_short_ones(tmp_path: Path) -> None:
     found, wrong = rates(diagnosed(tmp_path, 1, 12, SHORT))
     assert found >= 0.3

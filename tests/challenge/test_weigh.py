@@ -17,6 +17,7 @@ from permway.posterior.deviance import against_folder
 from short_deck import small_case, small_site
 
 
+@pytest.mark.injection
 @pytest.mark.parametrize(("lost", "least", "most"), [(False, -1.0, 1.0), (True, 200.0, np.inf)])
 def test_nothing_weighs_nothing_and_a_lost_fastener_much(
     tmp_path: Path, lost: bool, least: float, most: float

@@ -80,6 +80,7 @@ def fitted(campaign: Campaign, dataset: Dataset) -> Fit:
     return recalibrated(gather(campaign, [dataset], threads=1))
 
 
+@pytest.mark.injection
 def test_a_fit_lacks_nothing_and_is_surer_of_loads_and_speed(tmp_path: Path) -> None:
     """Without the unevenness a discrepancy takes it for something missing, and intervals are far wider.
 

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
-from permway.demo.run import campaign_files
+from permway.challenge.small.make import make_small
 from permway.files import LEFT_BEHIND_S, prepare_folder
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals")
@@ -46,12 +46,11 @@ def test_killed_between_writing_and_naming(tmp_path: Path, older: str | None) ->
 
 
 def test_a_diagnosis_killed_at_work_goes_on_where_it_was(tmp_path: Path) -> None:
-    for name, content in campaign_files().items():
-        (tmp_path / name).write_bytes(content)
+    campaign = tmp_path / "made" / make_small(5150004, 0, tmp_path / "made") / "campaign.toml"
     scratch = tmp_path / "scratch"
     scratch.mkdir()
     folder = tmp_path / "diagnosis"
-    command = [sys.executable, "-m", "permway", "diagnose", str(tmp_path / "campaign.toml"), "-o", str(folder)]
+    command = [sys.executable, "-m", "permway", "diagnose", str(campaign), "-o", str(folder)]
     command += ["--threads", "1", "--no-report"]
     environment = {**os.environ, "TMPDIR": str(scratch)}
     process = subprocess.Popen(command, env=environment)
