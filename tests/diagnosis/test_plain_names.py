@@ -14,6 +14,7 @@ from permway.diagnosis.plain_names import (
     name_of,
     parameter_of,
     seen,
+    spelled,
     stated,
     stretch,
 )
@@ -109,3 +110,23 @@ def test_a_stretch_is_reported_to_the_decimetre() -> None:
     # Joints: the second would lie outside the rounded stretch.
     assert stretch(14.3, 14.950000000000001) == "14.3 to 14.95 m"
     assert stretch(-0.625, 6.0) == "−0.625 to 6.0 m"
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        ("8.6e+03 kg on a spring, 21.4 Hz", "8600 kg on a spring, 21.4 Hz"),
+        ("a spring of 7.22e+06 N/m, loss factor 0.67", "a spring of 7.22 MN/m, loss factor 0.67"),
+        ("1.1e+09 N m/rad against rotation", "1.10 GN m/rad against rotation"),
+        ("54.6 kg on a spring", "54.6 kg on a spring"),
+        ("a line of 0.000157 at 16.65 Hz", "a line of 0.000157 at 16.65 Hz"),
+    ],
+)
+def test_laws_have_no_exponents(law: str, words: str) -> None:
+    assert spelled(law) == words
+
+
+def test_an_end_near_nothing_is_not_nothing() -> None:
+    wide = Estimate(value=0.021, unit="1", low=0.0004, high=0.4)
+    assert ends(wide) == "0.0004 to 0.40"
+    assert ends(wide.model_copy(update={"low": 0.0})) == "0 to 0.40"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 
 from permway.diagnosis.verdict_parts import RECALIBRATED, Estimate, Moved, Smallest
@@ -57,6 +58,9 @@ UNITS = ("_m", "_s", "_kg", "_Hz", "_dB", "_N")
 MOST, MOST_OF_SHARE, SHARE = 3, 2, 0.5
 """Significant digits, at most; of an effect's ratio below a half fewer, for no model is right to a hundredth of
 what is left. A ratio near 1, as of a gain or a speed, needs all."""
+
+POWER = r"(-?\d(?:\.\d+)?e[+-]\d+)(?: (N m/rad|N/m|Ns/m|kg/m|kg|N|m)\b)?"
+"""A number with an exponent, and its unit."""
 
 PLACE_M = 1e-6
 """Within which a place is one of whole millimetres."""
@@ -129,9 +133,16 @@ def ends(one: Estimate | Moved) -> str:
     if one.low is None or one.high is None:
         return ""
     factor, named = _scale(abs(one.value), one.unit)
+    low, high = one.low / factor, one.high / factor
     decimals = _known(one, factor)
-    low, high = (_text(end / factor, decimals) for end in (one.low, one.high))
-    return _with(" to ".join(dict.fromkeys((low, high))), named)
+    # An end near 0 is not 0.
+    texts = (_text(end, decimals if round(end, decimals) else _decimals(end, 1)) for end in (low, high))
+    return _with(" to ".join(dict.fromkeys(texts)), named)
+
+
+def spelled(law: str) -> str:
+    """Mechanics in words, whose numbers have a prefix of their unit and no exponent."""
+    return re.sub(POWER, lambda found: measured(float(found[1]), found[2] or "1"), law)
 
 
 def stretch(low: float, high: float) -> str:

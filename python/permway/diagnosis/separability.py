@@ -22,6 +22,7 @@ from permway.diagnosis.fit import Fit, free_parameters, limits_of
 from permway.diagnosis.gather import gather, predictable
 from permway.diagnosis.hypothesis import Hypothesis, Situation
 from permway.diagnosis.location import Location, step_m, stretches
+from permway.diagnosis.plain_names import spelled
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.diagnosis.tangent import Problem
@@ -146,7 +147,7 @@ def separability(
         ),
         entries=tuple(h.entry for h, _, _, _ in kept),
         families=tuple(h.family for h, _, _, _ in kept),
-        size=tuple(h.law(v) for (h, _, _, _), v in zip(kept, values, strict=True)),
+        size=tuple(spelled(h.law(v)) for (h, _, _, _), v in zip(kept, values, strict=True)),
         seen=seen,
         apart=apart,
     )

@@ -8,6 +8,7 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.diagnosis.fit import WIDTH
+from permway.diagnosis.plain_names import spelled
 from permway.diagnosis.tolerances import outside
 from permway.diagnosis.verdict import NOVEL, RIGHT, Status, Verdict
 from permway.diagnosis.verdict_parts import (
@@ -122,7 +123,7 @@ def _effect(masses: Masses, index: int) -> Effect:
         bands=_bands(best.fit.frame.observations.rows.frequency_Hz, gained),
         name=members[0].name if named else None,
         class_=members,
-        law=Mechanics(words=hypothesis.law(values)),
+        law=Mechanics(words=spelled(hypothesis.law(values))),
         parameters=estimates,
         size=hypothesis.size or None,
     )

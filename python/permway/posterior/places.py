@@ -14,6 +14,7 @@ import numpy as np
 
 from permway.arrays import Reals
 from permway.diagnosis.hypothesis import Where
+from permway.diagnosis.plain_names import spelled
 from permway.diagnosis.weighed import Along, Aside, Rival, Weighed
 from permway.model.line import Line
 from permway.posterior.beam import Member, tempered
@@ -143,7 +144,7 @@ def _rivals(masses: Masses, shares: Sequence[float]) -> list[Rival]:
             Rival(
                 names=tuple(a.entry for a in member.amendments),
                 places=tuple(a.locate(v).label for a, v in both),
-                laws=tuple(a.law(v) for a, v in both),
+                laws=tuple(spelled(a.law(v)) for a, v in both),
                 probability=share,
                 behind_nats=best - member.log_prior - member.fit.log_evidence,
                 parameters=sum(len(a.free) for a in member.amendments),
