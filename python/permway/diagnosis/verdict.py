@@ -107,7 +107,7 @@ class Verdict(VerdictPart):
         return sentence(self)
 
     def _repr_html_(self) -> str:
-        from permway.diagnosis.verdict_words import html_table
+        from permway.diagnosis.verdict_table import html_table
 
         return html_table(self)
 

@@ -1,9 +1,8 @@
-"""The verdict in words: one sentence, and a small table for notebooks."""
+"""The verdict in words: one sentence."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from html import escape
 
 import numpy as np
 
@@ -324,22 +323,3 @@ def _advice(verdict: Verdict) -> str:
         return ""
     first = verdict.next[0]
     return f"to {aim(first.separates)}, measure: {first.measurement}"
-
-
-def html_table(verdict: Verdict) -> str:
-    """The verdict as a small table: the sentence, then of each effect place, name and parameters."""
-    rows = []
-    for effect in verdict.effects:
-        values = ", ".join(
-            f"{parameter_of(name)} {estimate(one)}" + (f" ({ends(one)})" if ends(one) else "")
-            for name, one in effect.parameters.items()
-        )
-        rivals = ", ".join(f"{name_of(m.name)} {chance(m.probability)}" for m in effect.class_)
-        name = name_of(effect.name) if effect.name else ""
-        cells = (DOMAIN[effect.domain], effect.place.label, name, rivals, values)
-        rows.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
-    heads = ("domain", "place", "name", "class", "parameters (90 %)")
-    head = "<tr>" + "".join(f"<th>{one}</th>" for one in heads) + "</tr>"
-    words = f"<b>{escape(STATUS[verdict.status])}.</b> {escape(verdict.sentence)}"
-    body = f"<thead>{head}</thead><tbody>{''.join(rows)}</tbody>" if rows else ""
-    return f'<table><caption style="text-align: left">{words}</caption>{body}</table>'
