@@ -15,19 +15,13 @@ import numpy as np
 from scipy import linalg
 
 from permway.arrays import Reals
-from permway.campaign.campaign import Campaign
-from permway.diagnosis.joint_changes import Changed, JointChanges
-from permway.diagnosis.side_by_side import SMALL, each
-from permway.errors import InputError, SolveError
 from permway.posterior.cells import SMALL as SHARE
 from permway.posterior.cells import Cell, least_measure, resized, times
+from permway.posterior.changes import Changes
 from permway.posterior.covariance import Roots
-from permway.posterior.fit import Fit, grown
+from permway.posterior.fit import Fit
 from permway.posterior.hyper import Hyper
 from permway.posterior.journal import kept_table
-
-BATCH, AHEAD = 64, 512
-"""Cells whose residuals are held at once, and of which the changes of joints are."""
 
 EACH_FORM, EACH_SMALL = 12, 4
 """Changes of the line of one form, the best by hammer tests, that are scored by all records, and of small ones:
@@ -51,10 +45,6 @@ STEEP = 1.5
 
 LIMITED = 0.01
 """Share by which a size stays behind what would gain most because of its limits."""
-
-LINEAR = 1.0
-"""Standard deviations of its tolerance, by which a nominal parameter moves in a straight line in a look at small
-changes: of those 0.15, of large ones 5."""
 
 
 @dataclass(frozen=True)
@@ -221,55 +211,10 @@ def _scored(
     small: bool = False,
 ) -> Scores:
     """By all records of a fit, and with other hyperparameters where these make more of a change."""
-    observations, solved, build = fit.frame.observations, fit.state.solved, fit.model.build
-    base = build(fit.values())
     views = [_View.of(replace(fit, hyper=hyper)) for hyper in (fit.hyper, *others)]
     worse = [view.moved() - views[0].moved() for view in views]
-
-    def amended(cell: Cell) -> Campaign:
-        if not cell.hypothesis.moves:
-            return cell.hypothesis.amend(base, cell.values)
-        own = {f"+{name}": value for name, value in cell.values.items()}
-        return grown(fit, cell.hypothesis, "+").build({**fit.values(), **own})
-
-    names = [free.name for free in fit.model.free]
-
-    joined = JointChanges(observations, base, solved, small=small)
-
-    def change(cell: Cell) -> Changed | None:
-        if cell.hypothesis.domain != "path" or cell.hypothesis.moves:
-            return None
-        try:
-            return joined.of(amended(cell))
-        except InputError:
-            return None
-
-    def residuals(pair: tuple[Cell, Changed | None]) -> Reals | None:
-        cell, changed = pair
-        hypothesis = cell.hypothesis
-        if changed is not None:
-            found = joined.residuals(changed, lambda: amended(cell))
-            return found if np.isfinite(found).all() else None
-        if hypothesis.moves in names:
-            shift = hypothesis.free[0].value(float(cell.z[0]))
-            if abs(shift) < LINEAR:
-                # The parameter itself moves back along: what is left by a bent path would be all that shows.
-                return np.asarray(fit.state.residuals + shift * fit.jacobian[:, names.index(hypothesis.moves)])
-        try:
-            predicted = observations.predicted(amended(cell), solved)
-            found = observations.residuals(predicted.datasets)
-        except (InputError, SolveError):
-            return None
-        return found if np.isfinite(found).all() else None
-
-    scores = Scores.none(len(cells))
-    for start in range(0, len(cells), BATCH):
-        if not start % AHEAD:
-            ahead = cells[start : start + AHEAD]
-            of_joints = each(change, ahead, threads=observations.threads, least=4 * SMALL)
-            joined.solve([c for c in of_joints if c is not None])
-        pairs = list(zip(cells[start : start + BATCH], of_joints[start % AHEAD :], strict=False))
-        batch = each(residuals, pairs, threads=observations.threads, least=SMALL)
+    scores, start = Scores.none(len(cells)), 0
+    for batch in Changes(fit, small=small).batches(cells):
         solved_ones = {index: found for index, found in enumerate(batch) if found is not None}
         if solved_ones:
             at = start + np.array(list(solved_ones))
@@ -288,5 +233,6 @@ def _scored(
                 better = np.full(at.size, True) if not number else gain > scores.gain[at]
                 scores.gain[at[better]], scores.measure[at[better]] = gain[better], measure[better]
                 scores.view[at[better]] = number
-        progress(min(start + BATCH, len(cells)))
+        start += len(batch)
+        progress(start)
     return scores
