@@ -164,8 +164,9 @@ def _alike(
 ) -> list[Member]:
     """Sets with another amendment where the leader has one.
 
-    If they may come as near as a class shows, or gain half as much before they are fitted. What smaller sets have
-    last is tried again: what the leader has may have led for what was still missing.
+    Those are fitted that may come as near as a class shows, or gain half as much before; and to the end what is
+    near then. What smaller sets have last is tried again: what the leader has may have led for what was still
+    missing.
 
     Parameters
     ----------
@@ -189,20 +190,29 @@ def _alike(
     count = fit.state.residuals.size
     say = _saying(progress, f"alternatives, {what}", len(starts) + len(large))
     scores = screened(without, starts, say, ())
-    nats = 0.5 * (without.objective - scores.gain - fit.objective)
-    worth = []
-    for i, cell in enumerate(starts):
-        lacking = tempered(float(nats[i]), count) + leader.log_priors[index] - cell.log_prior
-        if lacking < LEFT:
-            other = resized(cell, float(scores.measure[i]))
-            worth.append((lacking, other.hypothesis, Trial.of(others, other, fit.hyper)))
+    cells_of = [resized(cell, float(scores.measure[i])) for i, cell in enumerate(starts)] + large
     # A large change bends what it does: with the same values another form may do nearly the same.
-    nats = 0.5 * (screened(without, large, say).objective - fit.objective)
-    for i in np.flatnonzero(nats < (1.0 - GROWS) * 0.5 * (without.objective - fit.objective)).tolist():
-        lacking = tempered(float(nats[i]), count) + leader.log_priors[index] - large[i].log_prior
-        worth.append((lacking, large[i].hypothesis, Trial.of(others, large[i], fit.hyper)))
-    trials = chosen(worth, WIDTHS[2], PER_FORM[2])
-    return completed(fitter, others, trials, _saying(progress, f"alternatives, {what}, to the end", len(trials)))
+    objective = [*(without.objective - scores.gain), *screened(without, large, say).objective]
+    least = fit.objective + (1.0 - GROWS) * (without.objective - fit.objective)
+    lacking = [
+        tempered(0.5 * (one - fit.objective), count) + leader.log_priors[index] - cell.log_prior
+        for one, cell in zip(objective, cells_of, strict=True)
+    ]
+    worth = [
+        (lacking[i], cell.hypothesis, Trial.of(others, cell, fit.hyper))
+        for i, cell in enumerate(cells_of)
+        if objective[i] < least or lacking[i] < LEFT
+    ]
+    trials = chosen(worth, WIDTHS[1], PER_FORM[1])
+    say = _saying(progress, f"alternatives, {what}, fitted", len(trials))
+    trials = advanced(fitter, others, trials, steps=STEPS[1], moves=False, progress=say)
+    rows = [
+        (tempered(fit.log_evidence - t.log_evidence, count) - t.cell.log_prior, t.cell.hypothesis, t)
+        for t in trials
+    ]
+    near = [row for row in distinct(rows) if row[0] + leader.log_priors[index] < 2.0 * LEFT]
+    kept = chosen(near, WIDTHS[2], PER_FORM[2])
+    return completed(fitter, others, kept, _saying(progress, f"alternatives, {what}, to the end", len(kept)))
 
 
 def _near(
