@@ -77,3 +77,16 @@ def test_what_lost_before_is_tried_again_the_best_of_each_effect(
     assert [cell.hypothesis for cell in found] == [lost[1].hypothesis, gain.hypothesis]
     assert found[0].values == pytest.approx(lost[1].values)
     assert [cell.log_prior for cell in found] == [-1.0, -2e5]
+
+
+def test_of_a_whole_law_all_its_other_forms_are_begun(begun: tuple[Fitter, Fit, list[Cell]]) -> None:
+    """Though they share no parameter; those of another law, or of a part of it, are not."""
+    starts = begun[2]
+    first = next(c for c in starts if c.hypothesis.entry == "layer_damping")
+    part = first.hypothesis.locate(first.values)
+    found = alternatives(with_one(begun, first), 0, starts)
+    places = {(c.hypothesis.entry, c.hypothesis.locate(c.values)) for c in starts}
+    expected = {entry for entry, place in places if place == part} - {"layer_damping"}
+    assert "pad_frequency" in expected
+    assert {c.hypothesis.entry for c in found if c.hypothesis.locate(c.values) == part} == expected
+    assert not any(c.hypothesis.entry == "fastener_loss" for c in found)
