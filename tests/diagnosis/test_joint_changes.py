@@ -5,10 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import passages
 import pytest
+import tables_of_modes
 from effects.trains import campaign_in, drawn
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.challenge.small.make import make_small
+from permway.diagnosis import joint_changes
 from permway.diagnosis.catalogue._change import with_fields, with_joints
 from permway.diagnosis.gather import gather
 from permway.diagnosis.joint_changes import MOST_JOINTS, Changed, JointChanges
@@ -125,3 +128,41 @@ def test_what_is_more_than_joints_is_solved(tmp_path: Path) -> None:
     for at, handled in ((many, False), (many[1:], True)):
         layer = Joints(between=(line.segments()[0].body, GROUND), law="stiff", at=at)
         assert (joined.of(with_joints(base, layer, laws=law)) is not None) == handled
+
+
+@pytest.mark.parametrize("kind", ["modes", "passage"])
+def test_tables_of_modes_and_passages_are_predicted_anew(tmp_path: Path, kind: str) -> None:
+    """Their poles, and what a passage asks for along the line, are others where joints are."""
+    if kind == "modes":
+        path = tables_of_modes.write(tmp_path, tables_of_modes.rows_of(tables_of_modes.changed(), seed=4))
+    else:
+        time = passages.time_s()
+        path = passages.write(
+            tmp_path, {name: passages.history(name, time, 0.02) for name in "wv"}, loss_factor=0.04
+        )
+    fit = recalibrated(gather(read_campaign(path), threads=1))
+    base, joined = changes_of(fit)
+    assert pairs_of(base, joined, some(fit, 20, 1)) == []
+
+
+def test_what_could_not_be_solved_leaves_what_is_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    campaign = read_campaign(tmp_path / make_small(5150004, 0, tmp_path) / "campaign.toml")
+    fit = recalibrated(gather(campaign, threads=1))
+    base, joined = changes_of(fit)
+    pairs = pairs_of(base, joined, some(fit, 60, 2))
+    several = [changed for _, changed in pairs if len(changed.ports) > 1]
+    assert several
+
+    def refused(*_: object, **__: object) -> None:
+        raise SolveError("the line cannot be solved")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(joint_changes, "between_pairs", refused)
+        with pytest.raises(SolveError):
+            joined.solve(several)
+    joined.solve([changed for _, changed in pairs])
+    for amended, changed in pairs:
+        expected = solved(fit.frame.observations, amended)
+        if expected is not None and np.isfinite(expected).all():
+            found = joined.residuals(changed, lambda amended=amended: amended)
+            np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6)

@@ -20,7 +20,7 @@ import numpy as np
 from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.factors import model_under
-from permway.campaign.predict import Key, Request, Result, predict_one
+from permway.campaign.predict import Key, Request, Result, predict_one, request_of
 from permway.campaign.predictions.sweeps import Location, Sweep, places_of
 from permway.diagnosis.observations import Observations, Solved
 from permway.diagnosis.side_by_side import threads_of_solver
@@ -31,6 +31,13 @@ from permway.response.ports import Port, between_pairs, from_places
 MOST_JOINTS, MOST_SMALL = 32, 4
 """Joints that change, above which a line is solved anew: their system of equations then takes as long. And those
 above which a small change counts to first order: no change is small of a single resonator at its resonance."""
+
+
+EXACT = ("frf", "csd")
+"""Kinds of record that joints change by receptances alone: not tables of a law, nor of modes, which are poles."""
+
+MOST_BYTES = 2**22
+"""Of the changes of one line, that are handed between processes: beyond, it is solved anew."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +110,8 @@ class JointChanges:
         self.observations, self.campaign, self.solved = observations, campaign, solved
         self.small, self._most = small, MOST_SMALL if small else MOST_JOINTS
         needs: dict[Key, list[Request]] = {}
-        for need in solved.needs:
+        exact = all(dataset.record.statistic in EXACT for dataset in observations.datasets)
+        for need in solved.needs if exact else ():
             if need is not None:
                 needs.setdefault(need.key, []).append(need)
         self._states = {key: self._state(alike) for key, alike in needs.items()}
@@ -134,7 +142,8 @@ class JointChanges:
                 return None
             found.append(stiffer)
         moved = np.any([np.any(stiffer, axis=0) for stiffer in found], axis=0)
-        if not self.small and np.count_nonzero(moved) > MOST_JOINTS:
+        count = int(np.count_nonzero(moved))
+        if (not self.small and count > MOST_JOINTS) or 16 * count * sum(map(len, found)) > MOST_BYTES:
             return None
         columns = (column[moved].tolist() for column in (table.upper, table.lower, table.x))
         return Changed(tuple(zip(*columns, strict=True)), tuple(stiffer[:, moved] for stiffer in found))
@@ -151,16 +160,19 @@ class JointChanges:
         several = {one.ports for one in changes if 1 < len(one.ports) <= self._most}
         pairs = sorted({(a, b) for own in several for a in own for b in own} - self._pairs.keys())
         threads = threads_of_solver(self.observations.threads)
+        reached, own, between = dict(self._reached), dict(self._own), dict(self._between)
         for key, s in self._states.items():
             at, warm = s.need.frequency_Hz, s.need.temperature_C
             if ports:
                 places = places_of(s.places)
                 more = from_places(s.line, at, places, ports, temperature_C=warm, threads=threads)
-                for known, further in zip((self._reached, self._own), more, strict=True):
+                for known, further in zip((reached, own), more, strict=True):
                     known[key] = np.concatenate([known[key], further], axis=1)
             if pairs:
-                between = between_pairs(s.line, at, pairs, temperature_C=warm, threads=threads)
-                self._between[key] = np.concatenate([self._between[key], between], axis=1)
+                further = between_pairs(s.line, at, pairs, temperature_C=warm, threads=threads)
+                between[key] = np.concatenate([between[key], further], axis=1)
+        # All at once: what fails midway leaves what is known as it was.
+        self._reached, self._own, self._between = reached, own, between
         self._ports |= {port: len(self._ports) + i for i, port in enumerate(ports)}
         self._pairs |= {pair: len(self._pairs) + i for i, pair in enumerate(pairs)}
 
@@ -174,7 +186,7 @@ class JointChanges:
         campaign : callable
             The campaign that has these joints, for records that are not of hammer tests.
         """
-        moved = {key: self._moved(key, changed, index) for index, key in enumerate(self._states)}
+        pushed = {key: self._pushed(key, changed, index) for index, key in enumerate(self._states)}
         found, solved = [], self.solved
         for block, need, data in zip(self.observations.blocks, solved.needs, solved.datasets, strict=True):
             if need is None:
@@ -182,11 +194,16 @@ class JointChanges:
                 continue
             places = self._states[need.key].places
             rows, columns = ([places.index(place) for place in side] for side in (need.rows, need.columns))
-            change = moved[need.key][:, rows][:, :, columns]
+            reached, push = pushed[need.key]
+            change = -reached[:, :, rows].swapaxes(1, 2) @ push[:, :, columns]
             residuals = block.changed(data, change)
             if residuals is None:
-                answer = self._answer(need, change)
-                residuals = block.residuals(predict_one(campaign(), block.dataset, need, answer))
+                other = campaign()
+                asked = request_of(other, block.dataset)
+                if asked is None or not asked.is_like(need):
+                    # It needs other receptances than the line as it was.
+                    return self.observations.residuals(self.observations.predicted(other, solved).datasets)
+                residuals = block.residuals(predict_one(other, block.dataset, need, self._answer(need, change)))
             found.append(residuals)
         return np.concatenate(found)
 
@@ -196,8 +213,8 @@ class JointChanges:
         sweep = Sweep(need.temperature_C, need.frequency_Hz, *places, need.factors)
         return Result(sweep, self.solved.answers[need.key].of(need) + change)
 
-    def _moved(self, key: Key, changed: Changed, state: int) -> Complexes:
-        """By how much receptances between a state's places are others, (F, places, places)."""
+    def _pushed(self, key: Key, changed: Changed, state: int) -> tuple[Complexes, Complexes]:
+        """What changed joints open by for forces at a state's places, and press with, each (F, joints, places)."""
         at, stiffer = [self._ports[port] for port in changed.ports], changed.stiffness[state]
         reached = self._reached[key][:, at]
         pushed = stiffer[:, :, None] * reached
@@ -207,7 +224,7 @@ class JointChanges:
             pairs = [self._pairs[a, b] for a in changed.ports for b in changed.ports]
             between = self._between[key][:, pairs].reshape(-1, len(at), len(at))
             pushed[:] = np.linalg.solve(np.eye(len(at)) + stiffer[:, :, None] * between, pushed)
-        return np.asarray(-reached.swapaxes(1, 2) @ pushed)
+        return reached, pushed
 
 
 def _none(state: _State, *shape: int) -> Complexes:

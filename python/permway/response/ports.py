@@ -76,7 +76,7 @@ def from_places(
     solved = run(
         line,
         frequency_Hz,
-        {"forces": at, "sensors": at},
+        {"forces": at, "sensors": {name: column[:0] for name, column in at.items()}},
         temperature_C=temperature_C,
         extensions=True,
         threads=threads,

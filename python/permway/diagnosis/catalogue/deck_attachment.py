@@ -33,9 +33,9 @@ CONFUSED_WITH = {
 }
 SOURCE = "Den Hartog, Mechanical Vibrations (1956), chapter 3"
 
-TYPICAL = 0.01
-"""Of the girder's mass: what stands on it, in the middle of its prior. Half and twice are a fifth of its standard
-deviation."""
+TYPICAL, SPAN_M = 0.01, 40.0
+"""Of the girder's mass, of so many metres at most: what stands on it, in the middle of its prior. Half and twice
+are a fifth of its standard deviation."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
@@ -54,8 +54,8 @@ def resonators(situation: Situation, body: str, entry: str) -> Iterator[Hypothes
     span = segment.stop - segment.start
     sigma = 3.0 * step_m(span)
     beam = situation.campaign.model.line.bodies[body]
-    # Of a beam without ends, what stands on a usual girder.
-    typical = TYPICAL * beam.mass_kg_per_m * span if isinstance(beam, Beam) and np.isfinite(span) else 2000.0
+    assert isinstance(beam, Beam)
+    typical = TYPICAL * beam.mass_kg_per_m * min(span, SPAN_M)
     low, high = max(segment.start, centre - 4.0 * sigma), min(segment.stop, centre + 4.0 * sigma)
 
     def amend(campaign: Campaign, values: Mapping[str, float]) -> Campaign:
