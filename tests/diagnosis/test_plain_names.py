@@ -129,4 +129,4 @@ def test_laws_have_no_exponents(law: str, words: str) -> None:
 def test_an_end_near_nothing_is_not_nothing() -> None:
     wide = Estimate(value=0.021, unit="1", low=0.0004, high=0.4)
     assert ends(wide) == "0.0004 to 0.40"
-    assert ends(wide.model_copy(update={"low": 0.0})) == "0 to 0.40"
+    assert ends(wide.model_copy(update={"low": 0.0})) == "0 to 0.4"
