@@ -14,8 +14,9 @@ from permway.errors import InputError, SolveError
 from permway.posterior.cells import Cell
 from permway.posterior.fit import Fit, grown
 
-BATCH, AHEAD = 64, 256
-"""Cells whose residuals are held at once, and of which the changes of joints are: a multiple."""
+BATCH = 128
+"""Cells whose residuals are held at once: 20 MB of a large campaign's. Of twice as many against half as many, a
+demo takes 2 s less of 46, and a large campaign 0.15 GB more of 1.3."""
 
 LINEAR = 1.0
 """Standard deviations of its tolerance, by which a nominal parameter moves in a straight line in a look at small
@@ -41,17 +42,15 @@ class Changes:
     def batches(self, cells: Sequence[Cell]) -> Iterator[list[Reals | None]]:
         """Residuals of each cell, None where it cannot be solved; so many cells at once."""
         threads = self.observations.threads
-        for ahead in range(0, len(cells), AHEAD):
-            some = cells[ahead : ahead + AHEAD]
+        for start in range(0, len(cells), BATCH):
+            some = cells[start : start + BATCH]
             changed = each(self._changed, some, threads=threads, least=4 * SMALL)
             try:
                 self.joints.solve([one for one in changed if one is not None])
             except (InputError, SolveError):
                 # Each by itself may be solved yet.
                 changed = [None] * len(some)
-            pairs = list(zip(some, changed, strict=True))
-            for start in range(0, len(pairs), BATCH):
-                yield each(self._residuals, pairs[start : start + BATCH], threads=threads, least=SMALL)
+            yield each(self._residuals, list(zip(some, changed, strict=True)), threads=threads, least=SMALL)
 
     def _amended(self, cell: Cell) -> Campaign:
         if not cell.hypothesis.moves:
