@@ -185,8 +185,7 @@ def _alike(
     fit, without = leader.fit, others.fit
     offered = _offered(others, without, ruled_out)
     starts = small(alternatives(leader, index, offered))
-    large = alternatives(leader, index, offered, sized=True)
-    large += rivals(leader, tried)
+    large = [*alternatives(leader, index, offered, sized=True), *rivals(leader, tried)]
     count = fit.state.residuals.size
     say = _saying(progress, f"alternatives, {what}", len(starts) + len(large))
     scores = screened(without, starts, say, ())
