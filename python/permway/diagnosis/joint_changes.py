@@ -29,8 +29,9 @@ from permway.model.line import Line
 from permway.response.ports import Port, between_pairs, from_places
 
 MOST_JOINTS, MOST_SMALL = 32, 4
-"""Joints that change, above which a line is solved anew: their system of equations then takes as long. And those
-above which a small change counts to first order: no change is small of a single resonator at its resonance."""
+"""Joints that change, above which a line is solved anew: at 45 lines 32 take 1.5 ms (16 take 0.6, 64 take 4.7), a
+solve of the demo's line about 2. And those above which a small change counts to first order: no change is small of
+a single resonator at its resonance."""
 
 
 EXACT = ("frf", "csd")

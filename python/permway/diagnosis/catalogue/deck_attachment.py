@@ -34,8 +34,8 @@ CONFUSED_WITH = {
 SOURCE = "Den Hartog, Mechanical Vibrations (1956), chapter 3"
 
 TYPICAL, SPAN_M = 0.01, 40.0
-"""Of the girder's mass, of so many metres at most: what stands on it, in the middle of its prior. Half and twice
-are a fifth of its standard deviation."""
+"""Of the girder's mass, of so many metres at most, for what stands on a longer one is no heavier: the middle of
+its prior. Half and twice of either are a fifth of its standard deviation."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
