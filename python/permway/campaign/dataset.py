@@ -79,6 +79,13 @@ class Dataset:
         return np.asarray(self.data.variables["frequency"].values, dtype=np.float64)
 
 
+def level_averages(data: xr.Dataset) -> Reals:
+    """Averages that each channel's power is worth, (channels,): fewer if its level varies along the record."""
+    averages = float(data.attrs["averages"])
+    known = data.get("level_averages")
+    return np.full(data["channel"].size, averages) if known is None else np.asarray(known.values)
+
+
 def in_band(frequency_Hz: Reals, record: Record) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """Which frequencies a record uses: its band, and never 0 Hz.
 

@@ -9,6 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from permway.arrays import Complexes, Reals
+from permway.campaign.dataset import level_averages
 from permway.campaign.load import Dataset
 from permway.checking.change import Change, Ratio
 
@@ -179,10 +180,11 @@ def _of_spectra(dataset: Dataset, predicted: xr.Dataset, common: tuple[float, fl
     names = tuple(dataset.names("channel"))
     count = len(names)
     alone, (one, other) = np.arange(count), np.triu_indices(count, 1)
-    averages = float(dataset.data.attrs["averages"])
+    worth = level_averages(dataset.data)
     csd, model = (np.asarray(data["csd"].values, dtype=np.complex128) for data in (dataset.data, predicted))
     first, second = np.concatenate([alone, one]), np.concatenate([np.full(count, -1), other])
     at = np.concatenate([alone, other])
+    averages = np.minimum(worth[first], worth[at])[:, None]
     # A level is of an amplitude, and a power is the square of one.
     power = np.sqrt(np.abs(np.einsum("ccf->cf", csd))), np.sqrt(np.abs(np.einsum("ccf->cf", model)))
     values, expected = csd[first, at], model[first, at]
@@ -190,7 +192,7 @@ def _of_spectra(dataset: Dataset, predicted: xr.Dataset, common: tuple[float, fl
     reported = np.minimum(_coherence(csd), _coherence(model))[first, at]
     with np.errstate(divide="ignore"):
         variance = (1.0 - reported) / (2.0 * averages * reported)
-    variance[:count] = 0.25 / averages
+    variance[:count] = 0.25 / worth[:, None]
     # Below what no coherence gives by chance a phase states nothing.
     variance[reported < 4.0 / averages] = np.inf
     made = _made(names, (), dataset.frequency_Hz, first, second, values, expected, variance, common)

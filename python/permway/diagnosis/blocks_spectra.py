@@ -11,6 +11,7 @@ from scipy.special import polygamma
 
 from permway.arrays import Complexes, Reals
 from permway.campaign.compare import POWER_DB, flat
+from permway.campaign.dataset import level_averages
 from permway.campaign.load import Dataset
 from permway.campaign.predict import added_to, away_from_lines
 from permway.diagnosis.blocks import SURE, Block, Prediction, Rows
@@ -82,28 +83,42 @@ class SpectraBlock(Block):
         self.frequency: Reals = data["frequency"].values[self._lines]
         self.measured: Complexes = data["csd"].values[:, :, self._lines]
         self.averages = _averages(dataset)
+        self._varied = np.maximum(level_averages(dataset.data), FEWEST)
         whole, everywhere = expected["csd"].values[:, :, self._lines], np.arange(self.frequency.size)
         coherent = coherence(whole)
         self.root, self.tree = tree_of(np.nanmean(coherent, axis=-1))
         self._transfers = {(c, o): transfer(whole, c, o, everywhere) for c, o in self.tree}
-        self._parts: list[Part] = list(self._factors(coherent))
+        self._parts: list[Part] = list(self._factors(coherent, whole))
         self.rows = self._rows()
         self._span = span or (float(self.frequency[0]), float(self.frequency[-1]))
 
-    def _factors(self, coherent: Reals) -> Iterator[Part]:
+    def _factors(self, coherent: Reals, whole: Complexes) -> Iterator[Part]:
         """The factors of the density: the root's power, then transfer and remainder of every other channel."""
         everywhere, segment_s = np.arange(self.frequency.size), self.dataset.record.segment_s
-        # Of powers by so many averages, and of what remains of one when another's share is taken off.
-        single, remaining = (float(np.sqrt(polygamma(1, k))) for k in (self.averages, self.averages - 1.0))
-        yield "power", self.root, self.root, everywhere, np.full(everywhere.size, single)
+        self._worth: list[Reals] = [self._worth_of(self.root, whole[self.root, self.root].real)]
+        yield "power", self.root, self.root, everywhere, np.sqrt(polygamma(1, self._worth[0]))
         for child, parent in self.tree:
             g2 = np.clip(coherent[child, parent], 1e-6, 1.0 - 1e-9)
+            remaining = whole[child, child].real * (1.0 - g2)
+            # One average less when another's share is taken off.
+            worth = self._worth_of(child, remaining) - 1.0
             at = np.flatnonzero(g2 >= self.LEAST_COHERENCE)
-            relative = np.sqrt((1.0 - g2[at]) / (2.0 * (self.averages - 1.0) * g2[at]) + self._floor**2)
+            relative = np.sqrt((1.0 - g2[at]) / (2.0 * worth[at] * g2[at]) + self._floor**2)
+            self._worth.append(worth[at])
             yield "transfer", child, parent, at, relative
             at = np.flatnonzero(g2 <= self.MOST_COHERENCE)
             torn = TORN / (self.frequency[at] * segment_s) ** 2 / (1.0 - g2[at])
-            yield "rest", child, parent, at, np.hypot(remaining, torn)
+            self._worth.append(worth[at])
+            yield "rest", child, parent, at, np.hypot(np.sqrt(polygamma(1, worth[at])), torn)
+
+    def _worth_of(self, channel: int, power: Reals) -> Reals:
+        """Averages that a channel's power, or part of it, is worth at each line.
+
+        Its level varies along the track, but for noise; variances of the parts add.
+        """
+        quiet = np.clip(self._added[channel, channel, self._lines].real / np.maximum(power, 1e-300), 0.0, 1.0)
+        steady = 1.0 / self.averages
+        return np.asarray(1.0 / (steady + (1.0 - quiet) ** 2 * (1.0 / self._varied[channel] - steady)))
 
     def _rows(self) -> Rows:
         """What the residuals are of; transfers have two for each line."""
@@ -128,10 +143,10 @@ class SpectraBlock(Block):
         """Part by part, transfers as real then imaginary."""
         model = predicted["csd"].values[:, :, self._lines]
         found = []
-        for what, c, o, at, sigma in self._parts:
+        for (what, c, o, at, sigma), worth in zip(self._parts, self._worth, strict=True):
             if what == "power":
                 power = (self.measured[c, c, at] / model[c, c, at]).real
-                found.append((np.log(np.maximum(power, 1e-12)) - mean_of_logarithm(self.averages)) / sigma)
+                found.append((np.log(np.maximum(power, 1e-12)) - mean_of_logarithm(worth)) / sigma)
             elif what == "transfer":
                 measured, predicted_so = (transfer(csd, c, o, at) for csd in (self.measured, model))
                 # Gains multiply; where noise is large, their logarithm is biased, and it scatters as was expected:
@@ -140,9 +155,9 @@ class SpectraBlock(Block):
                 off = np.where(sigma < SURE, np.log(measured / predicted_so), straight)
                 found.extend([off.real / sigma, off.imag / sigma])
             else:
-                left = 1.0 - 1.0 / self.averages
+                left = worth / (worth + 1.0)
                 rest = remainder(self.measured, c, o, at) / remainder(model, c, o, at, left)
-                found.append((np.log(np.maximum(rest, 1e-12)) - mean_of_logarithm(self.averages - 1.0)) / sigma)
+                found.append((np.log(np.maximum(rest, 1e-12)) - mean_of_logarithm(worth)) / sigma)
         return np.concatenate(found)
 
     @property
@@ -190,8 +205,8 @@ class SpectraBlock(Block):
 
     def scatter_dB(self) -> Reals:
         """See :class:`permway.diagnosis.blocks.Block`; that of a power's estimate."""
-        data = self.dataset.data
-        return np.full(flat(self.dataset, data).shape, POWER_DB / np.sqrt(float(data.attrs["averages"])))
+        scatter = POWER_DB / np.sqrt(self._varied)
+        return np.broadcast_to(scatter[:, None], flat(self.dataset, self.dataset.data).shape)
 
     def of(self, dataset: Dataset) -> SpectraBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""

@@ -19,12 +19,12 @@ def transfer(csd: Complexes, c: int, o: int, at: np.ndarray) -> Complexes:
     return np.asarray(csd[c, o, at] / csd[o, o, at].real)
 
 
-def mean_of_logarithm(averages: float) -> float:
+def mean_of_logarithm(averages: Reals) -> Reals:
     """Mean of the logarithm of a power by so many averages, less the logarithm of its mean."""
-    return float(digamma(averages) - np.log(averages))
+    return np.asarray(digamma(averages) - np.log(averages))
 
 
-def remainder(csd: Complexes, c: int, o: int, at: np.ndarray, left: float = 1.0) -> Reals:
+def remainder(csd: Complexes, c: int, o: int, at: np.ndarray, left: Reals | float = 1.0) -> Reals:
     """Power of c that o does not share, as much as is left of it, and a thousandth of all: none is clean below."""
     own = csd[c, c, at].real
     return np.asarray(left * (own - np.abs(csd[c, o, at]) ** 2 / csd[o, o, at].real) + 1e-3 * own)

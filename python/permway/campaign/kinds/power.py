@@ -8,7 +8,7 @@ import xarray as xr
 from permway.arrays import Complexes, Reals
 from permway.campaign import spectra
 from permway.campaign.campaign import Campaign
-from permway.campaign.dataset import SI_UNITS, Dataset, in_band
+from permway.campaign.dataset import SI_UNITS, Dataset, in_band, level_averages
 from permway.campaign.factors import campaign_under
 from permway.campaign.kinds.kind import Interval, RecordKind, of_solved
 from permway.campaign.parts import Condition, Record
@@ -65,10 +65,11 @@ class PowerSpectra(RecordKind):
         return f"({SI_UNITS[campaign.sensor(channel).quantity]})2/Hz"
 
     def interval(self, dataset: Dataset, measured: Complexes | Reals, scatter_dB: Reals) -> Interval:
-        """By the degrees of freedom."""
-        psd = dataset.data["psd"]
-        freedom = dataset.data["degrees_of_freedom"].broadcast_like(psd).transpose(*psd.dims)
-        low, high = power_interval(np.abs(measured), freedom.values)
+        """By the degrees of freedom, fewer of a channel whose level varies."""
+        data = dataset.data
+        freedom = data["degrees_of_freedom"].broadcast_like(data["psd"]).transpose(*data["psd"].dims)
+        varied = level_averages(data) / float(data.attrs["averages"])
+        low, high = power_interval(np.abs(measured), freedom.values * varied[:, None])
         return low, high, np.full(measured.shape, np.nan)
 
 
@@ -151,6 +152,7 @@ def _loaded(campaign: Campaign, record: Record) -> xr.Dataset:
         segment_s=record.segment_s,
         channels=[sensor.name for sensor in sensors],
         units=[SI_UNITS[sensor.quantity] for sensor in sensors],
+        band_Hz=record.band_Hz or (0.0, np.inf),
     )
     return _in_SI(data, record, sensors)
 

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from permway.arrays import Reals
+from permway.campaign.dataset import level_averages
 from permway.campaign.parts import Condition
 from permway.diagnosis.blocks_spectra import SpectraBlock
 from permway.diagnosis.fit import Fit
@@ -131,7 +132,7 @@ def _found(situation: Situation) -> list[Excess]:
                 condition,
                 frequency,
                 dict(zip(names, ratio, strict=True)),
-                dict(zip(names, np.sqrt(block.averages) * excess, strict=True)),
+                dict(zip(names, np.sqrt(level_averages(block.dataset.data))[:, None] * excess, strict=True)),
                 LINE_WIDTH / block.dataset.record.segment_s,
                 _profile(situation, frequency, condition.speed_m_per_s),
             )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,19 +53,52 @@ class Segments:
             cov(S_j, S_(j+d)) / (S_j S_(j+d)); at d = 0 it is 1 / K.
         """
         lags = min(lags, self.length // 2)
-        energy = float(np.sum(self.window**2))
         total = np.zeros(lags + 1)
+        for apart, share in self._shares(lags):
+            total += (1.0 if apart == 0 else 2.0 * (1.0 - apart / self.count)) * share
+        return total / self.count
+
+    def _shares(self, lags: int) -> Iterator[tuple[int, Reals]]:
+        """Relative covariance of the powers of two segments, by how far they and their lines are apart."""
+        energy = float(np.sum(self.window**2))
         for apart in range(min(self.count, -(-self.length // self.step))):
             shift = apart * self.step
             product = self.window[: self.length - shift] * self.window[shift:]
-            share = np.abs(np.fft.rfft(product, self.length)[: lags + 1]) ** 2 / energy**2
-            total += (1.0 if apart == 0 else 2.0 * (1.0 - apart / self.count)) * share
-        return total / self.count
+            yield apart, np.abs(np.fft.rfft(product, self.length)[: lags + 1]) ** 2 / energy**2
 
     @property
     def averages(self) -> float:
         """Effective number of averages K = n / (1 + 2 sum (1 - m/n) rho_m^2) (Welch 1967)."""
         return float(1.0 / self.line_covariance(0)[0])
+
+    def averages_of(self, logarithms: Reals, lines: int) -> Reals:
+        """The same of channels whose level varies from segment to segment: loud ones count more.
+
+        With levels l the variance of the mean is that of a sum with these weights, so that
+        K = (sum l)^2 / sum_ab l_a l_b rho_ab^2.
+
+        Parameters
+        ----------
+        logarithms : ndarray, shape (channels, segments)
+            Mean over lines of the logarithm of each segment's power. Each line's scatters with the variance
+            pi^2 / 6 (of an exponential), which is taken off.
+        lines : int
+            Over which the mean is; neighbours hang together.
+
+        Returns
+        -------
+        ndarray, shape (channels,)
+            At most those of a level that stays.
+        """
+        level = np.exp(logarithms - logarithms.max(axis=1, keepdims=True))
+        covariance = self.line_covariance(4)
+        together = (covariance[0] + 2.0 * covariance[1:].sum()) / covariance[0]
+        scatter = np.expm1(np.pi**2 / 6.0 * together / lines)
+        pairs = np.zeros(level.shape[0])
+        for apart, share in self._shares(0):
+            product = np.sum(level[:, apart:] * level[:, : self.count - apart], axis=1)
+            pairs += share[0] * (product / (1.0 + scatter) if apart == 0 else 2.0 * product)
+        return np.asarray(np.minimum(level.sum(axis=1) ** 2 / pairs, self.averages))
 
     def degrees_of_freedom(self) -> Reals:
         """Degrees of freedom of each line's power, shape (N // 2 + 1,).
