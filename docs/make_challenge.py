@@ -71,9 +71,9 @@ share no code with the solver. [The guide](how-to/challenge.md) says how to repe
 
 **These figures are of a first method. `permway diagnose` now uses [another](baseline.md).**
 
-The *deviance* is the misfit that an effect leaves after the best recalibration of the nominal model. Below 15 an
-effect is too small, and the right answer is "the data do not decide". It is hard to find from 15 on, medium from
-50, and easy from 200.
+The [deviance](glossary.md) says how clearly an effect stands out after the best recalibration of the nominal
+model. Below 15 an effect is too small, and the right answer is "the data do not decide". It is hard to find from
+15, medium from 50, and easy from 200.
 
 Each cell is a count of cases. In brackets stands the bar that was set for it. **Bold** misses the bar.
 """

@@ -47,7 +47,7 @@ def begin(observations: Observations, problem: Problem) -> Reals:
 
 
 def _looked(problem: Problem, z: Reals, order: Sequence[int], coarse: Sequence[int]) -> tuple[Reals, float]:
-    """Coordinates with the least misfit on the grid of one after the other, and that misfit."""
+    """Coordinates with the least robust sum of residuals and priors, on one grid after the other, and that sum."""
     start, best = problem.at(z) if order else None, np.inf
     if start is None:
         return z, best

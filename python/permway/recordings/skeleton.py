@@ -47,7 +47,7 @@ def write_skeleton(folder: Path) -> dict[str, Any]:
 
     What nobody but the user knows is left out, as a comment that begins with "question": where sensors stand,
     speeds, numbers of blows. Until they are answered the campaign is refused, each time with what is missing. A
-    label that holds body and place ("rail@10.5") is proposed as the answer.
+    label that holds body and place (`"rail@10.5"`) is proposed as the answer.
 
     Parameters
     ----------
