@@ -81,8 +81,8 @@ def test_the_readme_and_the_page_of_small_campaigns_state_the_same() -> None:
         ("deviance above 200", "posterior", "deviance", "over 200", "class"),
         ("deviance 50 to 200", "posterior", "deviance", "50 to 200", "class"),
         ("a false name", "posterior", "all", "", "false_name"),
-        ("0.9 or more: true", "posterior", "all", "", "sure"),
-        ("parameters: hold the truth", "posterior", "all", "", "effect"),
+        ("0.9 or more that are true", "posterior", "all", "", "sure"),
+        ("contain the true value", "posterior", "all", "", "effect"),
         ("weak pads", "posterior_fixture", "all", "", "first"),
     ):
         (line,) = [one for one in lines if what in one]

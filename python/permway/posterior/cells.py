@@ -67,7 +67,7 @@ def cells(base: Fit, ruled_out: Collection[str] = ()) -> list[Cell]:
     ruled_out : collection of str
         Entries that are left out.
     """
-    offered: dict[str, list[Hypothesis]] = {}
+    by_entry: dict[str, list[Hypothesis]] = {}
     situations = list(_situations(base))
     frequency = base.frame.observations.rows.frequency_Hz
     band = float(frequency.min()) / BEYOND, float(frequency.max()) * BEYOND
@@ -75,16 +75,16 @@ def cells(base: Fit, ruled_out: Collection[str] = ()) -> list[Cell]:
         if name not in ruled_out:
             found = [
                 scaled
-                for hypothesis in _offered(entry, situations)
+                for hypothesis in offered(entry, situations)
                 for scaled in spread_out(
                     with_starts(widened(hypothesis if name == generic.ID else tuned(hypothesis, band)))
                 )
             ]
             if found:
-                offered[name] = found
+                by_entry[name] = found
     found_cells = []
-    named = max(sum(name != generic.ID for name in offered), 1)
-    for name, hypotheses in offered.items():
+    named = max(sum(name != generic.ID for name in by_entry), 1)
+    for name, hypotheses in by_entry.items():
         share = math.log(SOMETHING * (generic.PRIOR if name == generic.ID else (1.0 - generic.PRIOR) / named))
         forms: dict[tuple[str, ...], list[Hypothesis]] = defaultdict(list)
         for hypothesis in hypotheses:
@@ -213,23 +213,20 @@ def _overlap(alike: list[Hypothesis]) -> float:
     return found
 
 
-def _offered(entry: Entry, situations: list[Situation]) -> Iterator[Hypothesis]:
+def offered(entry: Entry, situations: Sequence[Situation]) -> list[Hypothesis]:
     """What an entry offers anywhere, each once."""
     everywhere = getattr(entry, "everywhere", None)
     if everywhere is not None:
-        yield from everywhere(situations[0])
-        return
-    seen = set()
+        return list(everywhere(situations[0]))
+    seen: dict[tuple[object, ...], Hypothesis] = {}
     for situation in situations:
         situation.asked.clear()
         for hypothesis in entry.hypotheses(situation):
-            key = _key(hypothesis)
-            if key not in seen:
-                seen.add(key)
-                yield hypothesis
+            seen.setdefault(_key(hypothesis), hypothesis)
         if entry.DOMAIN != "path" or not situation.asked:
             # Of other places it would offer the same.
-            return
+            break
+    return list(seen.values())
 
 
 def _key(hypothesis: Hypothesis) -> tuple[object, ...]:
@@ -238,7 +235,9 @@ def _key(hypothesis: Hypothesis) -> tuple[object, ...]:
     for start in hypothesis.starts[:1]:
         values = {f.name: f.value(float(z)) for f, z in zip(hypothesis.free, start, strict=True)}
         where = hypothesis.locate(values)
-        places.append((where.what, where.x_m and tuple(round(x, 2) for x in where.x_m), where.channels))
+        at = where.x_m and tuple(round(x, 2) for x in where.x_m)
+        # Two girders that meet have bearings at one place: the words tell them apart.
+        places.append((where.what, at, where.channels, hypothesis.law(values)))
     spans = tuple(tuple(round(f.value(z), 6) for z in (0.0, 0.5)) for f in hypothesis.free)
     return hypothesis.form, tuple(places), spans, hypothesis.starts
 

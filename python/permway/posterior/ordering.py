@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,11 +10,13 @@ import numpy as np
 from permway.arrays import Reals
 from permway.diagnosis.blocks_passage import UNEVENNESS
 from permway.diagnosis.hypothesis import Hypothesis
+from permway.diagnosis.side_by_side import each
 from permway.errors import InputError, SolveError
 from permway.posterior.beam import SAME, STEPS, Member, finished
 from permway.posterior.cells import coordinate
 from permway.posterior.estimate import estimated
 from permway.posterior.fit import STRETCH, Fit, Fitter, Model, extended
+from permway.posterior.hyper import Hyper
 from permway.posterior.idealised import idealised
 
 LEVELS = (1.0, 0.2, 0.04)
@@ -26,6 +28,9 @@ most that is taken anew. Left so far off a fit scatters 2 % more than it says; w
 
 LEFT = 12.0
 """Nats behind the best set from which a set counts no more: less than a class ever shows."""
+
+_Numbers = tuple[Reals, Hyper, Reals, Reals | None]
+"""Parameters, hyperparameters, slopes and their curvature, of a fit to the end."""
 
 
 def annealed(fitter: Fitter, fit: Fit) -> Fit:
@@ -76,8 +81,27 @@ def weighed(
     frame = best.frame.about(best.state.solved, best.covariance, best.state.residuals)
     slopes = Fitter(frame).begin(best.model, best.z, best.hyper)
     again = Fitter(frame.with_idealisation(idealised(slopes)))
-    started = [again.begin(fit.model, fit.z, fit.hyper, bend=fit.bend) for fit in fits]
-    return again, [finished(again, fit, own) for fit, own in zip(started, amendments, strict=True)]
+
+    def work(index: int) -> Fit:
+        fit = fits[index]
+        return finished(again, again.begin(fit.model, fit.z, fit.hyper, bend=fit.bend), amendments[index])
+
+    found = _side_by_side(again, work, [fit.model for fit in fits])
+    return again, [fit for fit in found if fit is not None]
+
+
+def _side_by_side(fitter: Fitter, work: Callable[[int], Fit | None], models: Sequence[Model]) -> list[Fit | None]:
+    """Fits to the end of some models, made by several processes, which hand over numbers alone."""
+
+    def numbers(index: int) -> _Numbers | None:
+        fit = work(index)
+        return None if fit is None else (fit.z, fit.hyper, fit.jacobian, fit.bend)
+
+    made = each(numbers, range(len(models)), threads=fitter.frame.observations.threads)
+    return [
+        None if one is None else replace(fitter.begin(model, *one), exact=True)
+        for model, one in zip(models, made, strict=True)
+    ]
 
 
 def _in_place(fitter: Fitter, fit: Fit) -> Fit:
@@ -98,13 +122,20 @@ def _pruned(fitter: Fitter, members: list[Member], nominal: Model) -> list[Membe
     """
     while True:
         best = members[0]
-        found = []
-        for own, z in _smaller(best):
-            fit = _started(fitter, best, own, z, nominal)
-            if fit is not None:
-                amendments = tuple(best.amendments[i] for i in own)
-                priors = tuple(best.log_priors[i] for i in own)
-                found.append(Member(amendments, finished(fitter, fit, amendments), priors))
+        smaller = list(_smaller(best))
+        kept = [tuple(best.amendments[i] for i in own) for own, _ in smaller]
+        models = [_model_of(fitter, own, nominal) for own in kept]
+
+        def work(index: int) -> Fit | None:
+            fit = _started(fitter, best, models[index], smaller[index][1], nominal)  # noqa: B023 called at once
+            return None if fit is None else finished(fitter, fit, kept[index])  # noqa: B023
+
+        fits = _side_by_side(fitter, work, models)
+        found = [
+            Member(amendments, fit, tuple(best.log_priors[i] for i in own))
+            for amendments, (own, _), fit in zip(kept, smaller, fits, strict=True)
+            if fit is not None
+        ]
         members = sorted([*members, *found], key=lambda m: -m.log_mass)
         if members[0] is best:
             return members
@@ -136,11 +167,16 @@ def _over_both(member: Member, index: int, other: int) -> Reals | None:
     return None if None in z else np.array(z, dtype=np.float64)
 
 
-def _started(fitter: Fitter, member: Member, own: Sequence[int], z: Sequence[Reals], nominal: Model) -> Fit | None:
+def _model_of(fitter: Fitter, amendments: Sequence[Hypothesis], nominal: Model) -> Model:
+    """The nominal model with a set of amendments."""
+    for number, amendment in enumerate(amendments, start=1):
+        nominal = extended(nominal, amendment, f"{number}.", fitter.frame.observations.campaign)
+    return nominal
+
+
+def _started(fitter: Fitter, member: Member, model: Model, z: Sequence[Reals], nominal: Model) -> Fit | None:
     """A set of some of a member's amendments, at these parameters; the discrepancy falls anew."""
-    fit, model = member.fit, nominal
-    for number, index in enumerate(own, start=1):
-        model = extended(model, member.amendments[index], f"{number}.", fitter.frame.observations.campaign)
+    fit = member.fit
     whole = np.concatenate([fit.z[: len(nominal.free)], *z])
     try:
         found = fitter.begin(model, whole, fit.hyper.with_discrepancy(LEVELS[1]), bend=fit.bend)

@@ -19,6 +19,7 @@ from permway.diagnosis.hypothesis import Amend, Hypothesis, Situation
 from permway.diagnosis.observations import Observations
 from permway.diagnosis.recalibrate import recalibrate
 from permway.diagnosis.separability import places
+from permway.posterior.cells import offered
 from searched import searched
 from simulated_track import ballasted, campaign, embedded, viaduct
 from simulated_train import blank, measured, written
@@ -353,6 +354,15 @@ def test_of_two_girders_that_meet_one_may_have_the_other_bearing(
     values = {"factor": factor}
     assert best.amendments[0].law(values) == own[1].law(values)
     assert best.values(0)["factor"] == pytest.approx(factor, rel=0.15)
+
+
+def test_the_search_is_offered_the_bearings_of_both_girders_that_meet(
+    situations: Callable[[str], tuple[Situation, Campaign]],
+) -> None:
+    situation, _ = situations("two spans")
+    found = offered(entries()["bearing_stiffness"], [situation, situation])
+    assert len({h.law({"factor": 0.5}) for h in found if h.variant == "one girder"}) == 2
+    assert len(found) == len({(h.variant, h.law({"factor": 0.5}), h.locate({"factor": 0.5})) for h in found})
 
 
 def test_a_stretch_changes_whole_joints_and_fades_between(
