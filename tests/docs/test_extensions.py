@@ -66,3 +66,11 @@ def test_a_link_to_a_heading_of_a_file_outside_stays_one() -> None:
     outside = import_module("outside")
     found = outside._LINK.sub(outside._turned, "[a](CONTRIBUTING.md#add-an-effect) [b](LICENSE) [c](docs/x.md#y)")
     assert re.findall(r"\((.*?)\)", found) == ["contributing.md#add-an-effect", "#file", "x.md#y"]
+
+
+def test_long_names_break_in_tables_and_nowhere_else() -> None:
+    broken = import_module("breaks").broken
+    name = '<span class="pre">mass_damping_per_s</span>'
+    assert broken(f"<td>{name}</td>") == '<td><span class="pre">mass_<wbr>damping_<wbr>per_s</span></td>'
+    assert broken(f"<p>{name}</p>") == f"<p>{name}</p>"
+    assert broken('<td><span class="pre">x_m</span></td>') == '<td><span class="pre">x_m</span></td>'

@@ -83,6 +83,7 @@ class SpectraBlock(Block):
         self.frequency: Reals = data["frequency"].values[self._lines]
         self.measured: Complexes = data["csd"].values[:, :, self._lines]
         self.averages = _averages(dataset)
+        # Of a level that leaps no channel is worth less than the least that a record is taken with.
         self._varied = np.maximum(level_averages(dataset.data), FEWEST)
         whole, everywhere = expected["csd"].values[:, :, self._lines], np.arange(self.frequency.size)
         coherent = coherence(whole)

@@ -86,11 +86,11 @@ def weighed(
         fit = fits[index]
         return finished(again, again.begin(fit.model, fit.z, fit.hyper, bend=fit.bend), amendments[index])
 
-    found = _side_by_side(again, work, [fit.model for fit in fits])
+    found = _shared(again, work, [fit.model for fit in fits])
     return again, [fit for fit in found if fit is not None]
 
 
-def _side_by_side(fitter: Fitter, work: Callable[[int], Fit | None], models: Sequence[Model]) -> list[Fit | None]:
+def _shared(fitter: Fitter, work: Callable[[int], Fit | None], models: Sequence[Model]) -> list[Fit | None]:
     """Fits to the end of some models, made by several processes, which hand over numbers alone."""
 
     def numbers(index: int) -> _Numbers | None:
@@ -122,23 +122,26 @@ def _pruned(fitter: Fitter, members: list[Member], nominal: Model) -> list[Membe
     """
     while True:
         best = members[0]
-        smaller = list(_smaller(best))
-        kept = [tuple(best.amendments[i] for i in own) for own, _ in smaller]
-        models = [_model_of(fitter, own, nominal) for own in kept]
-
-        def work(index: int) -> Fit | None:
-            fit = _started(fitter, best, models[index], smaller[index][1], nominal)  # noqa: B023 called at once
-            return None if fit is None else finished(fitter, fit, kept[index])  # noqa: B023
-
-        fits = _side_by_side(fitter, work, models)
-        found = [
-            Member(amendments, fit, tuple(best.log_priors[i] for i in own))
-            for amendments, (own, _), fit in zip(kept, smaller, fits, strict=True)
-            if fit is not None
-        ]
-        members = sorted([*members, *found], key=lambda m: -m.log_mass)
+        members = sorted([*members, *_subsets(fitter, best, nominal)], key=lambda m: -m.log_mass)
         if members[0] is best:
             return members
+
+
+def _subsets(fitter: Fitter, member: Member, nominal: Model) -> list[Member]:
+    """Sets of one amendment less, fitted to the end."""
+    smaller = list(_smaller(member))
+    kept = [tuple(member.amendments[i] for i in own) for own, _ in smaller]
+    models = [_model_of(fitter, own, nominal) for own in kept]
+
+    def work(index: int) -> Fit | None:
+        fit = _started(fitter, member, models[index], smaller[index][1], nominal)
+        return None if fit is None else finished(fitter, fit, kept[index])
+
+    return [
+        Member(amendments, fit, tuple(member.log_priors[i] for i in own))
+        for amendments, (own, _), fit in zip(kept, smaller, _shared(fitter, work, models), strict=True)
+        if fit is not None
+    ]
 
 
 def _smaller(member: Member) -> Iterator[tuple[list[int], list[Reals]]]:
