@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from pydantic import Field, ValidationError
 
@@ -27,6 +28,8 @@ from permway.records import FrozenModel
 if TYPE_CHECKING:
     from permway.campaign.load import Dataset
     from permway.recordings.record import TimeRecord
+
+Named = TypeVar("Named", Sensor, Point, Condition)
 
 
 class CampaignFile(FrozenModel):
@@ -90,15 +93,27 @@ class Campaign(Shown):
 
     def sensor(self, name: str) -> Sensor:
         """The sensor of that name."""
-        return self.stated.sensors[_named(self.stated.sensors, name, "sensors")]
+        return _named(self._sensors, name, "sensors")
 
     def point(self, name: str) -> Point:
         """The force point of that name."""
-        return self.stated.forces[_named(self.stated.forces, name, "forces")]
+        return _named(self._points, name, "forces")
 
     def condition(self, name: str) -> Condition:
         """The condition of that name."""
-        return self.stated.conditions[_named(self.stated.conditions, name, "conditions")]
+        return _named(self._conditions, name, "conditions")
+
+    @cached_property
+    def _sensors(self) -> dict[str, Sensor]:
+        return {sensor.name: sensor for sensor in self.stated.sensors}
+
+    @cached_property
+    def _points(self) -> dict[str, Point]:
+        return {point.name: point for point in self.stated.forces}
+
+    @cached_property
+    def _conditions(self) -> dict[str, Condition]:
+        return {condition.name: condition for condition in self.stated.conditions}
 
     def path(self, record: Record) -> Path:
         """Where the file of a record lies."""
@@ -274,8 +289,7 @@ def beside(name: str, folder: Path, where: str, *, outside: bool) -> Path:
     return inside(name, folder, where=where, of="the campaign's", remedy=remedy, outside=outside)
 
 
-def _named(items: Sequence[Sensor | Point | Condition], name: str, where: str) -> int:
-    for index, item in enumerate(items):
-        if item.name == name:
-            return index
-    raise InputError("there is none of that name", where=where, value=name)
+def _named(items: Mapping[str, Named], name: str, where: str) -> Named:
+    if name not in items:
+        raise InputError("there is none of that name", where=where, value=name)
+    return items[name]

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache, lru_cache, partial
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache, lru_cache
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -14,6 +14,9 @@ from permway.model.faults import model_error
 
 Steps = tuple[str | int, ...]
 Change = Callable[[float], float]
+Changes = tuple[tuple[Steps, Change], ...]
+Changed = dict[Steps, tuple[object, Changes, object]]
+"""What was last made of the record at each place: the record, the changes below it, and the copy."""
 
 _PART = re.compile(r"""(?:\.|^)([A-Za-z_][A-Za-z0-9_-]*)|\[(\d{1,9})\]|\["([^"\]]+)"\]""")
 
@@ -99,11 +102,20 @@ def leads(record: object, steps: Steps) -> bool:
     return True
 
 
-def with_numbers(record: Any, changes: Iterable[tuple[Steps, Change]]) -> Any:
+def with_numbers(record: Any, changes: Iterable[tuple[Steps, Change]], known: Changed | None = None) -> Any:
     """A copy with some numbers changed, those of one place in turn; what lies beside is shared, not copied.
 
     Of pydantic records only those that hold the numbers are checked again, so a copy costs microseconds; what
     records say of each other (names, places) a number cannot upset, or the core finds it.
+
+    Parameters
+    ----------
+    record
+        Of pydantic, a mapping, a list or a tuple.
+    changes : iterable of (steps, callable)
+    known : dict, optional
+        Of the last call, brought up to date by this one: a part in which equal changes meet the same record again
+        is not copied again. The changes must then tell by `==` whether they are equal.
 
     Raises
     ------
@@ -112,31 +124,42 @@ def with_numbers(record: Any, changes: Iterable[tuple[Steps, Change]]) -> Any:
     KeyError
         If a path leads nowhere, or to no number.
     """
-    found = [(steps, partial(_changed, steps, change)) for steps, change in changes]
-    return _with(record, found, 0) if found else record
+    found = tuple(changes)
+    return _with(record, found, 0, known) if found else record
 
 
-def _changed(steps: Steps, change: Change, value: object) -> float:
-    return change(_number(steps, value))
-
-
-def _with(record: Any, changes: Sequence[tuple[Steps, Callable[[object], float]]], depth: int) -> Any:
+def _with(record: Any, changes: Changes, depth: int, known: Changed | None) -> Any:
     """All changes below a record, those that go the same way together."""
-    ways: dict[str | int, list[tuple[Steps, Callable[[object], float]]]] = {}
+    place = changes[0][0][:depth]
+    last = None if known is None else known.get(place)
+    if last is not None and last[0] is record and last[1] == changes:
+        return last[2]
+    ways: dict[str | int, list[tuple[Steps, Change]]] = {}
     for steps, change in changes:
-        ways.setdefault(_key(record, steps[depth], steps[:depth]), []).append((steps, change))
+        ways.setdefault(_key(record, steps[depth], place), []).append((steps, change))
     news: dict[Any, Any] = {}
     ends: tuple[Steps, ...] = ()
     for key, mine in ways.items():
         child = _at(record, key)
-        for steps, change in (pair for pair in mine if len(pair[0]) == depth + 1):
-            child, ends = change(child), (*ends, steps)
-        further = [pair for pair in mine if len(pair[0]) > depth + 1]
-        news[key] = _with(child, further, depth + 1) if further else child
+        further = []
+        for steps, change in mine:
+            if len(steps) == depth + 1:
+                child, ends = change(_number(steps, child)), (*ends, steps)
+            else:
+                further.append((steps, change))
+        news[key] = _with(child, tuple(further), depth + 1, known) if further else child
+    made = _copied(record, news, ends, changes[0][0][: depth + 1])
+    if known is not None:
+        known[place] = record, changes, made
+    return made
+
+
+def _copied(record: Any, news: dict[Any, Any], ends: tuple[Steps, ...], first: Steps) -> Any:
+    """A record with some parts new: checked again where numbers are among them, which `ends` lead to."""
     if isinstance(record, BaseModel):
         if not ends and all(isinstance(new, BaseModel | Mapping | tuple) for new in news.values()):
             return record.model_copy(update=news)
-        return _checked(record, news, (ends or (changes[0][0][: depth + 1],))[0])
+        return _checked(record, news, (ends or (first,))[0])
     if isinstance(record, Mapping):
         return {**record, **news}
     return type(record)(news.get(index, item) for index, item in enumerate(record))

@@ -11,13 +11,16 @@ from pathlib import Path
 from typing import Any, Literal
 
 from permway.campaign.parameters import Known, Parameter, known_of
-from permway.campaign.paths import Steps, leads, number_at, parse_path, value_at, with_numbers
+from permway.campaign.paths import Changed, Steps, leads, number_at, parse_path, value_at, with_numbers
 from permway.errors import InputError
 from permway.formats.model_file import model_from_dict
 from permway.problem.model import Model
 
 OWN = "campaign"
 """First word of a path that leads into the campaign file instead of the model file."""
+
+
+Kind = Literal["model", "table", "campaign"]
 
 
 @dataclass(frozen=True)
@@ -36,8 +39,26 @@ class Place:
     """
 
     steps: Steps
-    kind: Literal["model", "table", "campaign"]
+    kind: Kind
     base: float
+
+
+@dataclass(frozen=True)
+class Move:
+    """What a parameter does to a number: sets it, adds to it, or scales it."""
+
+    acts: Literal["scales", "sets", "adds"]
+    by: float
+
+    def __call__(self, base: float) -> float:
+        """The new number."""
+        match self.acts:
+            case "sets":
+                return self.by
+            case "adds":
+                return base + self.by
+            case _:
+                return base * self.by
 
 
 class ParameterSet:
@@ -69,6 +90,8 @@ class ParameterSet:
         folder: Path | None = None,
     ) -> None:
         self._model, self._table, self._own, self._folder = model, table, own, folder
+        # Of the values that a slope is taken by, one at a time, the others stay.
+        self._made: dict[Kind, Changed] = {"model": {}, "table": {}, "campaign": {}}
         self._every: dict[str, tuple[Place, ...]] = {}
         self.known: dict[str, Known] = {}
         taken: dict[Steps, str] = {}
@@ -124,17 +147,17 @@ class ParameterSet:
                 name = next(n for n in values if any(p.kind == "table" for p in self._places[n]))
                 what = "acts on what a preset is made of, and the model was changed since"
                 raise InputError(what, where=name, remedy="spell the line out in the model file")
-            table = with_numbers(table, [(place.steps, new) for place, new in numbers if place.kind == "table"])
-            model = model_from_dict(table, folder=self._folder)
-        model, own = (
-            with_numbers(record, [(place.steps, new) for place, new in numbers if place.kind == kind])
-            for record, kind in ((model, "model"), (own, "campaign"))
-        )
-        return model, own
+            model = model_from_dict(self._with(table, "table", numbers), folder=self._folder)
+        return self._with(model, "model", numbers), self._with(own, "campaign", numbers)
+
+    def _with(self, record: Any, kind: Kind, numbers: Sequence[tuple[Place, Move]]) -> Any:
+        """A record with the numbers that stand in it."""
+        mine = [(place.steps, move) for place, move in numbers if place.kind == kind]
+        return with_numbers(record, mine, self._made[kind])
 
     def on(self, model: Model) -> ParameterSet:
         """The same parameters, acting on another model; numbers that it does not have are left out."""
-        other = copy.copy(self)
+        other = self._anew()
         other._model = model
         # What this model has not comes back with none that is made of it.
         other._every = self._places
@@ -145,8 +168,13 @@ class ParameterSet:
 
     def restated(self, own: object) -> ParameterSet:
         """The same parameters, acting on another record of the campaign file, alike where they act."""
-        other = copy.copy(self)
+        other = self._anew()
         other._own = own
+        return other
+
+    def _anew(self) -> ParameterSet:
+        other = copy.copy(self)
+        other._made = {kind: {} for kind in self._made}
         return other
 
     def touches(self, name: str) -> set[str]:
@@ -170,7 +198,7 @@ class ParameterSet:
             raise InputError("no such parameter", where="values", value=name, remedy=f"use one of {self.names}")
         return self.known[name].nominal
 
-    def _new(self, name: str, value: float, old: float) -> list[tuple[Place, Any]]:
+    def _new(self, name: str, value: float, old: float) -> list[tuple[Place, Move]]:
         """The numbers that a parameter sets, each with what makes the new number of the one at `old`."""
         known = self.known[name]
         low, high = known.bounds
@@ -178,15 +206,9 @@ class ParameterSet:
             raise InputError(f"must lie between {low:g} and {high:g}", where=name, value=value)
         if value == old:
             return []
-        match known.parameter.acts:
-            case "sets":
-                return [(place, lambda _, v=value: v) for place in self._places[name]]
-            case "adds":
-                step = value - old
-                return [(place, lambda base, s=step: base + s) for place in self._places[name]]
-            case _:
-                factor = value / old
-                return [(place, lambda base, r=factor: base * r) for place in self._places[name]]
+        acts = known.parameter.acts
+        move = Move(acts, value if acts == "sets" else value - old if acts == "adds" else value / old)
+        return [(place, move) for place in self._places[name]]
 
     def _place(self, path: str, where: str) -> Place:
         steps = parse_path(path, where)

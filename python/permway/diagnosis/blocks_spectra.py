@@ -1,4 +1,4 @@
-"""Cross spectra of a run held against a prediction."""
+"""Cross spectra of a run compared with a prediction."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from permway.campaign.predict import added_to, away_from_lines
 from permway.diagnosis.blocks import SURE, Block, Prediction, Rows
 from permway.diagnosis.calibration_errors import CalibrationErrors, ErrorSource, PlainColumns
 from permway.diagnosis.gaussian_process import GaussianProcess
-from permway.diagnosis.spectra_errors import Moved, Part, at_most
-from permway.diagnosis.spectra_parts import coherence, mean_of_logarithm, remainder, transfer, tree_of
+from permway.diagnosis.spectra_errors import Moved, at_most
+from permway.diagnosis.spectra_parts import Joined, Part, coherence, joined, remainder, transfer, tree_of
 from permway.errors import InputError
 
 FIRST_LINE = 4
@@ -85,10 +85,9 @@ class SpectraBlock(Block):
         self.averages = _averages(dataset)
         # Of a level that leaps no channel is worth less than the least that a record is taken with.
         self._varied = np.maximum(level_averages(dataset.data), FEWEST)
-        whole, everywhere = expected["csd"].values[:, :, self._lines], np.arange(self.frequency.size)
+        whole = expected["csd"].values[:, :, self._lines]
         coherent = coherence(whole)
         self.root, self.tree = tree_of(np.nanmean(coherent, axis=-1))
-        self._transfers = {(c, o): transfer(whole, c, o, everywhere) for c, o in self.tree}
         self._parts: list[Part] = list(self._factors(coherent, whole))
         self.rows = self._rows()
         self._span = span or (float(self.frequency[0]), float(self.frequency[-1]))
@@ -142,24 +141,40 @@ class SpectraBlock(Block):
 
     def residuals(self, predicted: xr.Dataset) -> Reals:
         """Part by part, transfers as real then imaginary."""
-        model = predicted["csd"].values[:, :, self._lines]
-        found = []
-        for (what, c, o, at, sigma), worth in zip(self._parts, self._worth, strict=True):
-            if what == "power":
-                power = (self.measured[c, c, at] / model[c, c, at]).real
-                found.append((np.log(np.maximum(power, 1e-12)) - mean_of_logarithm(worth)) / sigma)
-            elif what == "transfer":
-                measured, predicted_so = (transfer(csd, c, o, at) for csd in (self.measured, model))
-                # Gains multiply; where noise is large, their logarithm is biased, and it scatters as was expected:
-                # a model that says more does not scatter more.
-                straight = (measured - predicted_so) / self._transfers[c, o][at]
-                off = np.where(sigma < SURE, np.log(measured / predicted_so), straight)
-                found.extend([off.real / sigma, off.imag / sigma])
-            else:
-                left = worth / (worth + 1.0)
-                rest = remainder(self.measured, c, o, at) / remainder(model, c, o, at, left)
-                found.append((np.log(np.maximum(rest, 1e-12)) - mean_of_logarithm(worth)) / sigma)
-        return np.concatenate(found)
+        model, lines, found = predicted.variables["csd"].values, self._lines, np.empty(self.rows.channel.size)
+        own, on, off = (self._joined[kind] for kind in ("power", "transfer", "rest"))
+        power = (self.measured[own.c, own.c, own.at] / model[own.c, own.c, lines[own.at]]).real
+        found[own.row] = (np.log(np.maximum(power, 1e-12)) - own.bias) / own.sigma
+        measured, predicted_so = self._measured_transfers, transfer(model, on.c, on.o, lines[on.at])
+        # Gains multiply; where noise is large, their logarithm is biased, and it scatters as was expected:
+        # a model that says more does not scatter more.
+        away = (measured - predicted_so) / self._expected_transfers
+        np.log(measured / predicted_so, out=away, where=on.sigma < SURE)
+        found[on.row], found[on.imaginary] = away.real / on.sigma, away.imag / on.sigma
+        left = off.worth / (off.worth + 1.0)
+        rest = self._measured_rest / remainder(model, off.c, off.o, lines[off.at], left)
+        found[off.row] = (np.log(np.maximum(rest, 1e-12)) - off.bias) / off.sigma
+        return found
+
+    @cached_property
+    def _joined(self) -> dict[str, Joined]:
+        return {kind: joined(self._parts, self._worth, kind) for kind in ("power", "transfer", "rest")}
+
+    @cached_property
+    def _measured_transfers(self) -> Complexes:
+        on = self._joined["transfer"]
+        return transfer(self.measured, on.c, on.o, on.at)
+
+    @cached_property
+    def _expected_transfers(self) -> Complexes:
+        """By which those are weighed that are not sure."""
+        on = self._joined["transfer"]
+        return transfer(self._expected["csd"].values, on.c, on.o, self._lines[on.at])
+
+    @cached_property
+    def _measured_rest(self) -> Reals:
+        off = self._joined["rest"]
+        return remainder(self.measured, off.c, off.o, off.at)
 
     @property
     def unshared(self) -> Reals:

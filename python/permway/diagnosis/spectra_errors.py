@@ -14,13 +14,10 @@ import numpy as np
 
 from permway.arrays import Complexes, Reals
 from permway.diagnosis.gaussian_process import GaussianProcess
-from permway.diagnosis.spectra_parts import remainder, transfer
+from permway.diagnosis.spectra_parts import Part, remainder, transfer
 
 SMALL = 1e-4
 """Neper, of the errors by which answers to them are found."""
-
-Part = tuple[str, int, int, np.ndarray, Reals]
-"""Power, transfer or rest; its channel and the other; its lines; the scatter of its logarithm there."""
 
 
 @dataclass(frozen=True)

@@ -87,16 +87,20 @@ def condensed(
         held[:, n + index] = (mode.shape - 1.0) * held[:, degree]
     mass = rigid.T @ (masses[:, None] * rigid) + np.diag(np.concatenate([np.zeros(n), modal]))
     stiffness = _suspensions(omega, springs, dashpots, additions)
-    whole = (
-        stiffness[0][:, None, None] * (secondary.T @ secondary)
-        + stiffness[1][:, None, None] * (primary.T @ primary)
-        + np.diag(np.concatenate([np.zeros(n), own]))
-        - omega[:, None, None] ** 2 * mass
-    )
+    # In place: arrays of this size cost more to come by than to fill.
+    whole = stiffness[0][:, None, None] * (secondary.T @ secondary)
+    whole += stiffness[1][:, None, None] * (primary.T @ primary)
+    if modes:
+        whole += np.diag(np.concatenate([np.zeros(n), own]))
+    whole.real -= omega[:, None, None] ** 2 * mass
     for addition in additions:
         if isinstance(addition, Resonator):
             degrees = list(addition.at())
             whole[:, degrees, degrees] += addition.stiffness(omega)[:, None]
+    if not modes:
+        push = np.broadcast_to(contacts.astype(np.complex128), (omega.size, *contacts.shape))
+        give = np.zeros((omega.size, len(WHEELSETS), len(WHEELSETS)), dtype=np.complex128)
+        return Condensed(whole, push, give)
     pushed = np.broadcast_to(contacts[n:], (omega.size, q, len(WHEELSETS)))
     out = np.linalg.solve(whole[:, n:, n:], np.concatenate([whole[:, n:, :n], pushed], axis=2))
     return Condensed(

@@ -53,8 +53,8 @@ class PowerSpectra(RecordKind):
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""
         request, values = of_solved(solved)
         matrix = _csd(campaign, dataset, condition, request.frequency_Hz, values)
-        power = np.einsum("fcc->cf", matrix).real
-        return dataset.template(self.blank).copy(data={"csd": np.moveaxis(matrix, 0, -1), "psd": power})
+        own = np.arange(len(matrix))
+        return dataset.template(self.blank).copy(data={"csd": matrix, "psd": matrix[own, own].real})
 
     def blank(self, data: xr.Dataset) -> xr.Dataset:
         """Cross and power spectra."""
@@ -85,16 +85,15 @@ def away_from_lines(campaign: Campaign, dataset: Dataset, request: Request, answ
     """
     condition = campaign.condition(dataset.condition.name)
     values = answer.of(request)
-    matrix = _csd(campaign_under(campaign, condition), dataset, condition, request.frequency_Hz, values, away=True)
-    return np.moveaxis(matrix, 0, -1)
+    return _csd(campaign_under(campaign, condition), dataset, condition, request.frequency_Hz, values, away=True)
 
 
 def added_to(campaign: Campaign, dataset: Dataset) -> Reals:
     """Expected cross spectra of the noise and hum of the channels of a run, (channels, channels, F)."""
     frequency, record = dataset.frequency_Hz, dataset.record
-    sensors = [campaign.sensor(name) for name in dataset.names("channel")]
+    sensors = tuple(campaign.sensor(name) for name in dataset.names("channel"))
     lines = run.solved_lines(frequency, record.segment_s, record.interpolated_Hz)
-    return np.moveaxis(run.added_csd(sensors, lines, frequency, record.segment_s), 0, -1)
+    return run.added_csd(sensors, lines, frequency, record.segment_s)
 
 
 def _csd(
@@ -106,7 +105,7 @@ def _csd(
     *,
     away: bool = False,
 ) -> Complexes:
-    """Of a run, (F, channels, channels); of the campaign under its condition."""
+    """Of a run, (channels, channels, F); of the campaign under its condition."""
     record, known = dataset.record, campaign.stated.irregularity
     sensors = [campaign.sensor(name) for name in dataset.names("channel")]
     if record.interpolated_Hz is None:
@@ -115,7 +114,7 @@ def _csd(
     work = worked(campaign.model, known, condition, grid, lines_Hz, values)
     temperature = hammer.temperature(campaign, condition)
     rolls = rolling_of(work.model, known.rolls, condition, lines_Hz, values, temperature)
-    return run.expected_csd(
+    matrix = run.expected_csd(
         work.model,
         known,
         condition,
@@ -130,6 +129,7 @@ def _csd(
         rolls=rolls,
         away=away,
     )
+    return np.moveaxis(matrix, 0, -1)
 
 
 def _check_on_board(campaign: Campaign, record: str, names: list[str]) -> None:

@@ -96,7 +96,7 @@ class Grid:
         Parameters
         ----------
         fine : ndarray of complex128, shape (N, C)
-            What channels read per source; it may be overwritten.
+            What channels read per source.
         density : ndarray, shape (N,)
             Of the source.
 
@@ -105,8 +105,7 @@ class Grid:
         ndarray of complex128, shape (F, C (C + 1) / 2)
             The upper triangle, row by row.
         """
-        fine *= np.sqrt(density)[:, None]
-        return _core.cross_spectra(_rows(self.smear), np.ascontiguousarray(fine))
+        return _core.cross_spectra(_rows(self.smear), np.ascontiguousarray(fine * np.sqrt(density)[:, None]))
 
     def of_line(self, line_Hz: float, amplitudes: Complexes) -> Complexes:
         """The same of a source at one frequency, exactly.
@@ -228,9 +227,19 @@ def halved(lines_Hz: Reals, track: Complexes, segment_s: float) -> tuple[Reals, 
     track : ndarray of complex128, shape (L, wheels, wheels)
     segment_s : float
     """
-    lines, weights = _halving(lines_Hz.tobytes(), segment_s)
-    flat = weighed(weights, track.reshape(lines_Hz.size, -1))
-    return lines, flat.reshape(-1, *track.shape[1:])
+    solved = lines_Hz.tobytes()
+    values = _halved(solved, np.ascontiguousarray(track).tobytes(), segment_s)
+    return _halving(solved, segment_s)[0], values.reshape(-1, *track.shape[1:])
+
+
+# Runs under one condition have one track, and so has a search that changes the train or its sensors.
+@lru_cache(maxsize=8)
+def _halved(solved: bytes, track: bytes, segment_s: float) -> Complexes:
+    """The track's values at these lines, (lines, values)."""
+    weights = _halving(solved, segment_s)[1]
+    found = weighed(weights, np.frombuffer(track, dtype=np.complex128).reshape(weights.shape[1], -1))
+    found.flags.writeable = False
+    return found
 
 
 @lru_cache(maxsize=8)
@@ -249,10 +258,18 @@ def solved_lines(
     """Frequencies to solve at, so that the window's reach is covered, Hz.
 
     They lie a line of the estimate apart, and closer at low frequencies; or where those lay between which the
-    record was interpolated.
+    record was interpolated. The same arrays give the same one, which is not to be written to.
     """
+    ranges = None if interpolated_Hz is None else tuple((start, step) for start, step in interpolated_Hz)
+    return _solved(float(estimate_Hz[0]), float(estimate_Hz[-1]), segment_s, ranges)
+
+
+@lru_cache(maxsize=32)
+def _solved(
+    first_Hz: float, last_Hz: float, segment_s: float, interpolated_Hz: tuple[tuple[float, float], ...] | None
+) -> Reals:
     reach = REACH_LINES / segment_s
-    low, high = float(estimate_Hz[0]) - reach, float(estimate_Hz[-1]) + reach
+    low, high = first_Hz - reach, last_Hz + reach
     usual = [(0.0, 1.0 / (FINER * segment_s)), (FINE_LINES / segment_s, 1.0 / segment_s)]
     ranges = list(interpolated_Hz or usual)
     parts = []
@@ -261,4 +278,6 @@ def solved_lines(
         last = int(np.ceil((min(high, stop) - start) / step - 1e-9))
         parts.append(start + step * np.arange(first, last + 1, dtype=np.float64))
     lines = np.unique(np.round(np.concatenate(parts), 9))
-    return np.asarray(lines[lines > 0.0])
+    found = np.asarray(lines[lines > 0.0], dtype=np.float64)
+    found.flags.writeable = False
+    return found

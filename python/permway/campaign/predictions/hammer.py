@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -33,10 +34,17 @@ def read(sensors: Sequence[Sensor], points: Sequence[Point], frequency_Hz: Reals
     Returns
     -------
     ndarray of complex128, shape (F, sensors, points)
-        SI unit of the quantity per N, over m/N.
+        SI unit of the quantity per N, over m/N; not to be written to.
     """
-    top, bottom = (transfers(chains, frequency_Hz) for chains in (sensors, points))
-    return np.asarray(top[:, :, None] * (1.0 / bottom)[:, None, :])
+    return _read(tuple(sensors), tuple(points), frequency_Hz.tobytes())
+
+
+@lru_cache(maxsize=4)
+def _read(sensors: tuple[Sensor, ...], points: tuple[Point, ...], frequency: bytes) -> Complexes:
+    top, bottom = (transfers(chains, np.frombuffer(frequency)) for chains in (sensors, points))
+    found = np.asarray(top[:, :, None] * (1.0 / bottom)[:, None, :])
+    found.flags.writeable = False
+    return found
 
 
 def temperature(campaign: Campaign, condition: Condition) -> float | None:

@@ -3,28 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
 from permway.arrays import Complexes, Reals
 from permway.campaign.parts import Condition, IrregularityKnown
 from permway.campaign.predictions import excitation
+from permway.campaign.predictions.aboard import aboard, added_csd
 from permway.campaign.predictions.excitation import speed_of
 from permway.campaign.predictions.grid import Grid, grid_of, solved_lines
 from permway.campaign.predictions.motion import influence, pushed, wheels_of
 from permway.campaign.predictions.rolling import passing
 from permway.campaign.predictions.sliding import shares
-from permway.errors import InputError
+from permway.model.kept import Kept
 from permway.problem.model import Model
-from permway.recordings.channel import Direction, Quantity, Sensor, there
+from permway.recordings.channel import Sensor
 from permway.response.rolling import Rolled
 from permway.response.sliding import Remainder
 
-__all__ = ["expected_csd", "influence", "solved_lines", "wheels_of"]
+__all__ = ["added_csd", "expected_csd", "influence", "solved_lines", "wheels_of"]
 
-
-Reads = tuple[Quantity, Direction]
+_READ: Kept[object, Complexes] = Kept(16)
+"""What sensors read of the profile on a grid, by how the vehicle moves: a search may change the profile alone."""
 
 
 @lru_cache(maxsize=32)
@@ -62,6 +63,7 @@ def expected_csd(
     lines_Hz : ndarray, shape (L,)
         Frequencies of `per_profile`, from below the first estimate to above the last: see :func:`solved_lines`.
     per_profile : ndarray of complex128, shape (L, degrees, wheels)
+        Not to be written to afterwards: what is read of it is kept while it lives.
     estimate_Hz : ndarray, shape (F,)
     segment_s : float
     interpolated : bool
@@ -94,31 +96,22 @@ def expected_csd(
     )
     if away:
         broad, narrow = broad.away, narrow.away
-    degrees = model.train.vehicle.degrees
-    chosen = [degrees.index(str(sensor.degree)) for sensor in sensors]
-    flat = all(sensor.chain.flat for sensor in sensors)
-    reads = tuple(_reads(sensor) for sensor in sensors)
+    on_board = aboard(tuple(sensors), tuple(model.train.vehicle.degrees))
+    chosen, flat = list(on_board.chosen), on_board.flat
     wheels = wheels_of(model, condition)
     lag = ((wheels[0] - wheels) / speed_of(condition)).tobytes()
 
-    def read(fine: Complexes, grid: Grid) -> Complexes:
-        """By chains whose transfers are no mere gains."""
-        if not flat:
-            fine *= _chains(sensors, grid.frequency_Hz)
-        return fine
+    def expected(grid: Grid, fine: Complexes, density: Reals) -> Complexes:
+        """Of what sensors on ideal chains read of a source on a grid; chains that are mere gains left out."""
+        return grid.expected(fine if flat else fine * on_board.chains(grid.frequency_Hz), density)
 
-    def expected(grid: Grid, source: Complexes, density: Reals) -> Complexes:
-        """Of what a source is read as at the solved lines, but for chains."""
-        return grid.expected(read(grid.spread(source, straight=interpolated), grid), density)
-
-    def met(grid: Grid, part: Complexes, met_Hz: Reals, density: Reals) -> Complexes:
-        """Of the profile at some frequencies, by which the vehicle moves at the grid's."""
+    def met(grid: Grid, order: int, part: Complexes, met_Hz: Reals) -> Complexes:
+        """What is read of the profile at some frequencies, by which the vehicle moves at the grid's."""
         if interpolated and rolls is None:
             shifted = np.einsum("fsw,fw->fs", part[:, chosen, :], _late(lines_Hz.tobytes(), lag))
-            return expected(grid, shifted * _there(sensors, lines_Hz), density)
+            return grid.spread(shifted * on_board.there(lines_Hz), straight=True)
         shifted = grid.spread(part[:, chosen], _late(met_Hz.tobytes(), lag), straight=False)
-        shifted *= _ideal(reads, grid)
-        return grid.expected(read(shifted, grid), density)
+        return shifted * on_board.ideal(grid)
 
     passing_Hz, orders, moved = 0.0, [0], [per_profile]
     if rolls is not None:
@@ -127,78 +120,45 @@ def expected_csd(
     for order, part in zip(orders, moved, strict=True):
         met_Hz = broad.frequency_Hz + order * passing_Hz
         density = excitation.broad(model, known, condition, np.maximum(np.abs(met_Hz), broad.frequency_Hz[0]))
-        parts.append(met(broad, part, met_Hz, density))
+        each = [(broad, met_Hz, density)]
         if known.series and not order:
-            density = excitation.series(known, condition, narrow)
-            parts.append(met(narrow, part, narrow.frequency_Hz, density))
+            each.append((narrow, narrow.frequency_Hz, excitation.series(known, condition, narrow)))
+        for grid, at_Hz, density in each:
+            read = _READ.of(
+                per_profile if rolls is None else rolls,
+                partial(met, grid, order, part, at_Hz),
+                use=(order, grid, on_board.chosen, on_board.reads, lag, interpolated),
+            )
+            parts.append(expected(grid, read, density))
     for line_Hz, amplitudes in () if rolls is None else passing(rolls):
         at_Hz = np.array([line_Hz])
-        seen = amplitudes[chosen] * _there(sensors, at_Hz)[0]
-        parts.append(broad.of_line(line_Hz, seen if flat else seen * _chains(sensors, at_Hz)[0]))
-    upper = np.asarray(np.sum(parts, axis=0))
+        seen = amplitudes[chosen] * on_board.there(at_Hz)[0]
+        parts.append(broad.of_line(line_Hz, seen if flat else seen * on_board.chains(at_Hz)[0]))
+    upper = np.asarray(sum(parts[1:], start=parts[0]))
     for sources, density in _sources(model, known, condition, narrow, lines_Hz, per_profile):
         for source in sources:
-            upper += expected(narrow, source[:, chosen] * _there(sensors, lines_Hz), density)
+            fine = narrow.spread(source[:, chosen] * on_board.there(lines_Hz), straight=interpolated)
+            upper += expected(narrow, fine, density)
     for remainder in left:
         per_force = pushed(model.train.vehicle, lines_Hz, remainder.rows, per_profile)[:, :, chosen]
-        per_force = per_force * _there(sensors, lines_Hz)[:, None, :]
+        per_force = per_force * on_board.there(lines_Hz)[:, None, :]
         fine = narrow.spread(per_force.reshape(lines_Hz.size, -1), straight=interpolated)
         fine = fine.reshape(-1, *per_force.shape[1:])
-        if not flat:
-            fine *= _chains(sensors, narrow.frequency_Hz)[:, None, :]
         mixed = np.einsum("ntk,ntc->knc", shares(remainder, narrow.frequency_Hz), fine)
-        upper += np.sum([narrow.expected(one, np.ones(len(fine))) for one in mixed], axis=0)
-    rows, columns = np.triu_indices(len(sensors))
+        upper += np.sum([expected(narrow, one, np.ones(len(fine))) for one in mixed], axis=0)
     if flat:
-        gains = _chains(sensors, broad.frequency_Hz[:1])
-        upper *= gains[:, rows] * gains[:, columns].conj()
-    if any(sensor.chain.clock_slow for sensor in sensors):
-        if duration_s is None:
-            remedy = "give the dataset its attribute duration_s"
-            raise InputError("clocks run apart in a run of unknown length", where="duration_s", remedy=remedy)
-        upper *= _apart(sensors, estimate_Hz, segment_s, duration_s)
-    # Of a matrix that is its own adjoint the upper triangle is enough.
-    matrix = np.empty((estimate_Hz.size, len(sensors), len(sensors)), dtype=np.complex128)
-    matrix[:, columns, rows] = upper.conj()
-    matrix[:, rows, columns] = upper
-    return matrix if away else matrix + added_csd(sensors, lines_Hz, estimate_Hz, segment_s)
-
-
-def _apart(sensors: Sequence[Sensor], estimate_Hz: Reals, segment_s: float, duration_s: float) -> Complexes:
-    """What clocks that run apart leave of cross spectra: the mean over segments of a phase that grows.
-
-    Returns
-    -------
-    ndarray of complex128, shape (F, pairs)
-        Pairs in the order of the upper triangle.
-    """
-    slow = np.array([sensor.chain.clock_slow for sensor in sensors])
-    rows, columns = np.triu_indices(len(sensors))
-    turns = estimate_Hz[:, None] * (slow[rows] - slow[columns])
-    growing = np.sinc(turns * max(duration_s - segment_s, 0.0))
-    return np.asarray(growing * np.exp(-1j * np.pi * turns * duration_s))
-
-
-def added_csd(sensors: Sequence[Sensor], lines_Hz: Reals, estimate_Hz: Reals, segment_s: float) -> Reals:
-    """What chains add of their own, whatever moves: the noise of each, and hum, which they have in common.
-
-    Parameters
-    ----------
-    lines_Hz, estimate_Hz, segment_s
-        As of :func:`expected_csd`.
-
-    Returns
-    -------
-    ndarray, shape (F, sensors, sensors)
-    """
-    matrix = np.zeros((estimate_Hz.size, len(sensors), len(sensors)))
-    if any(sensor.chain.mains is not None for sensor in sensors):
-        grid = grid_of(lines_Hz, estimate_Hz, segment_s)
-        for density, size in excitation.hum(sensors, grid):
-            matrix += (grid.smear @ density)[:, None, None] * np.outer(size, size)
-    own = np.arange(len(sensors))
-    matrix[:, own, own] += np.stack([sensor.noise(estimate_Hz) for sensor in sensors], axis=-1)
-    return matrix
+        upper *= on_board.gains
+    apart = on_board.apart(estimate_Hz, segment_s, duration_s)
+    if apart is not None:
+        upper *= apart
+    # Of a matrix that is its own adjoint the upper triangle is enough; lines are side by side in memory.
+    (rows, columns), upper = on_board.pairs, np.ascontiguousarray(upper.T)
+    matrix = np.empty((len(sensors), len(sensors), estimate_Hz.size), dtype=np.complex128)
+    matrix[columns, rows] = upper.conj()
+    matrix[rows, columns] = upper
+    if not away:
+        matrix += added_csd(on_board.sensors, lines_Hz, estimate_Hz, segment_s)
+    return np.moveaxis(matrix, -1, 0)
 
 
 def _sources(
@@ -217,28 +177,3 @@ def _sources(
     for source in known.pushes:
         row = np.eye(len(vehicle.degrees))[[vehicle.degrees.index(source.degree)]]
         yield [pushed(vehicle, lines_Hz, row, per_profile)[:, 0]], excitation.push(source, grid.frequency_Hz)
-
-
-def _chains(sensors: Sequence[Sensor], frequency_Hz: Reals) -> Complexes:
-    return np.stack([sensor.chain.transfer(frequency_Hz) for sensor in sensors], axis=-1)
-
-
-def _there(sensors: Sequence[Sensor], frequency_Hz: Reals) -> Complexes:
-    return _each(tuple(_reads(sensor) for sensor in sensors), frequency_Hz)
-
-
-@lru_cache(maxsize=16)
-def _ideal(reads: tuple[Reads, ...], grid: Grid) -> Complexes:
-    """:func:`_there` on a grid, (N, sensors), or (N, 1) where all read alike."""
-    found = _each(reads[:1] if len(set(reads)) == 1 else reads, grid.frequency_Hz)
-    found.flags.writeable = False
-    return found
-
-
-def _each(reads: tuple[Reads, ...], frequency_Hz: Reals) -> Complexes:
-    each = {one: there(*one, frequency_Hz) for one in set(reads)}
-    return np.stack([each[one] for one in reads], axis=-1)
-
-
-def _reads(sensor: Sensor) -> Reads:
-    return sensor.quantity, sensor.direction
