@@ -1,4 +1,4 @@
-"""Frequency responses held against a prediction."""
+"""Frequency responses compared with a prediction."""
 
 from __future__ import annotations
 
@@ -20,14 +20,11 @@ from permway.diagnosis.gaussian_process import GaussianProcess
 REACH = 2
 """Lines to either side over which the variance of noise is taken together."""
 
-PAIR = 1e-9
-"""Neper: errors of single pairs of sensor and point, where a discrepancy stands for them."""
-
 
 class FrfBlock(Block):
     """Frequency responses: complex residuals by the noise of each line, from coherence, and a floor.
 
-    Errors of chains multiply: a deviation is the logarithm of measured over predicted, in units of the measured
+    Errors of chains multiply: a residual is the logarithm of measured over predicted, in units of the measured
     response. Where noise is large the logarithm is biased, and the difference stands for it, taken about the
     errors that the other lines show: of exp(e) it is linear in e.
 
@@ -41,7 +38,7 @@ class FrfBlock(Block):
     floor : float or ndarray, shape (sensors, points, 1)
         Relative error that adds to the noise of each line.
     pair : float
-        Size of a pair's calibration error, neper and rad.
+        Size of a pair's calibration error, neper and rad; 0 where a discrepancy stands for it.
     reference : Dataset of xarray
         A prediction, which stands for what is there where noise hides it.
     errors : ndarray of complex128, shape (sensors, points, F), optional
@@ -97,14 +94,11 @@ class FrfBlock(Block):
         # Of what is mostly noise, calibration errors act on what is there.
         self._there: Complexes = np.where(self._logarithmic, self._measured, expected)
         self._span = span or (float(self.frequency[0]), float(self.frequency[-1]))
-        fine = Basis(float(self.frequency[0]), float(self.frequency[-1]), self.KNOTS_PER_OCTAVE)
         # Errors multiply: turned by the phase of what is there they are real.
         there = np.abs(self._there)
         with np.errstate(divide="ignore", invalid="ignore"):
             self._phase: Complexes = np.where(there > 0.0, self._there / there, 1.0)
         self._relative: Reals = there * self.weight
-        own_errors = self._relative[..., None] * fine.values(self.frequency)
-        self._directions, self._singular, _ = np.linalg.svd(own_errors, full_matrices=False)
         self._sized(pair)
         self.rows = self._labelled(decibels)
 
@@ -146,9 +140,23 @@ class FrfBlock(Block):
     def _sized(self, pair: float) -> None:
         """Take a size of the pairs' errors, and let go of what came of another."""
         self.pair = pair
-        self._shrink = 1.0 - 1.0 / np.sqrt(1.0 + (pair * self._singular) ** 2)
         self._last: tuple[xr.Dataset, Reals] | None = None
-        self.__dict__.pop("calibration", None)
+        self._near: tuple[xr.Dataset, Complexes, Complexes, Complexes] | None = None
+        for known in ("calibration", "_shrink"):
+            self.__dict__.pop(known, None)
+
+    @cached_property
+    def _own_errors(self) -> tuple[Reals, Reals]:
+        """Directions of the pairs' errors, orthonormal for each pair, and what one of unit size does there."""
+        fine = Basis(float(self.frequency[0]), float(self.frequency[-1]), self.KNOTS_PER_OCTAVE)
+        own_errors = self._relative[..., None] * fine.values(self.frequency)
+        directions, singular, _ = np.linalg.svd(own_errors, full_matrices=False)
+        return directions, singular
+
+    @cached_property
+    def _shrink(self) -> Reals:
+        """Share of each direction that these errors explain."""
+        return np.asarray(1.0 - 1.0 / np.sqrt(1.0 + (self.pair * self._own_errors[1]) ** 2))
 
     def with_pair(self, pair: float) -> FrfBlock:
         """The same with another size of the pairs' errors."""
@@ -162,7 +170,7 @@ class FrfBlock(Block):
 
     def bare(self) -> FrfBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
-        return self.with_floor(DECIMALS).with_pair(PAIR)
+        return self.with_floor(DECIMALS).with_pair(0.0)
 
     def about(self, prediction: Prediction, errors: Reals, spanned: Mapping[str, Reals]) -> FrfBlock:
         """See :class:`permway.diagnosis.blocks.Block`."""
@@ -213,17 +221,21 @@ class FrfBlock(Block):
     @property
     def log_determinant(self) -> float:
         """Of the covariance of the pairs' errors and the noise, by that of the noise."""
-        return float(2.0 * np.log1p((self.pair * self._singular) ** 2).sum())
+        return float(2.0 * np.log1p((self.pair * self._own_errors[1]) ** 2).sum()) if self.pair else 0.0
 
     def white(self, values: Complexes) -> Complexes:
         """Takes out of weighted values (sensor, force, frequency) what calibration errors of pairs explain."""
+        if not self.pair:
+            return values
         parts = as_parts((values * self._phase.conj())[..., None])
-        parts -= self._directions @ (self._shrink[..., None] * self._within(parts))
+        self._take_out(parts)
         return np.asarray(as_complex(parts)[..., 0] * self._phase)
 
-    def _within(self, parts: Reals) -> Reals:
-        """Of real columns (sensor, force, frequency, k) what lies along each pair's directions, one for each."""
-        return np.asarray(self._directions.swapaxes(-1, -2) @ parts)
+    def _take_out(self, parts: Reals) -> None:
+        """Take what errors of pairs explain out of real columns (sensor, force, frequency, k), in place."""
+        if self.pair:
+            directions = self._own_errors[0]
+            parts -= directions @ (self._shrink[..., None] * (directions.swapaxes(-1, -2) @ parts))
 
     def residuals(self, predicted: xr.Dataset) -> Reals:
         """Real parts, then imaginary parts."""
@@ -236,9 +248,12 @@ class FrfBlock(Block):
 
     def changed(self, predicted: xr.Dataset, change: Complexes) -> Reals:
         """See :class:`permway.diagnosis.blocks.Block`."""
-        chain = predicted["chain"].values
-        model = predicted["frf"].values + chain * np.moveaxis(change, 0, -1)
-        d = self.white(self._off(model, chain) * self.weight).reshape(-1)
+        if self._near is None or self._near[0] is not predicted:
+            chain = predicted["chain"].values
+            self._near = predicted, predicted["frf"].values, chain, self._undone(chain)
+        _, model, chain, undone = self._near
+        model = model + chain * np.moveaxis(change, 0, -1)
+        d = self.white(self._off(model, undone) * self.weight).reshape(-1)
         return np.concatenate([d.real, d.imag])
 
     def levels_dB(self, predicted: xr.Dataset) -> Reals:
@@ -249,13 +264,16 @@ class FrfBlock(Block):
 
     def off(self, predicted: xr.Dataset) -> Complexes:
         """Measured less predicted, in the response's unit, as errors that multiply have it."""
-        return self._off(predicted["frf"].values, predicted["chain"].values)
+        return self._off(predicted["frf"].values, self._undone(predicted["chain"].values))
 
-    def _off(self, model: Complexes, chain: Complexes) -> Complexes:
+    def _undone(self, chain: Complexes) -> Complexes:
+        """What hidden predictions of a chain are multiplied by."""
+        return np.asarray(self._hidden_measured[0] * _straight(chain[self._hidden] / self._chain))
+
+    def _off(self, model: Complexes, undone: Complexes) -> Complexes:
         found = np.zeros_like(self._measured)
         found[self._logarithmic] = self._seen * (self._logarithms(model) - self._lifted)
-        hidden, (gains, measured) = model[self._hidden], self._hidden_measured
-        found[self._hidden] = measured - gains * hidden * _straight(chain[self._hidden] / self._chain)
+        found[self._hidden] = self._hidden_measured[1] - model[self._hidden] * undone
         return found
 
     def _logarithms(self, model: Complexes) -> Complexes:
@@ -267,7 +285,7 @@ class FrfBlock(Block):
             return np.asarray(0.5 * np.log(_square(ratio)) + 1j * np.angle(ratio))
 
     def along(self, predicted: xr.Dataset) -> Complexes:
-        """Direction in which a gain moves a deviation; a phase moves it across."""
+        """Direction in which a gain moves a residual; a phase moves it across."""
         there = np.where(self._logarithmic, self._measured, predicted["frf"].values * self._gain)
         return np.asarray(np.exp(1j * np.angle(there)))
 
@@ -282,7 +300,7 @@ class FrfBlock(Block):
         process = GaussianProcess(*self._span)
         # Measured is what is there times the error: residuals grow by it.
         gains = self._relative[..., None] * process.values(self.frequency)
-        gains -= self._directions @ (self._shrink[..., None] * self._within(gains))
+        self._take_out(gains)
         sources = tuple(ErrorSource(name, process, 2) for names, _ in self.processes for name in names)
         return CalibrationErrors(sources, PairColumns(gains, self._phase))
 

@@ -121,6 +121,7 @@ class JointChanges:
         self._reached = {key: _none(s, 0, len(s.places)) for key, s in self._states.items()}
         self._own = {key: _none(s, 0) for key, s in self._states.items()}
         self._between = {key: _none(s, 0) for key, s in self._states.items()}
+        self._at: dict[int, tuple[list[int], list[int]]] = {}
 
     def _state(self, needs: Sequence[Request]) -> _State:
         line = model_under(self.campaign.model, needs[0].factors).line
@@ -193,8 +194,7 @@ class JointChanges:
             if need is None:
                 found.append(block.residuals(data))
                 continue
-            places = self._states[need.key].places
-            rows, columns = ([places.index(place) for place in side] for side in (need.rows, need.columns))
+            rows, columns = self._places(need)
             reached, push = pushed[need.key]
             change = -reached[:, :, rows].swapaxes(1, 2) @ push[:, :, columns]
             residuals = block.changed(data, change)
@@ -207,6 +207,14 @@ class JointChanges:
                 residuals = block.residuals(predict_one(other, block.dataset, need, self._answer(need, change)))
             found.append(residuals)
         return np.concatenate(found)
+
+    def _places(self, need: Request) -> tuple[list[int], list[int]]:
+        """Where a need's rows and columns stand among its state's places."""
+        if id(need) not in self._at:
+            places = self._states[need.key].places
+            rows, columns = ([places.index(place) for place in side] for side in (need.rows, need.columns))
+            self._at[id(need)] = rows, columns
+        return self._at[id(need)]
 
     def _answer(self, need: Request, change: Complexes) -> Result:
         """A need's receptances, changed."""

@@ -125,6 +125,8 @@ class Trial:
         See :class:`permway.posterior.fit.Fit`.
     objective, log_evidence : float
         Of the fit; infinite, and minus that, before there is one.
+    slopes : ndarray, optional
+        At the end of the fit, of the few that are fitted to the end.
     """
 
     cell: Cell
@@ -133,6 +135,7 @@ class Trial:
     bend: Reals | None
     objective: float = np.inf
     log_evidence: float = -np.inf
+    slopes: Reals | None = None
 
     @staticmethod
     def of(root: Member, cell: Cell, hyper: Hyper) -> Trial:
@@ -213,13 +216,15 @@ def completed(
     def work(trial: Trial) -> Trial | None:
         try:
             started = fitter.begin(_model(root, trial.cell), trial.z, trial.hyper, bend=trial.bend)
-            return _kept(trial, finished(fitter, started, (trial.cell.hypothesis,)))
+            fit = finished(fitter, started, (trial.cell.hypothesis,))
+            return replace(_kept(trial, fit), slopes=fit.jacobian)
         except (InputError, SolveError):
             return None
 
     found = []
     for trial in _shared(fitter, work, trials, progress):
-        fit = fitter.begin(_model(root, trial.cell), trial.z, trial.hyper, bend=trial.bend)
+        fit = fitter.begin(_model(root, trial.cell), trial.z, trial.hyper, trial.slopes, trial.bend)
+        fit = replace(fit, exact=True).light()
         amendments = (*root.amendments, trial.cell.hypothesis)
         found.append(Member(amendments, fit, (*root.log_priors, trial.cell.log_prior)))
     return found
@@ -261,7 +266,7 @@ def finished(fitter: Fitter, fit: Fit, amendments: Sequence[Hypothesis] = ()) ->
         fit, stop = rested(fitter, fit, own, amendment, STEPS[-1]), own.start
     # Slopes of nominal parameters change little: only at the end are they taken at every step.
     fixed = stop if amendments else 0
-    fit = fitter.fit(fitter.settled(fit), steps=STEPS[-1], fixed=fixed)
+    fit = fitter.fit(fitter.settled(fit, fixed=fixed), steps=STEPS[-1], fixed=fixed)
     found = _estimated(fitter, fit, fixed)
     if amendments and found.hyper[IDEALISATION] > TAKEN_UP * IDEAL:
         # What a large idealisation takes up constrains no amendment: with a usual one both may fit better.
@@ -275,7 +280,7 @@ def finished(fitter: Fitter, fit: Fit, amendments: Sequence[Hypothesis] = ()) ->
 
 def _estimated(fitter: Fitter, fit: Fit, fixed: int) -> Fit:
     """With the most probable hyperparameters, and slopes of all at the end."""
-    fit = fitter.fit(estimated(fitter.settled(fit)), steps=STEPS[-1], fixed=fixed)
+    fit = fitter.fit(estimated(fit), steps=STEPS[-1], fixed=fixed)
     return fitter.settled(fitter.fit(fitter.settled(fit), steps=STEPS[-1]))
 
 

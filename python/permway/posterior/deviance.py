@@ -49,7 +49,7 @@ def against(control: Campaign, *, threads: int | None = None) -> Callable[[Campa
     measured = predictable(control, screened=False).kept
     plain = recalibrated(gather(control, measured, threads=threads))
     there = [dataset.record.name for dataset in measured]
-    least = _misfit(plain, control, measured)
+    least = _least_square(plain, control, measured)
 
     @one_thread_of_blas()
     def deviance(campaign: Campaign) -> float:
@@ -59,12 +59,12 @@ def against(control: Campaign, *, threads: int | None = None) -> Callable[[Campa
             raise InputError(
                 "does not have the records of its control", where="records", value=mine, remedy=str(there)
             )
-        return _misfit(plain, campaign, datasets) - least
+        return _least_square(plain, campaign, datasets) - least
 
     return deviance
 
 
-def _misfit(plain: Fit, campaign: Campaign, datasets: Sequence[Dataset]) -> float:
+def _least_square(plain: Fit, campaign: Campaign, datasets: Sequence[Dataset]) -> float:
     """Quadratic forms and priors of the best fit to a campaign's records, weighed as those of its control are."""
     frame = Frame.of(plain.frame.observations.of(campaign, datasets))
     # What follows the records' own errors is the idealisation, as the control's fit has it.

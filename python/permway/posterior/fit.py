@@ -163,6 +163,12 @@ class Fit:
         """By name."""
         return self.model.values(self.z)
 
+    def light(self) -> Fit:
+        """The same without what is quickly found again: of a large campaign its covariance and roots are 30 MB."""
+        new = replace(self)
+        new.__dict__.update(objective=self.objective, curvature=self.curvature)
+        return new
+
     def only(self, statistic: str) -> Fit:
         """The same fit of one kind of record alone."""
         blocks = self.frame.observations.blocks
@@ -262,7 +268,7 @@ class Fitter:
         problem = Problem(self.frame.observations, start.model.build, start.model.free)
         low, high = start.model.limits
         ends = [index for centre, length, _ in start.model.stretches for index in (centre, length)]
-        fit, damping, fresh, exact = start, 1e-3, True, not fixed
+        fit, damping, fresh, exact = start, 1e-3, start.exact or fixed > 0, not fixed
         for _ in range(steps):
             slope = fit.slope(fit.state.residuals) + fit.z
             moved = None

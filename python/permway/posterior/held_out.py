@@ -62,30 +62,33 @@ def gains(base: Fit, amended: Fit) -> list[Gain]:
         if mine.any() and not mine.all():
             groups.append(("band", f"{low:.4g} to {high:.4g} Hz", mine))
 
+    everything = np.ones(rows.channel.size, dtype=bool)
+    whole = [_marginal(fit, everything)[0] for fit in (base, amended)]
+
     def gain(group: tuple[str, str, np.ndarray]) -> Gain:
         axis, name, out = group
-        before, after = _predicted(base, out), _predicted(amended, out)
-        return Gain(axis, name, after[0] - before[0], before[1], after[1])
+        before, after = (_predicted(fit, out) for fit in (base, amended))
+        gained = (whole[1] - after[0]) - (whole[0] - before[0])
+        return Gain(axis, name, gained, before[1], after[1])
 
     return each(gain, groups, threads=base.frame.observations.threads, least=2)
 
 
 def _predicted(fit: Fit, out: np.ndarray) -> tuple[float, float]:
-    """Log density of the rows left out given the others, and the error of their levels in dB."""
-    whole, _ = _marginal(fit, np.ones(out.size, dtype=bool))
+    """Log marginal likelihood of all rows but those left out, and the error of these rows' levels in dB."""
     kept, shift = _marginal(fit, ~out)
     # Solved where the others have the parameters: slopes do not reach to where a resonance is elsewhere.
     observations = fit.frame.observations
     problem = Problem(observations, fit.model.build, fit.model.free)
     state = problem.at(np.clip(fit.z + shift, *fit.model.limits), fit.state.solved)
     if state is None:
-        return whole - kept, float("nan")
+        return kept, float("nan")
     levels = observations.levels_dB(state.solved.datasets)
     mine = out & np.isfinite(levels)
     clear = mine & (fit.frame.sigma < HIDDEN)
     mine = clear if clear.any() else mine
     error = float(np.sqrt(np.mean(levels[mine] ** 2))) if mine.any() else float("nan")
-    return whole - kept, error
+    return kept, error
 
 
 def _marginal(fit: Fit, keep: np.ndarray) -> tuple[float, np.ndarray]:

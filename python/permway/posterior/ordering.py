@@ -99,7 +99,7 @@ def _shared(fitter: Fitter, work: Callable[[int], Fit | None], models: Sequence[
 
     made = each(numbers, range(len(models)), threads=fitter.frame.observations.threads)
     return [
-        None if one is None else replace(fitter.begin(model, *one), exact=True)
+        None if one is None else replace(fitter.begin(model, *one), exact=True).light()
         for model, one in zip(models, made, strict=True)
     ]
 
