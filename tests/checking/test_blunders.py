@@ -21,7 +21,9 @@ READ = Callable[[Complexes, Reals], Complexes]
 
 
 def reported(folder: Path, seed: int, **more: Any) -> tuple[Blunder, ...]:
-    return check(campaign_by_elements(folder, seed, **more), threads=1).blunders
+    """All but that no tolerance is stated, which is asked of the few models that are exact."""
+    found = check(campaign_by_elements(folder, seed, **more), threads=1).blunders
+    return tuple(one for one in found if one.where != "parameters")
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)

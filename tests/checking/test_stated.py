@@ -62,3 +62,14 @@ def test_a_header_of_another_unit_is_reported_with_both(tmp_path: Path, unit: st
     assert found.kind == "unreadable"
     assert unit in found.what
     assert "m/s2" in found.what + found.remedy or "unit" in found.what
+
+
+def test_a_campaign_without_a_tolerance_is_asked_for_one(tmp_path: Path) -> None:
+    campaign = copy.deepcopy(CAMPAIGN)
+    path = simulate(tmp_path, 3, campaign=campaign).path
+    assert not [one for one in check(read_campaign(path), threads=1).blunders if one.where == "parameters"]
+    del campaign["parameters"]
+    path.write_text(to_toml(campaign))
+    (found,) = [one for one in check(read_campaign(path), threads=1).blunders if one.where == "parameters"]
+    assert found.asked
+    assert "tolerance_2sigma" in found.remedy

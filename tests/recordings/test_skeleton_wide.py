@@ -108,5 +108,5 @@ def test_a_file_of_one_hit_point_names_it(tmp_path: Path) -> None:
     path.write_text(to_toml(table))
     (folder / "model.toml").write_text(to_toml(MODEL))
     checked = permway.check(path)
-    assert checked.blunders == ()
+    assert [one.where for one in checked.blunders] == ["parameters"]
     assert len(checked.records) == len(points)

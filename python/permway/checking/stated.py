@@ -23,7 +23,11 @@ by side are asked of, at twice of it a campaign of five whose places were never 
 
 
 def tolerances(campaign: Campaign) -> Iterator[Blunder]:
-    """Relative tolerances of more than the number itself."""
+    """Relative tolerances of more than the number itself, and none at all."""
+    if not campaign.stated.parameters:
+        what = "no parameter has a tolerance: each value of the model counts as exact, and its error as an effect"
+        remedy = "state [[parameters]] with tolerance_2sigma for what is not known exactly"
+        yield Blunder("tolerance", "parameters", what, remedy, asked=True)
     for parameter in campaign.stated.parameters:
         tolerance = parameter.tolerance_2sigma
         if tolerance is None or parameter.absolute or tolerance < LARGEST:
