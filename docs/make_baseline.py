@@ -39,16 +39,16 @@ HEAD = """# Results on small campaigns
 finite elements that share no code with the solver. What each column counts is shown there. Shares are hits/cases
 with their 90 % intervals.
 
-`permway diagnose` uses the second method. Nobody had looked at the campaigns of
-the second before it was measured: 330 of the 500 that the command makes, 0 to 148 and 250 to 430 (1,000 were
-asked for). The seeds of the fixture were known during development. In
-clean records a change of 0.05 % has a large deviance; such a stiffness change is taken for the
-model's idealisation. From 15 to 50 the true effect is hardly more probable than nothing: by at most 0.7 nats
-in seven cases.
+`permway diagnose` uses the second method. Its campaigns were not used in development: 330 of the 500 that the
+command makes, 0 to 148 and 250 to 430 (1,000 were planned). The fixture's seeds were known.
+
+With little noise a stiffness change of 0.05 % has a large deviance; it is taken for the model's idealisation.
+At a deviance of 15 to 50 the true effect is hardly more probable than no effect: by at most 0.7 nats in seven
+cases.
 
 Fourteen whole campaigns (seeds as in the last table): nothing missing, called 0 of 4; one effect, right name 7 of
-8, one false; several, all found in 0 of 2, one false name; 67 to 1,198 s beside other work. The false one had lost
-a bearing where two girders meet, which was not offered; it is now.
+8, one false; several, all found in 0 of 2, one false name; 67 to 1,198 s on a busy machine. In the
+false one a bearing is lost where two girders meet. This was not in the search; it is now.
 """
 
 

@@ -67,7 +67,6 @@ HEAD = """# Challenge results of the first method
 
 Campaigns in which effects were concealed, diagnosed and scored. The campaigns come from finite elements that
 share no code with the solver. [The guide](how-to/challenge.md) says how to repeat this.
-`docs/make_challenge.py` writes this page.
 
 **These figures are of a first method. `permway diagnose` now uses [another](baseline.md).**
 
@@ -212,7 +211,7 @@ def _sentences(summary: dict[str, Any]) -> list[str]:
     covered = [count(row["covered"]) for row in summary["tiers"] if "covered" in row]
     inside, of = (sum(row[i] for row in covered) for i in (0, 1))
     low, high = COVERED
-    owners = summary["parameters"]
+    nominal = summary["parameters"]
     harmed, cases = (sum(count(row["harmed"])[i] for row in summary["tiers"]) for i in (0, 1))
     return [
         "All campaigns together:",
@@ -223,8 +222,8 @@ def _sentences(summary: dict[str, Any]) -> list[str]:
         f"bar {100 * low:g} to {_percent(high)}).",
         f"- In {harmed} of {cases} campaigns the amended model predicts records that were left out of the fit "
         f"worse than the nominal one ({_rounded(harmed, cases, 1)}; bar {_percent(MOST_HARMED)}).",
-        f"- Of {owners['campaigns']} 90 % intervals of nominal parameters, {owners['inside']} hold the truth "
-        f"({_rounded(owners['inside'], owners['campaigns'])}).",
+        f"- Of {nominal['campaigns']} 90 % intervals of nominal parameters, {nominal['inside']} hold the truth "
+        f"({_rounded(nominal['inside'], nominal['campaigns'])}).",
     ]
 
 

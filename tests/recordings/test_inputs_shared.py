@@ -122,7 +122,7 @@ def test_times(
 
 
 REFUSED_TIMES = {
-    "csv_hash_fs_thousands.csv": "line 1: a remark speaks of the sampling rate .*sampling_Hz =",
+    "csv_hash_fs_thousands.csv": "line 1: a remark states the sampling rate .*sampling_Hz =",
     "csv_coarse_time.csv": r"511\.\d+ to 512\.\d+ Hz; .*sampling_Hz = 512\.0",
     "csv_actigraph_head.csv": "lines 1 to 6 are no part of a table .*header_row = 7",
     "csv_key_value_head_quoted_decimal_commas.csv": "lines 1 to 4 are no part of a table .*header_row = 6",

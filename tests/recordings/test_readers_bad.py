@@ -58,7 +58,7 @@ TEXTS: dict[str, tuple[str | bytes, str]] = {
     "two times": ("t,time,a\n0,0,1\n1,1,2\n", "more than one time column"),
     "time alone": ("t [s]\n0\n1\n", "no channel in time"),
     "times that may be anything": ("t,a\n0,1\n1,2\n2,3\n", "column 't': times without a unit, .*unit = { t ="),
-    "rate of thousands": ("# fs = 51,200 Hz\na\n1\n", "line 1: a remark speaks of the sampling rate"),
+    "rate of thousands": ("# fs = 51,200 Hz\na\n1\n", "line 1: a remark states the sampling rate"),
     "lines above": (
         "Model,x\nSerial,7\n\na,b\n1,2\n3,4\n",
         "lines 1 to 2 are no part of a table .*header_row = 4",

@@ -82,7 +82,7 @@ def test_days_without_a_unit_are_no_seconds(tmp_path: Path) -> None:
 def test_rates_in_remarks(remark: str, rate: float | None, tmp_path: Path) -> None:
     path = text(tmp_path, f"# {remark}\na;b\n" + "".join(f"{i % 3}.5;1.0\n" for i in range(40)))
     if rate is None:
-        with pytest.raises(InputError, match="line 1: a remark speaks of the sampling rate and is not understood"):
+        with pytest.raises(InputError, match="line 1: a remark states the sampling rate and is not understood"):
             read_time(path)
     else:
         assert read_time(path).sampling_Hz == pytest.approx(rate)
@@ -91,7 +91,7 @@ def test_rates_in_remarks(remark: str, rate: float | None, tmp_path: Path) -> No
 
 def test_a_point_of_thousands_beside_decimal_commas(tmp_path: Path) -> None:
     path = text(tmp_path, "# fs = 51.200 Hz\na;b\n" + "".join(f"{i % 3},5;1,0\n" for i in range(40)))
-    with pytest.raises(InputError, match="a remark speaks of the sampling rate"):
+    with pytest.raises(InputError, match="a remark states the sampling rate"):
         read_time(path)
 
 

@@ -25,7 +25,7 @@ SI_UNITS = {
 
 @dataclass(frozen=True)
 class Dataset:
-    """One record of a campaign, ready to be held against a prediction.
+    """One record of a campaign, ready to be compared with a prediction.
 
     Attributes
     ----------

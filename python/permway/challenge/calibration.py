@@ -1,4 +1,4 @@
-"""What verdicts are worth: power by difficulty, probabilities held against truths, families taken for others."""
+"""What verdicts are worth: power by difficulty, probabilities compared with truths, families taken for others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Verdicts held against truths: detection, place, family, class, parameters, held-out gain, by tier."""
+"""Verdicts compared with truths: detection, place, family, class, parameters, held-out gain, by tier."""
 
 from __future__ import annotations
 

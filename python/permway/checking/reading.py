@@ -16,7 +16,7 @@ from permway.checking.blunder import Blunder
 from permway.errors import InputError
 
 MOST_LINES = 64
-"""Lines of a record that are held against the model: a check takes in proportion to them."""
+"""Lines of a record that are compared with the model: a check takes in proportion to them."""
 
 COHERENCE = (
     ("coherence lies between 0 and 1", "in percent? say so in the header, as coherence [%], or divide it by 100"),

@@ -42,7 +42,7 @@ class Reported:
 
 
 def reported(given: Compared, sensors: Sequence[Sensor], forces: Sequence[str]) -> tuple[list[Reported], Compared]:
-    """Changes, the surest first, each held against the record with those before it made; and the record so.
+    """Changes, the surest first, each compared with the record with those before it made; and the record so.
 
     Parameters
     ----------

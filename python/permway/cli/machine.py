@@ -17,7 +17,7 @@ CLOSE = 1e-12
 
 
 def account() -> dict[str, Any]:
-    """Machine, threads, vector instructions, versions, and the core's answer held against a closed form."""
+    """Machine, threads, vector instructions, versions, and the core's answer compared with a closed form."""
     import h5py
 
     from permway import _core

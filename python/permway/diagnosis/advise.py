@@ -73,7 +73,7 @@ def separation(item: Item, right: Fit, other: Fit) -> float:
     measured = dataset.data.assign({name: values[name] for name in values.data_vars if name in dataset.data})
     observations = observations_of(truth, [replace(dataset, data=measured)], right.observations)
 
-    # Residuals are held against what noise does to them on the mean, and here is none.
+    # Residuals are compared with what noise does to them on the mean, and here is none.
     nothing = observations.residuals(observations.predicted(truth).datasets)
 
     def residuals(z: Reals) -> Reals:

@@ -1,4 +1,4 @@
-"""What a prediction is held against: standardised residuals, dataset by dataset.
+"""What a prediction is compared with: standardised residuals, dataset by dataset.
 
 A block turns one dataset of a campaign into residuals of unit variance if the model is right: of the complex
 frequency response by its noise, of power by its Gamma distribution, of what two channels share by their coherence.

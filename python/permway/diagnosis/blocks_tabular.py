@@ -1,4 +1,4 @@
-"""Deviations of records that are tables: decay rates, swept sines, moduli."""
+"""Residuals of records that are tables: decay rates, swept sines, moduli."""
 
 from __future__ import annotations
 

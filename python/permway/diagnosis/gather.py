@@ -1,4 +1,4 @@
-"""A campaign's records, read and made ready to be held against models."""
+"""A campaign's records, read and made ready to be compared with models."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def gather(
     threads: int | None = None,
     lines: float = LINES_PER_FREQUENCY,
 ) -> Observations:
-    """Read a campaign's records and make them ready to be held against models.
+    """Read a campaign's records and make them ready to be compared with models.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ LAGS = 12
 
 
 def standardised(block: Block, residuals: Mapping[str, Reals], predicted: Mapping[str, xr.Dataset]) -> xr.Dataset:
-    """Deviations of a block, row by row of its map.
+    """Residuals of a block, row by row of its map.
 
     Complex residuals are turned by the predicted phase, so that their real part is one of level and their
     imaginary part one of phase; noise is as large either way. (What was measured holds the noise itself: turned by
@@ -45,7 +45,7 @@ def standardised(block: Block, residuals: Mapping[str, Reals], predicted: Mappin
             "z": (
                 ("model", "part", "row", "frequency"),
                 z,
-                {"long_name": "deviation over its standard deviation", "units": "1"},
+                {"long_name": "residual over its standard deviation", "units": "1"},
             )
         },
         coords={

@@ -1,7 +1,7 @@
 """What the sensors of a campaign can separate, before what they read is looked at.
 
 Every effect of the catalogue is put into the nominal model at the size it starts from; what it does to the
-records, with all that recalibration and calibration errors could do taken out, is held against what every other
+records, with all that recalibration and calibration errors could do taken out, is compared with what every other
 effect could do at any size. Measured values play no part: only where, what and how well was measured.
 """
 

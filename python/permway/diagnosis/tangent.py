@@ -1,4 +1,4 @@
-"""Deviations as a function of the free parameters, and their slopes."""
+"""Residuals as a function of the free parameters, and their slopes."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def tangent_of(at: State, whitener: Whitener, jacobian: Reals, blocks: float) ->
 
 
 class Problem:
-    """Deviations as a function of z."""
+    """Residuals as a function of z."""
 
     def __init__(self, observations: Observations, build: Build, free: tuple[Free, ...]) -> None:
         self.observations, self.build, self.free = observations, build, free
@@ -85,7 +85,7 @@ class Problem:
         return self.observations.residuals(predicted.datasets), predicted
 
     def _near(self, predicted: Solved, state: State) -> Reals:
-        """Deviations, those of datasets that are the state's own taken from it."""
+        """Residuals, those of datasets that are the state's own taken from it."""
         found, start = [], 0
         for block, new, old in zip(
             self.observations.blocks, predicted.datasets, state.solved.datasets, strict=True

@@ -96,7 +96,7 @@ class Verdict(VerdictPart):
 
     @property
     def amended(self) -> bool:
-        """Whether the verdict speaks of an amended model: of what is missing, or of a suspicion."""
+        """Whether the verdict has an amended model: of what is missing, or of a suspicion."""
         return self.explained_gap is not None
 
     @property

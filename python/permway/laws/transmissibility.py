@@ -1,4 +1,4 @@
-"""A mass on rubber in shear, base shaken: the transmissibility a law predicts, held against a record.
+"""A mass on rubber in shear, base shaken: the transmissibility a law predicts, compared with a record.
 
 T = k*/(k* - m omega^2) with k* = n G* A/h for n rubber rings sheared side by side; T is the motion of the
 mass over that of the base. The mass is everything that moves with it. A DMA modulus holds at the strain it
@@ -82,7 +82,7 @@ class ShakerRecord:
 
 @dataclass(frozen=True, kw_only=True)
 class TransmissibilityComparison:
-    """A prediction held against a record over the record's whole band.
+    """A prediction compared with a record over the record's whole band.
 
     Attributes
     ----------

@@ -45,7 +45,7 @@ def draw_check(checked: Checked, folder: Path, *, dpi: int = 130) -> Path | None
     Returns
     -------
     Path or None
-        None if no record can be held against the model.
+        None if no record can be compared with the model.
     """
     records = [(dataset.record.name, given) for dataset, given, _ in checked.records if given.used.any()]
     if not records:

@@ -1,4 +1,4 @@
-"""All modes of a band, window by window, each held against a second fit through other lines.
+"""All modes of a band, window by window, each compared with a second fit through other lines.
 
 Over several octaves one rational function does not do: accelerances there differ by powers of ten, and what is
 small is lost to rounding. In a window of an octave it is not. A pole counts if the function through the other half

@@ -142,7 +142,7 @@ def cases_to_check(study: Study) -> Iterator[int]:
 
 
 def _probe(study: Study) -> None:
-    """Solve one case at one frequency: names in `keep` and of axes are held against what an answer has."""
+    """Solve one case at one frequency: names in `keep` and of axes are compared with what an answer has."""
     model = study.model(0)
     at = Frequencies(values_Hz=(float(model.frequencies.array()[0]),))
     try:

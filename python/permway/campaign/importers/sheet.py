@@ -119,7 +119,7 @@ def _find(folder: Path, name: str) -> Path:
     if found:
         names = [path.name for path in found]
         raise InputError("there are two of that name", where=str(folder), value=names, remedy="leave one")
-    remedy = f"the sheet speaks of it; its name ends in one of {', '.join(_SUFFIXES)}"
+    remedy = f"the sheet names it; its name ends in one of {', '.join(_SUFFIXES)}"
     raise InputError(f"there is no file {name}", where=str(folder), remedy=remedy)
 
 

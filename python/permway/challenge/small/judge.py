@@ -1,4 +1,4 @@
-"""One verdict of a small campaign held against its truth."""
+"""One verdict of a small campaign compared with its truth."""
 
 from __future__ import annotations
 

@@ -23,7 +23,10 @@ CONFUSED_WITH = {
     "layer_damping": "phase above 200 Hz, where a dashpot's loss keeps rising",
     "pad_preload": "tests with and without a standing vehicle",
 }
-SOURCE = "Bagley and Torvik (1983); seed paper, equations (17) to (22)"
+SOURCE = (
+    "Bagley and Torvik (1983); the paper, Insights into Underrail Rubber Pad's Effect on Vehicle-Track-Viaduct "
+    "System Dynamics (2021), equations (17) to (22)"
+)
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:

@@ -47,7 +47,10 @@ CONFUSED_WITH = {
     "pad_frequency": "the same at all temperatures, and grows from the frequency that the constant was fitted at",
     "pad_preload": "differs between hammer and train at one temperature",
 }
-SOURCE = "Ferry, Viscoelastic Properties of Polymers (1980), chapter 11; seed paper, equations (21) and (27)"
+SOURCE = (
+    "Ferry, Viscoelastic Properties of Polymers (1980), chapter 11; the paper, Insights into Underrail Rubber "
+    "Pad's Effect on Vehicle-Track-Viaduct System Dynamics (2021), equations (21) and (27)"
+)
 
 
 def _temperatures(campaign: Campaign) -> dict[str, float]:

@@ -27,7 +27,7 @@ def through_window(
     """What Welch's method gives in the mean for a known density: the density seen through the window.
 
     The convolution with |W(f)|^2 (Percival and Walden 1993, chapter 6), for power and cross densities alike.
-    A prediction so treated is what an estimate of any resolution is to be held against.
+    A prediction so treated is what an estimate of any resolution is to be compared with.
 
     Parameters
     ----------

@@ -83,7 +83,7 @@ def open_time(
     """Open one segment of a LabVIEW measurement file, the number of which `part` is if there are several.
 
     Rates are by `Delta_X` of each channel, and starts by `X0`, `Date` and `Time`; x values, where they are
-    printed, are held against both.
+    printed, are compared with both.
     """
     check_size(source.stat().st_size, str(source), max_bytes=max_bytes, item=8)
     segment = _segment(source, hints, part)

@@ -117,7 +117,7 @@ def as_time(store: Store, part: str | None = None, hints: Hints = NO_HINTS) -> T
 
 
 def _timing_of(store: Store, variable: Variable, rate: float | None, hints: Hints) -> Timing:
-    """The timing that an array of times means, held against the rate that the file states elsewhere."""
+    """The timing that an array of times means, compared with the rate that the file states elsewhere."""
     where = f"{store.source}: '{variable.name}'"
     raw = np.ravel(variable.all(store.source)).astype(np.float64)
     if rate is not None and _only_numbers_samples(raw):

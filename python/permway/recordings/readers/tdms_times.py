@@ -78,7 +78,7 @@ def timing_of(channel: Any, where: str, times: list[str], channels: Mapping[str,
             remedy="state the rate in the record, as in sampling_Hz = 512.0",
         )
         return Timing(samples=samples, sampling_Hz=None, start_s=begin, fault=fault)
-    # Counted from the channel that began first, so that starts can be held against each other.
+    # Counted from the channel that began first, so that starts can be compared with each other.
     dates = [_since_1970(other) for other in channels.values()]
     earliest = min((date for date in dates if date is not None), default=0.0)
     start: float | None = begin * scale

@@ -29,7 +29,7 @@ class RateRemark:
     ----------
     value_Hz : float or None
     fault : InputError or None
-        If one speaks of the rate and is not understood: to be raised where nothing else states it.
+        If one states the rate and is not understood: to be raised where nothing else states it.
     doubt : InputError or None
         The same if the table has decimal commas.
     """
@@ -57,7 +57,7 @@ def rate_in(remark: str, where: str) -> RateRemark:
         return RateRemark()
     text = stated["value"].strip()
     fault = InputError(
-        "a remark speaks of the sampling rate and is not understood",
+        "a remark states the sampling rate and is not understood",
         where=where,
         value=remark[:80],
         remedy="write it as in 'fs = 51200 Hz', or state it in the record: sampling_Hz = 51200.0",
