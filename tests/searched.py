@@ -8,11 +8,11 @@ from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue import entries
 from permway.diagnosis.fit import Fit
 from permway.diagnosis.observations import Observations
-from permway.posterior.beam import Member
 from permway.posterior.cells import BESIDE
 from permway.posterior.covariance import Frame
 from permway.posterior.diagnose import as_base
-from permway.posterior.fit import Fitter
+from permway.posterior.fitter import Fitter
+from permway.posterior.member import Member
 from permway.posterior.recalibrated import recalibrated
 from permway.posterior.search import explored
 

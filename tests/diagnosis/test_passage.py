@@ -20,7 +20,8 @@ from permway.diagnosis.tangent import Problem
 from permway.posterior.compare import compare
 from permway.posterior.covariance import Frame
 from permway.posterior.estimate import estimated
-from permway.posterior.fit import Fit, Fitter, Model
+from permway.posterior.fit import Fit, Model
+from permway.posterior.fitter import Fitter
 from permway.report.compare import write_comparison
 from scipy.ndimage import uniform_filter1d
 

@@ -15,7 +15,8 @@ from permway.diagnosis.tangent import Problem
 from permway.errors import InputError
 from permway.posterior.compare import compare
 from permway.posterior.covariance import Frame
-from permway.posterior.fit import Fitter, Model
+from permway.posterior.fit import Model
+from permway.posterior.fitter import Fitter
 
 
 def stiffer(model: dict) -> None:

@@ -25,8 +25,9 @@ from permway.diagnosis.verdict import (
     Weight,
     json_schema,
 )
+from permway.diagnosis.verdict_numbers import span
 from permway.diagnosis.verdict_parts import Condition, Moved, Recalibrated
-from permway.diagnosis.verdict_words import smallest, span
+from permway.diagnosis.verdict_words import smallest
 from permway.errors import InputError
 from permway.model.line import Line
 from scipy.special import ndtr

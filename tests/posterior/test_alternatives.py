@@ -9,10 +9,11 @@ import pytest
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather
 from permway.posterior.alternatives import alternatives, rivals
-from permway.posterior.beam import Member
 from permway.posterior.cells import Cell, cells
 from permway.posterior.covariance import Frame
-from permway.posterior.fit import Fit, Fitter, Model, grown
+from permway.posterior.fit import Fit, Model, grown
+from permway.posterior.fitter import Fitter
+from permway.posterior.member import Member
 from simulated import simulate
 
 AT, BETWEEN = "at every fastener", "between any two fasteners"

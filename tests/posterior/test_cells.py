@@ -15,7 +15,8 @@ from permway.errors import InputError
 from permway.model.bodies import Beam
 from permway.model.line import Line
 from permway.posterior.cells import Cell, cells
-from permway.posterior.fit import Fit, Fitter, grown
+from permway.posterior.fit import Fit, grown
+from permway.posterior.fitter import Fitter
 from permway.posterior.recalibrated import recalibrated
 
 OF_THE_LINE = ("slab_joints", "girder_crack", "fastener_loss", "bearing_stiffness", "deck_attachment")

@@ -9,7 +9,8 @@ import pytest
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather, observations_of
 from permway.posterior.covariance import Frame
-from permway.posterior.fit import Fitter, Model
+from permway.posterior.fit import Model
+from permway.posterior.fitter import Fitter
 from permway.posterior.held_out import gains
 from permway.posterior.hyper import Hyper
 from simulated import simulate

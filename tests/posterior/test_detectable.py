@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from permway.diagnosis.hypothesis import Hypothesis, Where, linear_free
-from permway.posterior.beam import tempered
 from permway.posterior.cells import Cell
 from permway.posterior.detectable import ODDS, detectable
+from permway.posterior.member import tempered
 from permway.posterior.screening import Scores
 
 PRIOR, RESIDUALS = -5.0, 3000

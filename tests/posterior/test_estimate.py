@@ -10,7 +10,8 @@ from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather
 from permway.posterior.covariance import Frame
 from permway.posterior.estimate import SETTLED, estimated, least_objective
-from permway.posterior.fit import Fit, Fitter, Model
+from permway.posterior.fit import Fit, Model
+from permway.posterior.fitter import Fitter
 from scipy import optimize
 from simulated import simulate
 

@@ -10,7 +10,8 @@ from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather
 from permway.posterior.covariance import Frame
 from permway.posterior.estimate import estimated
-from permway.posterior.fit import Fitter, Model
+from permway.posterior.fit import Model
+from permway.posterior.fitter import Fitter
 from permway.posterior.hyper import COARSEST, EXACT, Hyper
 from scipy import integrate, stats
 from simulated import simulate

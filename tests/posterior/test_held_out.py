@@ -9,7 +9,8 @@ from permway.campaign.campaign import Campaign
 from permway.diagnosis.catalogue._interval import weakened
 from permway.diagnosis.gather import gather
 from permway.posterior.cells import cells, coordinate
-from permway.posterior.fit import Fitter, grown
+from permway.posterior.fit import grown
+from permway.posterior.fitter import Fitter
 from permway.posterior.held_out import gains
 from permway.posterior.recalibrated import recalibrated
 from simulated import simulate

@@ -11,7 +11,8 @@ from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather, observations_of
 from permway.posterior.covariance import Frame
 from permway.posterior.estimate import least_objective
-from permway.posterior.fit import Fit, Fitter, Model
+from permway.posterior.fit import Fit, Model
+from permway.posterior.fitter import Fitter
 from permway.posterior.hyper_slope import hyper_slope
 from permway.posterior.tridiagonal import Tridiagonal
 from simulated import simulate

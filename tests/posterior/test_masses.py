@@ -7,8 +7,8 @@ from typing import cast
 
 import numpy as np
 import pytest
-from permway.posterior.beam import IDEALISED, Member, tempered
 from permway.posterior.masses import ALIKE, Masses
+from permway.posterior.member import IDEALISED, Member, tempered
 
 PRIOR, COUNT = -6.0, 2000
 POWER, OF_MISSING = 1.0 / (1.0 + COUNT / ALIKE), 1.0 / (1.0 + COUNT / IDEALISED)

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather
-from permway.posterior.beam import Member
 from permway.posterior.cells import Cell, cells
 from permway.posterior.covariance import Frame
-from permway.posterior.fit import Fitter, Model, grown
+from permway.posterior.fit import Model, grown
+from permway.posterior.fitter import Fitter
+from permway.posterior.member import Member
 from permway.posterior.ordering import _smaller, _worth_keeping
 from simulated import simulate
 

@@ -13,9 +13,9 @@ from permway.campaign.campaign import Campaign
 from permway.diagnosis.fit import Free
 from permway.diagnosis.hypothesis import Hypothesis, Where
 from permway.posterior.answer import _bands
-from permway.posterior.beam import Member
 from permway.posterior.cells import Cell
 from permway.posterior.masses import Masses
+from permway.posterior.member import Member
 from permway.posterior.places import weighed
 from simulated import SPACING, simulate
 

@@ -11,8 +11,8 @@ import pytest
 from permway.campaign.campaign import Campaign, read_campaign
 from permway.diagnosis.gather import gather
 from permway.laws.toml import to_toml
-from permway.posterior.beam import Member
 from permway.posterior.hyper import STRAINED, Hyper
+from permway.posterior.member import Member
 from permway.posterior.search import _next_root
 from searched import searched
 

@@ -11,7 +11,8 @@ from permway.diagnosis.fit import free_parameters
 from permway.diagnosis.gather import gather, observations_of
 from permway.diagnosis.observations import Observations
 from permway.posterior.covariance import Frame
-from permway.posterior.fit import Fitter, Model
+from permway.posterior.fit import Model
+from permway.posterior.fitter import Fitter
 from permway.posterior.hyper import IDEALISATION
 from permway.posterior.idealised import LARGEST, SHOWN, idealised
 from simulated import simulate

@@ -11,9 +11,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from permway.posterior.beam import Member
 from permway.posterior.cells import Cell, coordinate
-from permway.posterior.fit import Fitter, Model, extended
+from permway.posterior.fit import Model, extended
+from permway.posterior.fitter import Fitter
+from permway.posterior.member import Member
 
 FAR = 3.0
 """Standard deviations from the middle of its prior, beyond which a value is another hypothesis's."""

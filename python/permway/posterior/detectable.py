@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from permway.diagnosis.verdict_parts import Smallest
-from permway.posterior.beam import tempered
 from permway.posterior.cells import Cell, resized
+from permway.posterior.member import tempered
 from permway.posterior.screening import Scores
 
 ODDS = 4.0

@@ -17,7 +17,8 @@ from permway.diagnosis.side_by_side import one_thread_of_blas
 from permway.errors import InputError
 from permway.posterior.beam import STEPS
 from permway.posterior.covariance import Frame
-from permway.posterior.fit import Fit, Fitter, Model
+from permway.posterior.fit import Fit, Model
+from permway.posterior.fitter import Fitter
 from permway.posterior.ordering import LEVELS
 from permway.posterior.recalibrated import recalibrated
 

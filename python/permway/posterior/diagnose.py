@@ -25,18 +25,19 @@ from permway.diagnosis.verdict import RIGHT, Verdict
 from permway.diagnosis.verdict_parts import Moved, NextMeasurement
 from permway.diagnosis.verdict_records import mixed_up, with_bad_channels
 from permway.posterior.answer import verdict_of
-from permway.posterior.beam import Member
 from permway.posterior.covariance import Frame
 from permway.posterior.detectable import detectable
-from permway.posterior.fit import Fit, Fitter
+from permway.posterior.fit import Fit
+from permway.posterior.fitter import Fitter
 from permway.posterior.held_out import gains
 from permway.posterior.masses import Masses
+from permway.posterior.member import Member
 from permway.posterior.places import weighed
 from permway.posterior.search import explored, unsearched
 
 ENOUGH = 20_000
 """Residuals that are weighed: of more, frequency responses are taken at fewer lines. Further ones show little that
-the model's own idealisation does not hide: :data:`permway.posterior.beam.IDEALISED` is the same number. Twice as
+the model's own idealisation does not hide: :data:`permway.posterior.member.IDEALISED` is the same number. Twice as
 many make the evidence 1.3 times as large and take twice the time."""
 
 FEWEST = 4.0

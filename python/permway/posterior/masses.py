@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from permway.diagnosis.verdict import NOVEL
-from permway.posterior.beam import Member, tempered
+from permway.posterior.member import Member, tempered
 
 CLASS = 0.95
 """Posterior mass that a class of names holds."""
@@ -18,7 +18,7 @@ LIKELY = 0.5
 
 ALIKE = 2_000
 """Residuals from which the model's own idealisation shows between sets with amendments: see
-:data:`permway.posterior.beam.IDEALISED`, ten times as many, for sets differ less from each other than from
+:data:`permway.posterior.member.IDEALISED`, ten times as many, for sets differ less from each other than from
 nothing."""
 
 SHOWN = 1e-3

@@ -19,7 +19,8 @@ from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.side_by_side import SMALL, each
 from permway.errors import InputError, SolveError
 from permway.posterior.cells import coordinate
-from permway.posterior.fit import STRETCH, Fit, Fitter
+from permway.posterior.fit import STRETCH, Fit
+from permway.posterior.fitter import Fitter
 
 JOINTS = (-2, -1, 0, 1, 2)
 """By which either end moves, or metres along a body. More are reached in several moves."""

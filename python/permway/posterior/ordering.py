@@ -12,12 +12,14 @@ from permway.diagnosis.blocks_passage import UNEVENNESS
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.side_by_side import each
 from permway.errors import InputError, SolveError
-from permway.posterior.beam import SAME, STEPS, Member, finished
+from permway.posterior.beam import SAME, STEPS, finished
 from permway.posterior.cells import coordinate
 from permway.posterior.estimate import estimated
-from permway.posterior.fit import STRETCH, Fit, Fitter, Model, extended
+from permway.posterior.fit import STRETCH, Fit, Model, extended
+from permway.posterior.fitter import Fitter
 from permway.posterior.hyper import Hyper
 from permway.posterior.idealised import idealised
+from permway.posterior.member import Member
 
 LEVELS = (1.0, 0.2, 0.04)
 """Discrepancies at which cells are refined, neper: a factor, a fifth, a twenty-fifth of a response."""

@@ -17,9 +17,9 @@ from permway.diagnosis.hypothesis import Where
 from permway.diagnosis.plain_names import spelled
 from permway.diagnosis.weighed import Along, Aside, Rival, Weighed
 from permway.model.line import Line
-from permway.posterior.beam import Member, tempered
 from permway.posterior.cells import Cell
 from permway.posterior.masses import ALIKE, SHOWN, Masses
+from permway.posterior.member import Member, tempered
 
 DRAWS = 200
 """Of the places of one amendment: a probability of a half is then known to 0.035."""

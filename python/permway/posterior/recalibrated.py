@@ -10,7 +10,8 @@ from permway.diagnosis.observations import Observations
 from permway.diagnosis.speeds import begin
 from permway.diagnosis.tangent import Problem
 from permway.posterior.covariance import Frame
-from permway.posterior.fit import Fit, Fitter, Model
+from permway.posterior.fit import Fit, Model
+from permway.posterior.fitter import Fitter
 from permway.posterior.ordering import LEVELS, annealed, weighed
 
 

@@ -14,22 +14,13 @@ import numpy as np
 
 from permway.diagnosis.fit import free_parameters
 from permway.posterior.alternatives import alternatives, rivals, without_each
-from permway.posterior.beam import (
-    STEPS,
-    Member,
-    Progress,
-    Trial,
-    advanced,
-    chosen,
-    completed,
-    distinct,
-    leading,
-    tempered,
-)
+from permway.posterior.beam import STEPS, Progress, Trial, advanced, chosen, completed, distinct, leading
 from permway.posterior.cells import Cell, cells, resized, small
 from permway.posterior.covariance import Frame
-from permway.posterior.fit import Fit, Fitter, Model
+from permway.posterior.fit import Fit, Model
+from permway.posterior.fitter import Fitter
 from permway.posterior.hyper import LACKING
+from permway.posterior.member import Member, tempered
 from permway.posterior.ordering import LEFT, LEVELS, annealed, apart, ordered, weighed
 from permway.posterior.recalibrated import first_values, recalibrated
 from permway.posterior.screening import Scores, screened

@@ -17,7 +17,7 @@ from permway.diagnosis.recalibrate import recalibrate
 from permway.model.bodies import Beam
 from permway.model.place import Place
 from permway.posterior.covariance import Frame
-from permway.posterior.fit import Fitter
+from permway.posterior.fitter import Fitter
 from permway.posterior.masses import Masses
 from permway.posterior.search import explored
 from permway.response.receptance import receptance

@@ -12,7 +12,7 @@ import xarray as xr
 from permway.campaign.compare import NEPER_DB
 from permway.diagnosis.compare import RAW, RECALIBRATED, Comparison
 from permway.diagnosis.residuals import channel_rms, lag_correlation
-from permway.diagnosis.verdict_words import quantity, span
+from permway.diagnosis.verdict_numbers import quantity, span
 
 NOTABLE_DB = 1.0
 """Deviations of this size are marked."""

@@ -9,7 +9,8 @@ from permway.diagnosis.plain_names import aim, chance, ends, estimate, name_of, 
 from permway.diagnosis.result import Diagnosis
 from permway.diagnosis.tolerances import outside
 from permway.diagnosis.verdict import NOVEL, UNPROVED, Effect, Verdict
-from permway.diagnosis.verdict_words import DOMAIN, STATED, STATUS, held_dB, probability, strongest
+from permway.diagnosis.verdict_numbers import held_dB, probability, strongest
+from permway.diagnosis.verdict_words import DOMAIN, STATED, STATUS
 from permway.diagnosis.weighed import Aside, Rival, Weighed
 from permway.model.line import Line
 

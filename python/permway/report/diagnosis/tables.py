@@ -6,7 +6,7 @@ import numpy as np
 
 from permway.diagnosis.plain_names import name_of, seen
 from permway.diagnosis.verdict import Verdict
-from permway.diagnosis.verdict_words import quantity
+from permway.diagnosis.verdict_numbers import quantity
 from permway.report.compare.tables import NOTABLE_DB, BandTable, decibels, signed
 from permway.report.diagnosis.changes import Change
 
