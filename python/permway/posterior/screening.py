@@ -29,9 +29,9 @@ EACH_FORM, EACH_SMALL = 12, 4
 """Changes of the line of one form, the best by hammer tests, that are scored by all records, and of small ones:
 twice as many as are fitted."""
 
-PARTS, MOST_AT_ONCE = 16, 128
-"""Batches that cells are scored in, and cells of one, at most: 20 MB of a large campaign's. Half or twice as many
-change the time by a tenth."""
+PARTS, MOST_AT_ONCE = 16, 64
+"""Batches that cells are scored in, so that each process has several, and cells of one batch, at most: 10 MB of a
+large campaign's. Half and twice as many take the same time."""
 
 ROUNDED = 1e-16
 """Square of a change, in standard deviations, that residuals are rounded to."""
