@@ -60,6 +60,13 @@ def folder(root: Path, cases: dict[str, tuple[dict[str, Any], dict[str, Any]]]) 
     return root
 
 
+@pytest.mark.parametrize(("gain", "harmed"), [(-2.0, False), (-4.0, True)])
+def test_what_is_left_out_is_predicted_worse_by_odds_of_twenty(tmp_path: Path, gain: float, harmed: bool) -> None:
+    lost = verdict("named", effect("fastener_loss", "fastener_loss"), gain=gain)
+    (one,) = score(folder(tmp_path, {"single-1": (truth(LOST), lost)}), FAMILIES)
+    assert one.harmed is harmed
+
+
 def test_what_is_right_wrong_and_kept_back(tmp_path: Path) -> None:
     cases = {
         "null-1": (truth(), verdict("recalibrated")),
