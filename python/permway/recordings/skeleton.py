@@ -68,7 +68,7 @@ def write_skeleton(folder: Path) -> dict[str, Any]:
         if (folder / name).exists():
             raise InputError("is there already", where=str(folder / name), remedy="move it away, or go on with it")
     exports = read_folder(folder)
-    started = Begun(exports)
+    started = Skeleton(exports)
     campaign, model = started.text(folder.resolve().name), model_text(started.body)
     prepare_folder(folder, (CAMPAIGN, MODEL))
     return {
@@ -82,7 +82,7 @@ def write_skeleton(folder: Path) -> dict[str, Any]:
     }
 
 
-class Begun:
+class Skeleton:
     """Sensors, force points and records of all files, each under one name.
 
     Parameters
@@ -115,8 +115,8 @@ class Begun:
     def text(self, title: str) -> str:
         """The campaign file."""
         lines = [
-            '# Started by `permway new`. Answer what begins with "question": put the value right, and take away',
-            '# the first # of its line. What begins with "option" may stay. Then: permway check campaign.toml',
+            '# Started by `permway new`. Answer what begins with "question": correct the value; if the line',
+            '# begins with #, delete that #. "option" lines may stay. Then: permway check campaign.toml',
             "format = 1",
             f"title = {_quoted(title)}",
             f"model = {_quoted(MODEL)}",

@@ -48,7 +48,7 @@ COMPLIANCE, PIER_HZ = (0.5, 3.0), (40.0, 2.5)
 of the pier on the soil alone. While that is kept, what a stiff soil changes is in proportion to its compliance."""
 
 COMPLIANCES = (0.1, 0.4, 1.6)
-"""Begun from."""
+"""Where starts are."""
 
 
 def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
