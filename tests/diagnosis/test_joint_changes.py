@@ -142,7 +142,7 @@ def test_tables_of_modes_and_passages_are_predicted_anew(tmp_path: Path, kind: s
         )
     fit = recalibrated(gather(read_campaign(path), threads=1))
     base, joined = changes_of(fit)
-    starts = some(fit, 20, 1)
+    starts = some(fit, 80, 1)
     assert any(cell.hypothesis.entry == "novel" for cell in starts)
     assert pairs_of(base, joined, starts) == []
 
