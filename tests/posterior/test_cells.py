@@ -18,6 +18,7 @@ from permway.posterior.cells import Cell, cells
 from permway.posterior.fit import Fit, grown
 from permway.posterior.fitter import Fitter
 from permway.posterior.recalibrated import recalibrated
+from permway.problem.model import Model
 
 OF_THE_LINE = ("slab_joints", "girder_crack", "fastener_loss", "bearing_stiffness", "deck_attachment")
 
@@ -45,6 +46,25 @@ def test_hypotheses_beside_a_set_hold_nothing_of_it(tmp_path: Path, index: int) 
             except InputError:
                 continue
             assert one.hypothesis.amend(campaign, one.values).model == expected
+
+
+@pytest.mark.parametrize("index", [0, 3, 6, 9])
+def test_no_hypothesis_is_offered_twice_and_pays_for_it(tmp_path: Path, index: int) -> None:
+    """Two of one form, with the same priors, do not change the line alike: each would be half as probable."""
+    name = make_small(5150002, index, tmp_path)
+    campaign = read_campaign(tmp_path / name / "campaign.toml")
+    hypotheses = {
+        id(cell.hypothesis): cell.hypothesis for cell in of_path(recalibrated(gather(campaign, threads=1)))
+    }
+    seen: dict[object, list[Model]] = {}
+    for one in hypotheses.values():
+        if one.moves:
+            continue
+        values = {f.name: f.value(0.7) for f in one.free}
+        made = one.amend(campaign, values).model
+        alike = seen.setdefault((one.form, tuple(values.values())), [])
+        assert made not in alike, one.form
+        alike.append(made)
 
 
 @pytest.mark.parametrize("index", range(12))

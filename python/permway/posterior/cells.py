@@ -214,7 +214,7 @@ def _overlap(alike: list[Hypothesis]) -> float:
 
 
 def offered(entry: Entry, situations: Sequence[Situation]) -> list[Hypothesis]:
-    """What an entry offers anywhere, each once."""
+    """What an entry offers anywhere, each once, with all starts: offered twice it is not two, each half as likely."""
     everywhere = getattr(entry, "everywhere", None)
     if everywhere is not None:
         return list(everywhere(situations[0]))
@@ -222,7 +222,9 @@ def offered(entry: Entry, situations: Sequence[Situation]) -> list[Hypothesis]:
     for situation in situations:
         situation.asked.clear()
         for hypothesis in entry.hypotheses(situation):
-            seen.setdefault(_key(hypothesis), hypothesis)
+            key = _key(hypothesis)
+            known = seen.get(key, hypothesis)
+            seen[key] = replace(known, starts=tuple(dict.fromkeys((*known.starts, *hypothesis.starts))))
         if entry.DOMAIN != "path" or not situation.asked:
             # Of other places it would offer the same.
             break
@@ -230,16 +232,14 @@ def offered(entry: Entry, situations: Sequence[Situation]) -> list[Hypothesis]:
 
 
 def _key(hypothesis: Hypothesis) -> tuple[object, ...]:
-    """What distinguishes two hypotheses: form, place and what their parameters are at some coordinates."""
-    places = []
-    for start in hypothesis.starts[:1]:
-        values = {f.name: f.value(float(z)) for f, z in zip(hypothesis.free, start, strict=True)}
-        where = hypothesis.locate(values)
-        at = where.x_m and tuple(round(x, 2) for x in where.x_m)
-        # Two girders that meet have bearings at one place: the words tell them apart.
-        places.append((where.what, at, where.channels, hypothesis.law(values)))
+    """What distinguishes two hypotheses: form, priors, and the place at the middle of these."""
+    values = {f.name: f.value(0.0) for f in hypothesis.free}
+    where = hypothesis.locate(values)
+    at = where.x_m and tuple(round(x, 2) for x in where.x_m)
+    # Two girders that meet have bearings at one place: the words tell them apart.
+    place = where.what, at, where.channels, hypothesis.law(values)
     spans = tuple(tuple(round(f.value(z), 6) for z in (0.0, 0.5)) for f in hypothesis.free)
-    return hypothesis.form, tuple(places), spans, hypothesis.starts
+    return hypothesis.form, place, spans
 
 
 def _situations(base: Fit) -> Iterator[Situation]:
