@@ -214,7 +214,10 @@ def _overlap(alike: list[Hypothesis]) -> float:
 
 
 def offered(entry: Entry, situations: Sequence[Situation]) -> list[Hypothesis]:
-    """What an entry offers anywhere, each once, with all starts: offered twice it is not two, each half as likely."""
+    """What an entry offers anywhere, each once, with all its starts.
+
+    The same change offered at two places is one hypothesis: as two, each would be half as likely.
+    """
     everywhere = getattr(entry, "everywhere", None)
     if everywhere is not None:
         return list(everywhere(situations[0]))
