@@ -9,19 +9,23 @@ points, as many as phase and force need.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss, legvander
+from numpy.polynomial.legendre import legvander
 from scipy.special import spherical_jn
 
 from permway.arrays import Complexes, Reals
-from permway.response.passby.path import Path
+from permway.response.passby.path import Path, gauss
 
 Course = Callable[[Reals], Reals]
 """Force over time: from times in s to values in N, of the same shape."""
 
 _POINTS = 2**22
 """Samples of phase held at once."""
+
+_KEPT = 2**24
+"""Bytes of moments that are kept for the next force of the same waves, at most; eight of them."""
 
 
 def harmonic_moments(path: Path, omega: Reals, speed: float, force_rad_per_s: float = 0.0) -> Complexes:
@@ -37,7 +41,15 @@ def harmonic_moments(path: Path, omega: Reals, speed: float, force_rad_per_s: fl
     force_rad_per_s : float
         omega_0; 0 for a constant force.
     """
-    kappa = (omega - force_rad_per_s) / speed
+    waves = np.ascontiguousarray((omega - force_rad_per_s) / speed)
+    moments = _moments if 16 * waves.size * path.nodes.size < _KEPT else _moments.__wrapped__
+    return moments(path.edges.tobytes(), path.order, waves.tobytes()) / speed
+
+
+@lru_cache(maxsize=8)
+def _moments(edges: bytes, order: int, waves: bytes) -> Complexes:
+    """The same over V, of panels and wavenumbers as they stand in memory."""
+    path, kappa = Path("", np.frombuffer(edges), order, (0.0, 0.0)), np.frombuffer(waves)
     half, place = np.unique(np.round(path.half, 12), return_inverse=True)
     degree = np.arange(path.order)
     argument = kappa[:, None, None] * half[:, None]
@@ -45,7 +57,7 @@ def harmonic_moments(path: Path, omega: Reals, speed: float, force_rad_per_s: fl
     sign = np.where(argument < 0.0, (-1.0) ** degree, 1.0)
     bessel = sign * spherical_jn(degree, np.abs(argument))
     on_panel = (2.0 * half[:, None] * bessel * (-1j) ** degree)[:, place, :]
-    return np.asarray(on_panel * np.exp(-1j * kappa[:, None] * path.middle)[:, :, None] / speed)
+    return np.asarray(on_panel * np.exp(-1j * kappa[:, None] * path.middle)[:, :, None])
 
 
 def arrivals(omega: Reals, loads: Reals, entry_s: Reals, force_rad_per_s: float = 0.0) -> Complexes:
@@ -88,7 +100,7 @@ def sampled_moments(
     highest_rad_per_s : float
         Highest frequency in the forces.
     """
-    inside, weight = leggauss(points_needed(path, float(omega[-1]), highest_rad_per_s, speed))
+    inside, weight = gauss(points_needed(path, float(omega[-1]), highest_rad_per_s, speed))
     x = path.points(inside)
     times = [x / speed + start for start in entry_s]
     force = np.stack([course(t.ravel()) for course, t in zip(courses, times, strict=True)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -19,6 +20,15 @@ _QUARTER_WAVE = 0.25
 """Longest panel over the free bending wave of the highest frequency."""
 _SAME = 1e-6
 """Places closer than this (m) are one."""
+
+
+@lru_cache(maxsize=32)
+def gauss(order: int) -> tuple[Reals, Reals]:
+    """Gauss's nodes from -1 to 1 and their weights; read only."""
+    found = leggauss(order)
+    for values in found:
+        values.flags.writeable = False
+    return found
 
 
 @dataclass(frozen=True)
@@ -64,10 +74,10 @@ class Path:
         """Middles of the panels, m."""
         return np.asarray(0.5 * (self.edges[1:] + self.edges[:-1]))
 
-    @property
+    @cached_property
     def nodes(self) -> Reals:
         """Places of the nodes, shape (panels, order), m."""
-        return self.points(leggauss(self.order)[0])
+        return self.points(gauss(self.order)[0])
 
     def points(self, inside: Reals) -> Reals:
         """Places of points from -1 to 1 inside each panel, shape (panels, points), m."""
@@ -101,7 +111,7 @@ class Path:
 
     def analysis(self) -> Reals:
         """Matrix (order, order) from values at the nodes to Legendre coefficients."""
-        inside, weight = leggauss(self.order)
+        inside, weight = gauss(self.order)
         degree = np.arange(self.order)
         return np.asarray((degree[:, None] + 0.5) * legvander(inside, self.order - 1).T * weight)
 
@@ -183,7 +193,7 @@ def path_of(
     kinks += [x for _, s in segments for x in (s.start, s.stop) if np.isfinite(x)]
     kinks += [x for beam, _ in segments for change in beam.changes for x in (change.from_m, change.to_m)]
     longest = _QUARTER_WAVE * _wavelength(segments[0][0], highest_Hz)
-    edges = _edges(np.array(kinks), start, stop, longest)
+    edges = _edges(tuple(kinks), start, stop, longest)
     if (edges.size - 1) * order > MOST_NODES:
         raise InputError(
             f"the stretch needs {(edges.size - 1) * order} places, more than {MOST_NODES}",
@@ -234,12 +244,15 @@ def _wavelength(beam: Beam | Shaft, frequency_Hz: float) -> float:
     return float(2.0 * np.pi / wavenumber)
 
 
-def _edges(kinks: Reals, start: float, stop: float, longest: float) -> Reals:
-    inside = np.sort(kinks[(kinks > start + _SAME) & (kinks < stop - _SAME)])
+@lru_cache(maxsize=8)
+def _edges(kinks: tuple[float, ...], start: float, stop: float, longest: float) -> Reals:
+    """Ends of the panels; read only, for starts of a diagnosis have the same ones."""
     marks = [start]
-    for x in inside:
+    for x in sorted(x for x in kinks if start + _SAME < x < stop - _SAME):
         if x - marks[-1] > _SAME:
             marks.append(float(x))
     marks.append(stop)
     parts = [np.linspace(a, b, int(np.ceil((b - a) / longest)) + 1)[:-1] for a, b in pairwise(marks)]
-    return np.concatenate([*parts, [stop]])
+    found = np.concatenate([*parts, [stop]])
+    found.flags.writeable = False
+    return found
