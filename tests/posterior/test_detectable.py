@@ -40,6 +40,16 @@ def test_the_smallest_size_has_just_the_evidence_that_is_asked_for() -> None:
     assert nats == pytest.approx(np.log(ODDS), abs=0.02)
 
 
+def test_an_amplitude_that_adds_to_a_density_need_not_be_so_large() -> None:
+    """Its change grows by the square: where another must be 16 times as large, four times will do."""
+    one = Cell(GAIN, np.array([0.05]), PRIOR)
+    squared = replace(one, hypothesis=replace(GAIN, power=2.0))
+    linear, square = (detectable([c], scores(1.0), RESIDUALS)["sensor_gain"].value for c in (one, squared))
+    assert linear is not None
+    assert square is not None
+    assert (square - 1.0) / 0.01 == pytest.approx(((linear - 1.0) / 0.01) ** 0.5, rel=1e-6)
+
+
 def test_of_a_fault_it_is_that_of_the_channel_that_shows_it_least() -> None:
     other = replace(GAIN, locate=lambda _: Where("", channels=("s2",)))
     cells = [Cell(GAIN, np.array([0.05]), PRIOR), Cell(other, np.array([0.05]), PRIOR)]

@@ -105,6 +105,8 @@ class Hypothesis:
         The parameter that says how strong the effect is; "" if none does.
     none : float
         The value of `size` at which there is no effect.
+    power : float
+        Of its size, that a small effect changes records by: 2 for an amplitude that adds to a spectral density.
     variant : str
         What distinguishes forms of the effect that have the same parameters.
     moves : str
@@ -121,6 +123,7 @@ class Hypothesis:
     law: Callable[[Mapping[str, float]], str] = field(default=lambda _: "")
     size: str = ""
     none: float = 0.0
+    power: float = 1.0
     variant: str = ""
     moves: str = ""
 

@@ -24,7 +24,7 @@ FARTHEST = 40.0
 """Standard deviations, beyond which no value is looked for: places on a rail without ends have no limits."""
 
 SMALL = 1e-3
-"""Share of a start's size at which a small effect's direction is taken: resonances then move in proportion, in
+"""Share of a start's change at which a small effect's direction is taken: resonances then move in proportion, in
 clean records, too. At 0.03 a tenth of all directions there changed thousands of deviations, and were bent."""
 
 BESIDE = {stated.ID: cast(Entry, stated), generic.ID: cast(Entry, generic)}
@@ -105,7 +105,7 @@ def small(cells_at_hand: Sequence[Cell]) -> list[Cell]:
         cell = replace(cell, z=_at_rest(cell))
         sized = [f.name == cell.hypothesis.size for f in cell.hypothesis.free]
         others = tuple(float(v) for v, own in zip(cell.z, sized, strict=True) if not own)
-        found.setdefault((id(cell.hypothesis), others), resized(cell, SMALL))
+        found.setdefault((id(cell.hypothesis), others), resized(cell, SMALL ** (1.0 / cell.hypothesis.power)))
     return list(found.values())
 
 

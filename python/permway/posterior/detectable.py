@@ -40,7 +40,7 @@ def detectable(cells: Sequence[Cell], scores: Scores, residuals: int) -> dict[st
     for cell, shown in zip(cells, scores.shown, strict=True):
         if not shown > 0.0 or not cell.hypothesis.size:
             continue
-        times = float(np.sqrt(_needed(cell.log_prior, residuals) / shown))
+        times = float((_needed(cell.log_prior, residuals) / shown) ** (0.5 / cell.hypothesis.power))
         fault = cell.hypothesis.domain == "measurement"
         channels = cell.hypothesis.locate(cell.values).channels if fault else ()
         place = cell.hypothesis.entry, channels

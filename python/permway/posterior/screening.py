@@ -46,9 +46,6 @@ SEEN_WHOLE = 10.0
 CLOSER = 6.0
 """Of the objective, from which what gains is looked at once more: of less, few are worth a fit."""
 
-STEEP = 1.5
-"""Power of its size from which a change is that of a power rather than of an amplitude: between 1 and 2."""
-
 LIMITED = 0.01
 """Share by which a size stays behind what would gain most because of its limits."""
 
@@ -65,7 +62,7 @@ class Scores:
     gain : ndarray, shape (cells,)
         By how much its change in the most favourable measure lowers the fit's objective.
     measure : ndarray, shape (cells,)
-        That measure: 1 is the change as it stands, 0 none, below 0 the other way.
+        That measure of its size: 1 is the change as it stands, 0 none, below 0 the other way.
     shown : ndarray, shape (cells,)
         Square of its change as it stands, in standard deviations, the fit's parameters moved along.
     view : ndarray of int, shape (cells,)
@@ -128,20 +125,15 @@ def screened(
 
 
 def _closer(fit: Fit, cells: Sequence[Cell], found: Scores, others: Sequence[Hyper]) -> Scores:
-    """With what gains changed by as much: a change may bend, or grow by the square of its size as power does."""
+    """With what gains changed by as much: a change may bend, and its size may have limits."""
     at = np.flatnonzero(found.gain > CLOSER).tolist()
     changed = [resized(cells[i], float(found.measure[i])) for i in at]
     again = _scored(fit, changed, lambda _: None, others)
     gain, measure = found.gain[at], found.measure[at]
-    # A size may have limits.
     reached = np.array([times(new, cells[i]) for i, new in zip(at, changed, strict=True)])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        power = 0.5 * np.log(again.shown / found.shown[at]) / np.log(np.abs(reached))
-    squared = power > STEEP
-    root = np.sign(measure) * np.abs(measure) ** (1.0 / np.where(squared, power, 1.0))
     limited = np.abs(reached) < (1.0 - LIMITED) * np.abs(measure)
-    better = ~squared & (limited | (again.gain > gain))
-    found.measure[at] = np.where(squared, root, np.where(again.gain > 0.0, reached * again.measure, measure))
+    better = limited | (again.gain > gain)
+    found.measure[at] = np.where(again.gain > 0.0, reached * again.measure, measure)
     found.gain[at] = np.where(better, again.gain, gain)
     found.view[at] = np.where(better, again.view, found.view[at])
     return found
@@ -246,7 +238,8 @@ def _of_batch(views: Sequence[_View], changes: Changes, cells: Sequence[Cell]) -
         return scores
     at = np.array(list(solved))
     changed = np.stack(list(solved.values()), axis=1) - views[0].fit.state.residuals[:, None]
-    low = np.array([least_measure(cells[i]) for i in at])
+    power = np.array([cells[i].hypothesis.power for i in at])
+    low = _to_the(power, np.array([least_measure(cells[i]) for i in at]))
     discrete = np.array([not cells[i].hypothesis.free for i in at])
     for number, view in enumerate(views):
         objective, along, size = view.scores(changed)
@@ -258,6 +251,12 @@ def _of_batch(views: Sequence[_View], changes: Changes, cells: Sequence[Cell]) -
             scores.objective[at] = objective + [float(cells[i].z @ cells[i].z) for i in at]
             scores.shown[at] = size
         better = np.full(at.size, True) if not number else gain > scores.gain[at]
-        scores.gain[at[better]], scores.measure[at[better]] = gain[better], measure[better]
+        sizes = _to_the(1.0 / power, measure)
+        scores.gain[at[better]], scores.measure[at[better]] = gain[better], sizes[better]
         scores.view[at[better]] = number
     return scores
+
+
+def _to_the(power: Reals, values: Reals) -> Reals:
+    """Values to a power, of either sign."""
+    return np.asarray(np.sign(values) * np.abs(values) ** power)

@@ -45,4 +45,5 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
         starts=((0.0,), (1.5,)),
         law=lambda v: f"averages over {2e3 * v['half_length_m']:.3g} mm",
         size="half_length_m",
+        power=3.0,
     )

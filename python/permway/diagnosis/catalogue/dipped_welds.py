@@ -64,5 +64,6 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
                 f"dips of {1e3 * v['depth_m']:.3g} mm over {v['length_m']:.3g} m, as if one in every {EVERY_M:g} m"
             ),
             size="depth_m",
+            power=2.0,
             none=0.0,
         )

@@ -81,6 +81,7 @@ def _of(group: tuple[str, ...], free: tuple[Free, ...]) -> Hypothesis:
         starts=((0.0, 0.6, *rest), (0.0, -0.6, *rest)),
         law=lambda v: f"a line of {v['amplitude']:.3g} at {v['frequency_Hz']:.4g} Hz and its multiples",
         size="amplitude",
+        power=2.0,
     )
 
 

@@ -57,6 +57,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             starts=((0.0,), (2.0,)),
             law=lambda v: f"{v['factor']:.3g} times the deflection under a bogie that crosses the span",
             size="factor",
+            power=2.0,
         )
 
 

@@ -84,6 +84,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             starts=((seen, -0.5), (seen - 2.0, -0.5)),
             law=lambda v: f"{1e6 * v['amplitude_m']:.3g} um at V over the fasteners' spacing",
             size="amplitude_m",
+            power=2.0,
         )
         if _pass(runs, spacing) and situation.campaign.stated.irregularity.rolls is None:
             yield from _rolling(situation, law, spacing)
@@ -134,6 +135,7 @@ def _rolling(situation: Situation, law: str, spacing: float) -> Iterator[Hypothe
             f"the train rolls over supports {spacing:g} m apart, {v['share']:.3g} of what the model's do"
         ),
         size="share",
+        power=2.0,
         variant="rolling",
     )
 

@@ -98,6 +98,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             f"{1e6 * v['amplitude_m']:.3g} um every {v['length_m']:.4g} m, line n lower by n^-{v['decay']:.2f}"
         ),
         size="amplitude_m",
+        power=2.0,
     )
     yield Hypothesis(
         entry=ID,
@@ -123,6 +124,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             f"{1e6 * v['amplitude_m']:.3g} um every {v['length_m']:.4g} m, of dips {v['dip_m']:.2g} m long"
         ),
         size="amplitude_m",
+        power=2.0,
         variant="dips",
     )
 

@@ -55,4 +55,5 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             starts=((first, -1.0), (first - 1.0, -1.0)),
             law=lambda v: f"{1e6 * v['amplitude_m']:.3g} um at every turn, order n lower by n^-{v['decay']:.2f}",
             size="amplitude_m",
+            power=2.0,
         )

@@ -66,6 +66,7 @@ def hypotheses(situation: Situation) -> Iterator[Hypothesis]:
             ),
             law=lambda v: f"{v['order']:.3g} waves of {1e6 * v['amplitude_m']:.3g} um per turn",
             size="amplitude_m",
+            power=2.0,
         )
 
 
