@@ -88,7 +88,8 @@ def main() -> None:
         if not path.exists():
             path.write_text(json.dumps(fitted(seed)), "utf-8")
     cases = [json.loads(p.read_text("utf-8")) for p in sorted(given.folder.glob("*.json"))]
-    found = {kind: summary([c for c in cases if c["kind"] == kind]) for kind in KINDS}
+    by_kind = {kind: [c for c in cases if c["kind"] == kind] for kind in KINDS}
+    found = {kind: summary(of_kind) for kind, of_kind in by_kind.items() if of_kind}
     (Path(__file__).parent / "passages.json").write_text(json.dumps(found, indent=1) + "\n", "utf-8")
     print(json.dumps(found, indent=1))
 

@@ -42,28 +42,40 @@ def begin(observations: Observations, problem: Problem) -> Reals:
     if not any(dataset.record.statistic == "passage" for dataset in observations.datasets):
         return _looked(problem, z, runs, ())[0]
     # A wrong stiffness bends the time of entry, and a wrong time the stiffness: whichever is begun with.
-    orders = (2 * (runs + bodies), bodies + runs) if bodies else (2 * runs,)
-    return min((_looked(problem, z, order, bodies) for order in orders), key=lambda one: one[1])[0]
+    orders = (runs + bodies, bodies + runs) if bodies else (runs,)
+    return min((_at_rest(problem, z, order, bodies) for order in orders), key=lambda one: one[1])[0]
+
+
+def _at_rest(problem: Problem, z: Reals, order: Sequence[int], coarse: Sequence[int]) -> tuple[Reals, float]:
+    """As :func:`_looked`, again until nothing moves."""
+    before, (found, least) = np.inf, _looked(problem, z, order, coarse)
+    while least < before:
+        before, (found, least) = least, _looked(problem, found, order, coarse)
+    return found, least
 
 
 def _looked(problem: Problem, z: Reals, order: Sequence[int], coarse: Sequence[int]) -> tuple[Reals, float]:
     """Coordinates with the least robust sum of residuals and priors, on one grid after the other, and that sum."""
-    start, best = problem.at(z) if order else None, np.inf
-    if start is None:
-        return z, best
+    best = np.inf
     for index in order:
+        start = problem.at(z)
+        if start is None:
+            return z, best
         low, high = problem.free[index].limits
-        best, began = np.inf, z
+        began, best = z, _misfit(start.residuals, z)
         points = OF_BODIES if index in coarse else GRID
         for value in np.linspace(max(low, -LIMITS), min(high, LIMITS), points):
             tried = began.copy()
             tried[index] = value
-            residuals, _ = problem.residuals(tried, start.solved)
-            # Few lines must not outweigh all others: the base may be far off in some.
-            misfit = float(np.log1p(residuals**2).sum() + tried @ tried)
+            misfit = _misfit(problem.residuals(tried, start.solved)[0], tried)
             if misfit < best:
                 best, z = misfit, tried
     return z, best
+
+
+def _misfit(residuals: Reals, z: Reals) -> float:
+    """Few lines must not outweigh all others: the base may be far off in some."""
+    return float(np.log1p(residuals**2).sum() + z @ z)
 
 
 def _moving(observations: Observations, problem: Problem, part: str) -> list[int]:
