@@ -109,6 +109,19 @@ def test_of_a_run_a_gain_within_its_tolerance_costs_next_to_nothing() -> None:
     assert one < 0.05 * other
 
 
+@pytest.mark.parametrize("noise", [1e-2, 1e-4, 1e-6])
+def test_of_coherent_channels_a_gain_within_its_tolerance_costs_what_its_prior_does(noise: float) -> None:
+    """However coherent they are: a gain and a phase of one standard deviation each cost one."""
+    random = np.random.default_rng(7)
+    column = normal(random, FREQUENCY.size, 3, 1)
+    base = column @ column.conj().swapaxes(1, 2) + noise * np.eye(3)
+    ride = Ride(base, 40.0, np.ones((FREQUENCY.size, 1)), 0.1)
+    one, both = (np.diag([1.0, np.exp(error), 1.0]) for error in (0.1, 0.1 + 0.1j))
+    costs = [Scale([ride], [], STEP).deviance([gain @ base @ gain.conj().T]) for gain in (one, both)]
+    assert 0.5 < costs[0] < 1.0
+    assert costs[0] < costs[1] < 2.0
+
+
 def test_what_a_parameter_can_take_up_is_no_deviance() -> None:
     random = np.random.default_rng(5)
     shape = (1, 2, 2, FREQUENCY.size)

@@ -1,9 +1,9 @@
 """Where recalibration begins in speeds and times of entry: phases turn with them, so that slopes lead astray.
 
 Two wheelsets 20 m apart at 60 m/s and 400 Hz are two radians out of phase for a quarter of a percent of speed.
-Each is therefore looked for on a grid, all other values at the centre of their priors; levels hardly matter. A bridge
-that rings on behind the train has peaks so narrow that its stiffness is looked for, too. Speed, time of entry and
-stiffness make up for each other, so the grids are gone over until nothing moves.
+Each is therefore looked for on a grid, all other values at the centre of their priors; levels hardly matter. A
+bridge that rings on behind the train has peaks so narrow that its stiffness is looked for, too. Speed, time of
+entry and stiffness make up for each other, so the grids are gone over until nothing moves.
 """
 
 from __future__ import annotations

@@ -145,11 +145,25 @@ class Ride:
         return np.asarray(np.sqrt(self.averages) * rows)
 
     def difference(self, responses: Complexes) -> Reals:
-        """See :class:`Part`: the matrix logarithm of the density over the base's."""
-        inverse = self._roots[1]
-        values, vectors = np.linalg.eigh(inverse @ responses @ inverse)
+        """See :class:`Part`: gains of the channels, and the matrix logarithm of what is left over the base's.
+
+        Where channels are coherent a gain is far from the matrix that it acts on, and bends its logarithm.
+        """
+        gains, (half, inverse) = self._gains(responses), self._roots
+        undone = np.exp(-gains)
+        left = undone[:, :, None] * responses * undone.conj()[:, None, :]
+        values, vectors = np.linalg.eigh(inverse @ left @ inverse)
         logs = np.log(np.maximum(values, 1e-12))[:, None, :]
-        return self._rows(np.asarray(vectors * logs @ vectors.conj().swapaxes(1, 2))).reshape(-1)
+        by_gains = inverse @ (gains[:, :, None] * half)
+        found = vectors * logs @ vectors.conj().swapaxes(1, 2) + by_gains + by_gains.conj().swapaxes(1, 2)
+        return self._rows(np.asarray(found)).reshape(-1)
+
+    def _gains(self, responses: Complexes) -> Complexes:
+        """Logarithms of gains (F, m) that give channels their powers, and their phases to the first channel."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = responses / self.base
+            levels = 0.5 * np.log(np.einsum("fcc->fc", ratio).real)
+            return np.asarray(levels + 1j * np.angle(ratio[:, :, 0]))
 
     def wrapped(self, values: Reals) -> Reals:
         """See :class:`Part`; a matrix' logarithm has no turns."""
