@@ -23,7 +23,7 @@ farther off; twice take twice the time."""
 
 ROUNDS = 2
 """Times that all grids are gone over: with one, one of 67 bridges was begun in the valley of another stiffness.
-Each takes a hundred predictions, 20 s where axles have springs."""
+Until nothing moves, six begin alike. Each takes a hundred predictions, 20 s where axles have springs."""
 
 LIMITS = 4.0
 """Standard deviations of the prior to which values without bounds are looked for."""
