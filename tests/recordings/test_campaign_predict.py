@@ -79,9 +79,9 @@ def test_records_of_one_temperature_and_of_the_same_lines_share_one_solve(tmp_pa
     assert len(plan([cold, hammer, mine])) == 2
     answer = Result(shared, np.zeros((shared.frequency_Hz.size, len(shared.sensors), 3), dtype=complex))
     with pytest.raises(InputError, match="pair is not in the sweep"):
-        answer.of(Request(12.0, FREQUENCY, (("deck", 1.0),), (("rail", 2.0),)))
+        answer.of(Request(hammer.temperature_C, FREQUENCY, (("deck", 1.0),), (("rail", 2.0),)))
     with pytest.raises(InputError, match="of another temperature, factor or frequency"):
-        answer.of(Request(12.0, np.array([0.123]), (("rail", 12.0),), (("rail", 12.0),)))
+        answer.of(Request(hammer.temperature_C, np.array([0.123]), (("rail", 12.0),), (("rail", 12.0),)))
 
 
 def test_a_run_is_the_trains_response(tmp_path: Path) -> None:

@@ -86,9 +86,9 @@ def _check_place(model: Model, body: str, x_m: float, where: str) -> None:
 
 
 def _check_condition(condition: Condition, model: Model, where: str) -> None:
-    needing = sorted(name for name, law in model.line.laws.items() if law.needs_temperature)
-    if needing and condition.temperature_C is None and model.temperature_C is None:
-        what = f"missing: the law {needing[0]!r} depends on it, and the model file gives none either"
+    if model.line.needs_temperature and condition.temperature_C is None and model.temperature_C is None:
+        needing = min(name for name, law in model.line.laws.items() if law.needs_temperature)
+        what = f"missing: the law {needing!r} depends on it, and the model file gives none either"
         raise InputError(what, where=f"{where}.temperature_C")
     if condition.kind != "train":
         return

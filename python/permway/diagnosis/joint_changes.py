@@ -243,6 +243,9 @@ def _none(state: _State, *shape: int) -> Complexes:
 def _differs_by_joints(one: Campaign, other: Campaign) -> bool:
     """Whether the line's joints, and their laws, are all that may differ."""
     first, second = one.model.line, other.model.line
+    if second.needs_temperature and not first.needs_temperature:
+        # Its states are of all temperatures.
+        return False
     if other.stated is not one.stated or one.model.formulation != "chain" or not first.laws:
         return False
     if first.bodies.keys() != second.bodies.keys():

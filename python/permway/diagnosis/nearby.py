@@ -8,7 +8,7 @@ move by `dH = sum of dH/dp times the change of p`, one derivative sweep for all 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -102,9 +102,13 @@ class Nearby:
         if one == other or not self._few(one) or campaign.model.formulation != "chain" or not _alike(one, other):
             return None
         needs = [request_of(campaign, dataset) for dataset in self.observations.datasets]
-        if not all(_same_places(new, old) for new, old in zip(needs, near.needs, strict=True)):
+        pairs = list(zip(needs, near.needs, strict=True))
+        if not all(_same_places(new, old) for new, old in pairs):
             return None
-        return self._read(campaign, {id(n): self._moved(n, campaign) for n in near.needs if n is not None})
+        answers = {
+            id(new): self._moved(old, new, campaign) for new, old in pairs if new is not None and old is not None
+        }
+        return self._read(campaign, needs, answers)
 
     def perturbed(self, part: Part, indices: Sequence[int], share: Callable[[Reals], Reals]) -> Solved | None:
         """What is predicted with some numbers of the line off at some frequencies.
@@ -131,36 +135,35 @@ class Nearby:
                 values, slopes = self._derivatives(need, line).of(part)
                 chosen = list(indices)
                 by_share = np.einsum("fi,firc->frc", values[:, chosen], slopes[:, chosen])
-                answers[id(need)] = self._answer(need, share(need.frequency_Hz)[:, None, None] * by_share)
-        return self._read(self.solved.campaign, answers)
+                moved = share(need.frequency_Hz)[:, None, None] * by_share
+                answers[id(need)] = self._answer(need, need, moved)
+        return self._read(self.solved.campaign, self.solved.needs, answers)
 
     def _few(self, line: Line) -> bool:
         return len(line.beams()) + line.masses_kg().size <= MOST_BEAMS
 
-    def _read(self, campaign: Campaign, answers: Mapping[int, Result]) -> Solved:
+    def _read(self, campaign: Campaign, needs: Sequence[Request | None], answers: Mapping[int, Result]) -> Solved:
         """All datasets, from what their needs were answered."""
         made: dict[int, xr.Dataset] = {}
-        for dataset, need in zip(self.observations.datasets, self.solved.needs, strict=True):
+        for dataset, need in zip(self.observations.datasets, needs, strict=True):
             if id(dataset) not in made:
                 made[id(dataset)] = predict_one(
                     campaign, dataset, need, None if need is None else answers[id(need)]
                 )
-        return Solved(
-            campaign, self.solved.needs, {}, [made[id(dataset)] for dataset in self.observations.datasets]
-        )
+        return Solved(campaign, tuple(needs), {}, [made[id(dataset)] for dataset in self.observations.datasets])
 
-    def _answer(self, need: Request, moved: Complexes) -> Result:
-        """The receptances of a need, moved."""
+    def _answer(self, need: Request, asked: Request, moved: Complexes) -> Result:
+        """The receptances of a need, moved to what is asked."""
         places = places_of(need.columns), places_of(need.rows)
-        sweep = Sweep(need.temperature_C, need.frequency_Hz, *places, need.factors)
+        sweep = Sweep(asked.temperature_C, need.frequency_Hz, *places, need.factors)
         return Result(sweep, self.solved.answers[need.key].of(need) + moved)
 
-    def _moved(self, need: Request, campaign: Campaign) -> Result:
+    def _moved(self, need: Request, asked: Request, campaign: Campaign) -> Result:
         if id(need) in self._exact:
-            (sweep,) = plan([need])
+            (sweep,) = plan([asked])
             return solve(sweep, campaign.model, threads=threads_of_solver(self.observations.threads))
         known = self._derivatives(need, model_under(self.solved.campaign.model, need.factors).line)
-        before, after = known.at, _Numbers.of(model_under(campaign.model, need.factors).line, need)
+        before, after = known.at, _Numbers.of(model_under(campaign.model, need.factors).line, asked)
         values = np.zeros((need.frequency_Hz.size, len(need.rows), len(need.columns)), dtype=np.complex128)
         law = after.stiffness - before.stiffness
         for index in np.flatnonzero((law != 0.0).any(axis=0)):
@@ -172,7 +175,7 @@ class Nearby:
         mass = after.masses_kg - before.masses_kg
         for index in np.flatnonzero(mass):
             values += mass[index] * known.by_mass[:, index]
-        return self._answer(need, values)
+        return self._answer(need, asked, values)
 
     def _derivatives(self, need: Request, line: Line) -> _Derivatives:
         if id(need) not in self._known:
@@ -219,7 +222,8 @@ def _alike(one: Line, other: Line) -> bool:
     )
 
 
-def _same_places(one: Request | None, other: Request | None) -> bool:
-    if one is None or other is None:
-        return one is other
-    return one.is_like(other)
+def _same_places(new: Request | None, old: Request | None) -> bool:
+    """Whether both need the same, but that the old may be of all temperatures, for no law depended on it."""
+    if new is None or old is None:
+        return new is old
+    return new.is_like(old if old.temperature_C is not None else replace(old, temperature_C=new.temperature_C))

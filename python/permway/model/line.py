@@ -136,6 +136,11 @@ class Line(FrozenModel, Shown):
             columns.append(_STIFFNESS.of(law, values, use=repr(temperature_C), given=at))
         return np.stack(columns, axis=-1) if columns else np.zeros((frequency.size, 0), dtype=np.complex128)
 
+    @property
+    def needs_temperature(self) -> bool:
+        """Whether a law depends on temperature."""
+        return any(law.needs_temperature for law in self.laws.values())
+
     def beams(self) -> list[tuple[Beam | Shaft, Segment]]:
         """The beams and shafts with their segments, in the core's order."""
         pairs: list[tuple[Beam | Shaft, Segment]] = []

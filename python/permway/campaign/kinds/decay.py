@@ -37,5 +37,4 @@ class DecayRates(RecordKind):
         self, campaign: Campaign, dataset: Dataset, condition: Condition, solved: tuple[Request, Complexes] | None
     ) -> xr.Dataset:
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""
-        _, values = of_solved(solved)
-        return decay.predicted(dataset.record, dataset.data, values)
+        return decay.predicted(dataset.record, dataset.data, *of_solved(solved))

@@ -9,7 +9,7 @@ from permway.arrays import Complexes, Reals
 from permway.campaign.campaign import Campaign
 from permway.campaign.parts import Record
 from permway.campaign.predictions.sweeps import Request
-from permway.recordings.estimates.decay_rate import grid_positions, track_decay_rate
+from permway.recordings.estimates.decay_rate import grid_positions, rate_on_grid
 
 LINES = 12
 """Lines in a one-third octave, whose powers are averaged: enough for the peak where the rail is pinned."""
@@ -44,9 +44,8 @@ def band_moduli(receptance: Complexes, frequency_Hz: Reals) -> Reals:
     return np.asarray(np.sqrt((power * weight).sum(axis=1) / weight.sum(axis=1)).T)
 
 
-def predicted(record: Record, data: xr.Dataset, receptance: Complexes) -> xr.Dataset:
-    """The decay rate in every band, from receptances (F, 1, blows)."""
+def predicted(record: Record, data: xr.Dataset, need: Request, receptance: Complexes) -> xr.Dataset:
+    """The decay rate in every band, from receptances (F, 1, blows) of what was requested."""
     assert record.spacing_m is not None
-    level = band_moduli(receptance, lines(data))
-    rate = track_decay_rate(level, grid_positions(record.spacing_m), warn=False)["decay_rate"].values
+    rate = rate_on_grid(band_moduli(receptance, need.frequency_Hz), record.spacing_m)
     return data["decay_rate"].copy(data=rate).to_dataset(name="decay_rate")

@@ -48,5 +48,10 @@ def _read(sensors: tuple[Sensor, ...], points: tuple[Point, ...], frequency: byt
 
 
 def temperature(campaign: Campaign, condition: Condition) -> float | None:
-    """Temperature of a condition, or else the model's, degrees Celsius."""
+    """Temperature of a condition, or else the model's, degrees Celsius; None where no law depends on it.
+
+    Then one solve serves conditions of all temperatures.
+    """
+    if not campaign.model.line.needs_temperature:
+        return None
     return campaign.model.temperature_C if condition.temperature_C is None else condition.temperature_C

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -69,6 +70,25 @@ def grid_intervals(position_m: ArrayLike) -> Reals:
         )
     middle = 0.5 * (position[1:] + position[:-1])
     return np.diff(middle, prepend=0.0, append=position[-1] + (position[-1] - middle[-1]))
+
+
+@lru_cache(maxsize=16)
+def _grid(bay_m: float) -> Reals:
+    length = grid_intervals(grid_positions(bay_m))
+    length.flags.writeable = False
+    return length
+
+
+def rate_on_grid(modulus: Reals, bay_m: float) -> Reals:
+    """The rate alone, dB/m, of responses at the 29 positions: see :func:`track_decay_rate`.
+
+    Parameters
+    ----------
+    modulus : ndarray, shape (29, frequency)
+        Above zero at the accelerometer.
+    bay_m : float
+    """
+    return np.asarray(_TEN_LG_E / (modulus**2 / modulus[0] ** 2 * _grid(bay_m)[:, None]).sum(axis=0))
 
 
 def track_decay_rate(
