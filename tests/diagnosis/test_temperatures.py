@@ -15,6 +15,8 @@ from permway.diagnosis.joint_changes import JointChanges
 from permway.diagnosis.nearby import Nearby
 from permway.diagnosis.observations import Observations
 from permway.laws import TFDV, Arrhenius
+from permway.posterior.cells import cells
+from permway.posterior.recalibrated import recalibrated
 from simulated import CAMPAIGN, MODEL, simulate
 
 TEMPERATURES = {"still": 12.0, "warm": 25.0, "cold": -10.0}
@@ -82,3 +84,11 @@ def test_derivatives_hold_for_each_temperature(observations: Observations) -> No
 def test_joints_whose_law_depends_on_temperature_are_solved_anew(observations: Observations) -> None:
     joined = JointChanges(observations, observations.campaign, observations.predicted(observations.campaign))
     assert joined.of(stiffer_when_warm(observations.campaign)) is None
+
+
+def test_softening_pads_are_tried_though_no_law_depends_on_temperature(observations: Observations) -> None:
+    fit = recalibrated(observations)
+    (softer, *_) = [c for c in cells(fit) if c.hypothesis.size == "softening_per_K"]
+    amended = softer.hypothesis.amend(observations.campaign, {**softer.values, "softening_per_K": 0.01})
+    found = receptances(observations.predicted(amended, fit.state.solved).datasets)
+    assert len({float(np.abs(values).mean()) for values in found}) == len(TEMPERATURES)

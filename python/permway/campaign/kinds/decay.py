@@ -31,7 +31,9 @@ class DecayRates(RecordKind):
 
     def request(self, campaign: Campaign, dataset: Dataset, condition: Condition) -> Request:
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""
-        return decay.request(campaign, dataset.record, hammer.temperature(campaign, condition), dataset.data)
+        return decay.request(
+            campaign, dataset.record, hammer.needed_temperature(campaign, condition), dataset.data
+        )
 
     def predicted(
         self, campaign: Campaign, dataset: Dataset, condition: Condition, solved: tuple[Request, Complexes] | None

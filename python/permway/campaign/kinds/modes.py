@@ -31,7 +31,7 @@ class Modes(RecordKind):
 
     def request(self, campaign: Campaign, dataset: Dataset, condition: Condition) -> Request:
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""
-        temperature = hammer.temperature(campaign, condition)
+        temperature = hammer.needed_temperature(campaign, condition)
         return modes.request(campaign, dataset.names("sensor"), temperature, dataset.data)
 
     def predicted(

@@ -30,7 +30,7 @@ class Passages(RecordKind):
 
     def request(self, campaign: Campaign, dataset: Dataset, condition: Condition) -> Request:
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""
-        temperature = hammer.temperature(campaign, condition)
+        temperature = hammer.needed_temperature(campaign, condition)
         return passage.request(campaign, condition, dataset.names("channel"), temperature, dataset.data)
 
     def predicted(

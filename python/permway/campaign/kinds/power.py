@@ -45,7 +45,7 @@ class PowerSpectra(RecordKind):
         lines = run.solved_lines(dataset.frequency_Hz, record.segment_s, record.interpolated_Hz)
         assert train is not None
         locations = tuple((train.body, float(x)) for x in run.wheels_of(campaign.model, condition))
-        return Request(hammer.temperature(campaign, condition), lines, locations, locations)
+        return Request(hammer.needed_temperature(campaign, condition), lines, locations, locations)
 
     def predicted(
         self, campaign: Campaign, dataset: Dataset, condition: Condition, solved: tuple[Request, Complexes] | None
@@ -112,7 +112,7 @@ def _csd(
         lines_Hz, values = halved(lines_Hz, values, record.segment_s)
     grid = grid_of(lines_Hz, dataset.frequency_Hz, record.segment_s)
     work = worked(campaign.model, known, condition, grid, lines_Hz, values)
-    temperature = hammer.temperature(campaign, condition)
+    temperature = hammer.needed_temperature(campaign, condition)
     rolls = rolling_of(work.model, known.rolls, condition, lines_Hz, values, temperature)
     matrix = run.expected_csd(
         work.model,

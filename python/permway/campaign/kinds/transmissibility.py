@@ -33,7 +33,7 @@ class Transmissibility(RecordKind):
         """See :class:`permway.campaign.kinds.kind.RecordKind`."""
         sensors = [campaign.sensor(name) for name in dataset.names("channel")]
         locations = tuple((str(sensor.body), float(sensor.x_m or 0.0)) for sensor in sensors)
-        temperature = hammer.temperature(campaign, condition)
+        temperature = hammer.needed_temperature(campaign, condition)
         return shaker.request(campaign.model, temperature, locations, dataset.frequency_Hz)
 
     def predicted(

@@ -21,7 +21,7 @@ def request(
     rows = [campaign.sensor(name) for name in sensors]
     columns = [campaign.point(name) for name in points]
     return Request(
-        temperature(campaign, condition),
+        needed_temperature(campaign, condition),
         frequency_Hz,
         tuple((str(sensor.body), float(sensor.x_m or 0.0)) for sensor in rows),
         tuple((point.body, point.x_m) for point in columns),
@@ -48,10 +48,10 @@ def _read(sensors: tuple[Sensor, ...], points: tuple[Point, ...], frequency: byt
 
 
 def temperature(campaign: Campaign, condition: Condition) -> float | None:
-    """Temperature of a condition, or else the model's, degrees Celsius; None where no law depends on it.
-
-    Then one solve serves conditions of all temperatures.
-    """
-    if not campaign.model.line.needs_temperature:
-        return None
+    """Temperature of a condition, or else the model's, degrees Celsius."""
     return campaign.model.temperature_C if condition.temperature_C is None else condition.temperature_C
+
+
+def needed_temperature(campaign: Campaign, condition: Condition) -> float | None:
+    """The same; None where no law depends on it, for then one solve serves conditions of all temperatures."""
+    return temperature(campaign, condition) if campaign.model.line.needs_temperature else None
