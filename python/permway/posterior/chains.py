@@ -91,7 +91,7 @@ class Chains:
         local = rows if turn is None else rows.T.reshape(-1)
         self.order = np.argsort(local)
         self.acts = sparse.csr_array((self.design if turn is None else _turned(self.design, turn))[self.order])
-        self.local = _contiguous(local[self.order])
+        self.local = contiguous(local[self.order])
         self._pairs()
 
     def _pairs(self) -> None:
@@ -137,7 +137,7 @@ class Chains:
         return Factor(self, factor, weights, log_determinant)
 
 
-def _contiguous(rows: np.ndarray) -> slice | np.ndarray:
+def contiguous(rows: np.ndarray) -> slice | np.ndarray:
     """Ascending rows, as a slice if none lies between: that copies nothing."""
     first, last = int(rows[0]), int(rows[-1])
     return slice(first, last + 1) if last + 1 - first == rows.size else rows
@@ -165,10 +165,9 @@ class Factor:
         each = np.asarray(chains.acts.T @ weighted).reshape(chains.parts, chains.size, count)
         return np.ascontiguousarray(np.moveaxis(each, 0, 1).reshape(chains.size, chains.parts * count))
 
-    def half(self, weighted: Reals) -> Reals:
-        """L^-1 C' times columns that are weighted already, L the factor: shape (states parts, k)."""
-        solved = self.factor.forward(self.pulled(weighted))
-        return solved.reshape(self.chains.parts * self.chains.size, weighted.shape[1])
+    def half(self, pulled: Reals) -> Reals:
+        """L^-1 times what :meth:`pulled` gives, L the factor: shape (states parts, k)."""
+        return self.factor.forward(pulled).reshape(self.chains.parts * self.chains.size, -1)
 
     def states(self, weighted: Reals) -> Reals:
         """Most probable states of the processes, given what rows are: shape (parts states, k)."""

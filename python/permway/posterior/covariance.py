@@ -12,8 +12,9 @@ from permway.arrays import Reals
 from permway.diagnosis.blocks import Block
 from permway.diagnosis.blocks_passage import UNEVENNESS
 from permway.diagnosis.observations import Observations, Solved
-from permway.posterior.chains import Chains, Factor, chains_of
+from permway.posterior.chains import Chains, Factor, chains_of, contiguous
 from permway.posterior.hyper import IDEALISATION, LACKING, Hyper
+from permway.posterior.roots import Roots, Weighted
 
 NEPER_PER_DB = float(np.log(10.0)) / 20.0
 
@@ -157,32 +158,6 @@ def _columns(observations: Observations, blocks: tuple[Block, ...]) -> tuple[Rea
 
 
 @dataclass(frozen=True)
-class Roots:
-    """Columns X as A and B of which A' A - B' B is the inner product of X by the inverse of a covariance."""
-
-    above: Reals
-    below: Reals
-
-    def beside(self, more: Roots) -> Roots:
-        """With further columns."""
-        return Roots(np.hstack([self.above, more.above]), np.hstack([self.below, more.below]))
-
-    def first(self, count: int) -> Roots:
-        """Of the first so many columns."""
-        return Roots(self.above[:, :count], self.below[:, :count])
-
-    def times(self, other: Roots) -> Reals:
-        """Inner products with other columns, shape (k, other's k)."""
-        return np.asarray(self.above.T @ other.above - self.below.T @ other.below)
-
-    def squares(self) -> Reals:
-        """Inner product of each column with itself, shape (k,)."""
-        return np.asarray(
-            np.einsum("nk,nk->k", self.above, self.above) - np.einsum("nk,nk->k", self.below, self.below)
-        )
-
-
-@dataclass(frozen=True)
 class Covariance:
     """Of the residuals, for given hyperparameters; it applies its inverse and has its determinant."""
 
@@ -203,42 +178,72 @@ class Covariance:
         return self.frame.whole * self._sizes
 
     @cached_property
-    def _columns(self) -> Reals:
-        """The same at the rows that they act on."""
-        return self.frame.columns * self._sizes
+    def _noise(self) -> Reals:
+        """Square root of each row's precision, (n, 1)."""
+        return np.sqrt(self.weights)[:, None]
 
     @cached_property
-    def _spanned(self) -> tuple[Roots, Reals]:
-        """Of the columns: themselves at their rows, and the factor of their part."""
-        rows, columns = self.frame.spanned, self._columns
-        above = np.sqrt(self.weights[rows])[:, None] * columns
-        weighted = np.zeros((self.weights.size, columns.shape[1]))
-        weighted[rows] = np.sqrt(self.weights[rows])[:, None] * above
-        below = []
-        for f in self.factors:
-            mine = weighted[f.chains.local]
-            met = bool(mine.any())
-            below.append(f.half(mine) if met else np.zeros((f.chains.parts * f.chains.size, mine.shape[1])))
-        roots = Roots(above, np.concatenate([np.zeros((0, columns.shape[1])), *below]))
-        return roots, linalg.cholesky(roots.times(roots) + np.eye(columns.shape[1]), lower=True)
+    def _unsized(self) -> Weighted:
+        """The frame's columns."""
+        rows = contiguous(self.frame.spanned)
+        above = self._noise[rows] * self.frame.columns
+        whole = np.zeros((self.weights.size, above.shape[1]))
+        whole[rows] = above
+        return Weighted(above, self._pulled(whole), above.T @ above)
 
-    def _across(self, found: Roots) -> Reals:
-        """Inner products of the columns with others of which these are the roots."""
-        return self._spanned[0].times(Roots(found.above[self.frame.spanned], found.below))
+    @cached_property
+    def _spanned(self) -> tuple[Reals, Reals]:
+        """Of the columns: what chains take off them, and the factor of their part."""
+        below = self._taken(self._unsized) * self._sizes
+        inner = self._unsized.across * self._sizes[:, None] * self._sizes - below.T @ below
+        return below, linalg.cholesky(inner + np.eye(len(inner)), lower=True)
 
-    def _of_chains(self, values: Reals) -> Roots:
-        root = np.sqrt(self.weights)[:, None]
-        above = root * values
-        below = [f.half(root[f.chains.local] * above[f.chains.local]) for f in self.factors]
-        return Roots(above, np.concatenate([np.zeros((0, values.shape[1])), *below]))
+    def weighted(self, values: Reals) -> Weighted:
+        """Columns (n, k) weighed by the noise: the half of the work that sizes of errors do not change."""
+        above = self._noise * values
+        across = np.zeros((0, values.shape[1]))
+        if self.frame.columns.shape[1]:
+            across = self._unsized.above.T @ above[contiguous(self.frame.spanned)]
+        return Weighted(above, self._pulled(above), across)
+
+    def _pulled(self, above: Reals) -> tuple[Reals, ...]:
+        return tuple(f.pulled(self._noise[f.chains.local] * above[f.chains.local]) for f in self.factors)
+
+    def _taken(self, weighted: Weighted) -> Reals:
+        """What errors of chains take off columns, as a root, (states, k)."""
+        below = [f.half(pulled) for f, pulled in zip(self.factors, weighted.pulled, strict=True)]
+        return np.concatenate([np.zeros((0, weighted.above.shape[1])), *below])
+
+    def _across(self, weighted: Weighted, below: Reals) -> Reals:
+        """Inner products of the frame's columns with others."""
+        return np.asarray(self._sizes[:, None] * weighted.across - self._spanned[0].T @ below)
+
+    def rooted(self, weighted: Weighted) -> Roots:
+        """What inner products by the inverse are made of."""
+        below = self._taken(weighted)
+        if self.frame.columns.shape[1]:
+            beside = linalg.solve_triangular(self._spanned[1], self._across(weighted, below), lower=True)
+            below = np.concatenate([below, beside])
+        return Roots(weighted.above, below)
 
     def roots(self, values: Reals) -> Roots:
-        """What inner products by the inverse are made of, of columns (n, k): half the work of applying it."""
-        found = self._of_chains(values)
-        if not self.frame.columns.shape[1]:
-            return found
-        beside = linalg.solve_triangular(self._spanned[1], self._across(found), lower=True)
-        return Roots(found.above, np.concatenate([found.below, beside]))
+        """The same of columns (n, k): half the work of applying the inverse."""
+        return self.rooted(self.weighted(values))
+
+    def resized(self, hyper: Hyper) -> Covariance:
+        """With other sizes of errors beside the same noise.
+
+        Raises
+        ------
+        ValueError
+            If the noise is another.
+        """
+        new = self.frame.covariance(hyper)
+        if not np.array_equal(new.weights, self.weights):
+            raise ValueError("the discrepancy is another")
+        if self.frame.columns.shape[1]:
+            new.__dict__["_unsized"] = self._unsized
+        return new
 
     def errors(self, residuals: Reals) -> Reals:
         """Most probable errors of chains at rows of frequency responses: log gains, then phases; else 0."""
@@ -262,9 +267,11 @@ class Covariance:
         """Inverse times values, shape (n, k)."""
         found = self._without_columns(values)
         if self.frame.columns.shape[1]:
-            inner = linalg.cho_solve((self._spanned[1], True), self._across(self._of_chains(values)))
+            weighted = self.weighted(values)
+            across = self._across(weighted, self._taken(weighted))
             taken = np.zeros_like(values)
-            taken[self.frame.spanned] = self._columns @ inner
+            inner = self._sizes[:, None] * linalg.cho_solve((self._spanned[1], True), across)
+            taken[self.frame.spanned] = self.frame.columns @ inner
             found -= self._without_columns(taken)
         return found
 

@@ -18,8 +18,9 @@ from permway.diagnosis.catalogue._interval import spacing_of
 from permway.diagnosis.fit import Build, Free
 from permway.diagnosis.hypothesis import Hypothesis
 from permway.diagnosis.tangent import State
-from permway.posterior.covariance import Covariance, Frame, Roots
+from permway.posterior.covariance import Covariance, Frame
 from permway.posterior.hyper import Hyper
+from permway.posterior.roots import Roots
 
 STRETCH = ("centre_m", "length_m")
 """Parameters of what acts over a stretch."""
@@ -97,11 +98,12 @@ class Fit:
     @cached_property
     def objective(self) -> float:
         """Minus two log posterior density of z and hyperparameters, up to a constant of the records."""
-        return self.covariance.square(self.state.residuals) + float(self.z @ self.z) + self._of_hyper
+        return self.objective_of(self.covariance, self.covariance.square(self.state.residuals))
 
-    @property
-    def _of_hyper(self) -> float:
-        return self.covariance.log_determinant - 2.0 * self.hyper.log_prior
+    def objective_of(self, covariance: Covariance, square: float) -> float:
+        """The same with another covariance, by which this is the square of the residuals."""
+        of_hyper = covariance.log_determinant - 2.0 * covariance.hyper.log_prior
+        return square + float(self.z @ self.z) + of_hyper
 
     @cached_property
     def roots(self) -> Roots:

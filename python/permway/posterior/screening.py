@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
-from functools import cached_property
+from dataclasses import dataclass, fields
 
 import numpy as np
 from scipy import linalg
@@ -20,10 +19,11 @@ from permway.diagnosis.side_by_side import each
 from permway.posterior.cells import SMALL as SHARE
 from permway.posterior.cells import Cell, least_measure, resized, times
 from permway.posterior.changes import Changes
-from permway.posterior.covariance import Roots
+from permway.posterior.covariance import Covariance
 from permway.posterior.fit import Fit
 from permway.posterior.hyper import Hyper
 from permway.posterior.journal import kept_table
+from permway.posterior.roots import Roots, Weighted
 
 EACH_FORM, EACH_SMALL = 12, 4
 """Changes of the line of one form, the best by hammer tests, that are scored by all records, and of small ones:
@@ -173,39 +173,67 @@ def _looked(
 
 @dataclass(frozen=True)
 class _View:
-    """A fit with some hyperparameters, and what the first look needs of it."""
+    """A fit with some sizes of errors, and what the first look needs of it.
 
-    fit: Fit
+    Attributes
+    ----------
+    covariance : Covariance
+    about : Roots
+        Of the residuals and the slopes.
+    factor : (ndarray, bool) or None
+        Of half the curvature; None of a fit without parameters.
+    uphill : ndarray, shape (p,)
+        Half the slope.
+    moved : float
+        The least objective of the fit itself, its parameters moved along.
+    """
+
+    covariance: Covariance
+    about: Roots
     factor: tuple[Reals, bool] | None
-    before: Roots
     uphill: Reals
+    moved: float
 
     @staticmethod
-    def of(fit: Fit) -> _View:
-        """Of a fit."""
-        before = fit.covariance.roots(fit.state.residuals[:, None])
-        factor = linalg.cho_factor(fit.normal) if fit.z.size else None
-        uphill = fit.roots.times(before)[:, 0] + fit.z
-        return _View(fit, factor, before, uphill)
+    def of(fit: Fit, covariance: Covariance, weighted: Weighted) -> _View:
+        """Of a fit whose residuals and slopes are weighed."""
+        about = covariance.rooted(weighted)
+        inner = about.times(about)
+        uphill = inner[1:, 0] + fit.z
+        factor = linalg.cho_factor(inner[1:, 1:] + np.eye(fit.z.size)) if fit.z.size else None
+        gain = 0.0 if factor is None else float(uphill @ linalg.cho_solve(factor, uphill))
+        objective = fit.objective_of(covariance, float(inner[0, 0]))
+        return _View(covariance, about, factor, uphill, objective - gain)
 
-    @cached_property
-    def moved(self) -> float:
-        """The least objective of the fit itself, its parameters moved along."""
-        gain = 0.0 if self.factor is None else float(self.uphill @ linalg.cho_solve(self.factor, self.uphill))
-        return self.fit.objective - gain
-
-    def scores(self, changes: Reals) -> tuple[Reals, Reals, Reals]:
+    def scores(self, changed: _Changed) -> tuple[Reals, Reals, Reals]:
         """Of columns d that residuals r change by: the least objective, and the products r'd and d'd.
 
         All with the fit's parameters moved along; without the prior of the change.
         """
-        roots = self.fit.covariance.roots(changes)
-        size, along = roots.squares(), self.before.times(roots)[0]
+        below = self.covariance.rooted(changed.weighted).below
+        size = changed.size - np.einsum("nk,nk->k", below, below)
+        products = changed.beside - self.about.below.T @ below
+        along, slope = products[0], products[1:]
         if self.factor is not None:
-            slope = self.fit.roots.times(roots)
             turned = linalg.cho_solve(self.factor, slope)
             along, size = along - self.uphill @ turned, size - np.einsum("pk,pk->k", slope, turned)
         return self.moved + 2.0 * along + size, along, size
+
+
+@dataclass(frozen=True)
+class _Changed:
+    """Columns that residuals change by; their products with themselves, (k,), and with residuals and slopes."""
+
+    weighted: Weighted
+    size: Reals
+    beside: Reals
+
+    @staticmethod
+    def of(view: _View, changes: Reals) -> _Changed:
+        """For all views that share a view's noise."""
+        weighted = view.covariance.weighted(changes)
+        above = weighted.above
+        return _Changed(weighted, np.einsum("nk,nk->k", above, above), view.about.above.T @ above)
 
 
 def _scored(
@@ -216,7 +244,9 @@ def _scored(
     small: bool = False,
 ) -> Scores:
     """By all records of a fit, and with other hyperparameters where these make more of a change."""
-    views = [_View.of(replace(fit, hyper=hyper)) for hyper in (fit.hyper, *others)]
+    weighted = fit.covariance.weighted(np.column_stack([fit.state.residuals, fit.jacobian]))
+    covariances = [fit.covariance, *(fit.covariance.resized(hyper) for hyper in others)]
+    views = [_View.of(fit, covariance, weighted) for covariance in covariances]
     changes = Changes(fit, small=small)
     size = min(max(len(cells) // PARTS, 1), MOST_AT_ONCE)
     starts = range(0, len(cells), size)
@@ -237,7 +267,8 @@ def _of_batch(views: Sequence[_View], changes: Changes, cells: Sequence[Cell]) -
     if not solved:
         return scores
     at = np.array(list(solved))
-    changed = np.stack(list(solved.values()), axis=1) - views[0].fit.state.residuals[:, None]
+    moved = np.stack(list(solved.values()), axis=1) - changes.fit.state.residuals[:, None]
+    changed = _Changed.of(views[0], moved)
     power = np.array([cells[i].hypothesis.power for i in at])
     low = _to_the(power, np.array([least_measure(cells[i]) for i in at]))
     discrete = np.array([not cells[i].hypothesis.free for i in at])
