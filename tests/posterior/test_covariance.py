@@ -12,7 +12,7 @@ from permway.posterior.covariance import Frame
 from permway.posterior.fit import Model
 from permway.posterior.fitter import Fitter
 from permway.posterior.held_out import gains
-from permway.posterior.hyper import Hyper
+from permway.posterior.hyper import IDEALISATION, Hyper
 from simulated import simulate
 from simulated_train import measured, tables, written
 
@@ -112,3 +112,35 @@ def test_what_a_fit_gains_of_held_out_rows_is_a_ratio_of_gaussian_densities(tmp_
 
     out = fitter.frame.observations.rows.sensor == "deck@3"
     assert found["sensor deck@3"] == pytest.approx(conditional(fit, out) - conditional(start, out), rel=1e-4)
+
+
+@pytest.mark.parametrize("name", ["blows", "runs"])
+def test_other_sizes_of_errors_share_what_the_noise_weighs(name: str, request: pytest.FixtureRequest) -> None:
+    random = np.random.default_rng(4)
+    frame: Frame = request.getfixturevalue(name)
+    frame = frame.with_idealisation(random.standard_normal((frame.sigma.size, 3)))
+    first = frame.first()
+    usual, large = frame.covariance(first), first.moved(first.log + 0.5 * (np.array(first.names) == IDEALISATION))
+    columns = random.standard_normal((frame.sigma.size, 4))
+    weighted = usual.weighted(columns)
+    for hyper in (first, large, *first.smaller()):
+        shared, alone = usual.resized(hyper).rooted(weighted), frame.covariance(hyper).roots(columns)
+        np.testing.assert_allclose(shared.times(shared), alone.times(alone), rtol=1e-9)
+    with pytest.raises(ValueError, match="discrepancy is another"):
+        usual.resized(first.with_discrepancy(0.2))
+
+
+def test_what_lacks_as_much_as_before(runs: Frame) -> None:
+    before = runs.first().with_discrepancy(0.5)
+    assert before.with_discrepancy(0.46).lacks_as(before)
+    assert not before.with_discrepancy(0.4).lacks_as(before)
+    complete = runs.first()
+    assert not complete.lacks_as(complete)
+
+
+def test_of_two_kinds_of_record_one_that_is_explained_is_enough() -> None:
+    first = Hyper.first((), ("frf", "csd"))
+    both = first.with_discrepancy(0.5)
+    one = Hyper(both.names, np.where(["frf" in name for name in both.names], first.log, both.log))
+    assert not one.lacks_as(both)
+    assert one.lacks_as(one)

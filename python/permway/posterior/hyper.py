@@ -53,6 +53,10 @@ from :data:`EXACT` to :data:`COARSEST`."""
 LACKING = 0.5
 """Probability that a fit lacks something, from which large changes are tried and its errors are not relied on."""
 
+STILL = 0.9
+"""Share of a discrepancy from which as much is lacking as before: of three effects that do as much each, the first
+leaves 0.82."""
+
 
 @dataclass(frozen=True)
 class Hyper:
@@ -144,12 +148,20 @@ class Hyper:
     @property
     def novel(self) -> float:
         """Probability that a discrepancy is more than that of an idealisation, given these values."""
-        known = 1.0
-        for name, log in zip(self.names, self.log, strict=True):
-            if name.startswith("discrepancy"):
-                exact, broad = _components(log)
-                known *= exact / (exact + broad)
-        return 1.0 - known
+        return 1.0 - float(np.prod([1.0 - p for p in self._each_novel.values()]))
+
+    @property
+    def _each_novel(self) -> dict[str, float]:
+        """The same of each kind of record."""
+        parts = {
+            n: _components(v) for n, v in zip(self.names, self.log, strict=True) if n.startswith("discrepancy")
+        }
+        return {name: broad / (exact + broad) for name, (exact, broad) in parts.items()}
+
+    def lacks_as(self, before: Hyper) -> bool:
+        """Whether every kind of record that lacked something before still lacks as much."""
+        lacking = [name for name, novel in before._each_novel.items() if novel > LACKING]
+        return bool(lacking) and all(self[name] > STILL * before[name] for name in lacking)
 
 
 def _bounds(name: str) -> tuple[float, float]:

@@ -101,12 +101,14 @@ def explored(fitter: Fitter, *, ruled_out: Collection[str] = (), progress: Progr
             far_off = count == 1 and (lacks > LEVELS[1] or hyper.strained)
             found += _far(fitter, far if far_off else best, far_off, ruled_out, progress, what)
         leader = max((best, *found), key=lambda m: m.log_mass)
-        if leader is not best:
+        # What explains nothing of what lacks is no start for more, and gets no name.
+        vain = leader is not best and leader.fit.hyper.lacks_as(best.fit.hyper)
+        if leader is not best and not vain:
             for index, others in without_each(fitter, leader, nominal):
                 found += _alike(fitter, leader, index, others, tried, ruled_out, progress, what)
         tried += found
         fitter, members = ordered(fitter, best, [*members, *found], nominal)
-        root = _next_root(members, count)
+        root = None if vain else _next_root(members, count)
     return Explored(apart(members), seen)
 
 
