@@ -49,7 +49,7 @@ these, and 83 of the other 86.
 
 Whole campaigns (seeds as in the last table, and 1250000 on), beside other work: nothing missing, called 0 of 5;
 one effect, right name 10 of 12, one false; several, all found in 1 of 3, one false name; wheels that leave the
-rail at dips: dips, without a name; 67 to 1,198 s. An inertance outside the catalogue: stopped after 13 minutes.
+rail at dips: described, not named; 67 to 1,198 s. An inertance outside the catalogue: stopped after 13 minutes.
 """
 
 

@@ -2,7 +2,7 @@
 
 Needs the recordings beside the repository. What is in FOLDER already is not made or diagnosed again; NAME takes
 those whose names begin so. Prints a line each: seconds of processor, status, what is stated with its class,
-decibels of what was left out, before and after. Each has five minutes of processor at most.
+decibels of what was left out, before and after. Each has four minutes of processor at most.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from permway.campaign.importers.track_decay import import_track_decay
 from permway.diagnosis.verdict import Verdict
 from truss import passage
 
-LIMIT_S = 300
+LIMIT_S = 240
 """Of processor."""
 
 
